@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/core/error.h"
+
+namespace lucarne::gi {
+
+struct DeviceInfo {
+    std::string vendor, renderer, version;
+    bool software = false;        ///< llvmpipe and the like: timer queries are nonsense there
+    bool atomic_int64 = false;    ///< GL_NV_shader_atomic_int64
+    uint64_t max_buffer_bytes = 0;  ///< of one shader storage block
+};
+
+class Device;
+
+/// A shader storage buffer. Move-only; frees its memory and its share of the device's budget.
+class Buffer {
+ public:
+    Buffer() = default;
+    Buffer(Buffer&& other) noexcept;
+    Buffer& operator=(Buffer&& other) noexcept;
+    ~Buffer();
+
+    size_t bytes() const { return bytes_; }
+    explicit operator bool() const { return id_ != 0; }
+    uint32_t id() const { return id_; }
+    void bind(uint32_t binding) const;  ///< as shader storage
+    void upload(size_t offset, std::span<const std::byte> data);
+    void download(size_t offset, std::span<std::byte> out) const;  ///< waits for the device
+    void clear(uint32_t word);          ///< every 32-bit word
+    template <class T>
+    void upload_all(const std::vector<T>& values) { upload(0, std::as_bytes(std::span(values))); }
+    template <class T>
+    std::vector<T> download_all(size_t count) const {
+        std::vector<T> values(count);
+        download(0, std::as_writable_bytes(std::span(values)));
+        return values;
+    }
+
+ private:
+    friend class Device;
+    Device* device_ = nullptr;
+    uint32_t id_ = 0;
+    size_t bytes_ = 0;
+};
+
+/// A compiled compute program; owned by the device's cache.
+class Program {
+ public:
+    ~Program();
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    void set(std::string_view uniform, int32_t value) const;
+    void set(std::string_view uniform, uint32_t value) const;
+    void set(std::string_view uniform, float value) const;
+    void set_block(std::string_view uniform, std::span<const float> values) const;  ///< float or vec arrays: flat
+    /// Enough groups of the program's local size for x * y * z invocations, then a storage barrier.
+    void dispatch(uint32_t x, uint32_t y = 1, uint32_t z = 1) const;
+
+ private:
+    friend class Device;
+    explicit Program(uint32_t id) : id_(id) {}
+    uint32_t id_;
+    uint32_t local_[3] = {1, 1, 1};
+    mutable std::map<std::string, int32_t, std::less<>> locations_;
+};
+
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+/// One OpenGL 4.5 core context and all that is made in it; used from one thread. Everything a program reads or
+/// writes is a shader storage buffer; pictures included.
+class Device {
+ public:
+    /// An EGL surfaceless context: no X server, no window.
+    static Result<std::unique_ptr<Device>> headless();
+    /// Takes the context that is current on this thread (a GLFW window's); the window outlives the device.
+    static Result<std::unique_ptr<Device>> current();
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const;
+    /// Bytes that buffers may take in all; an allocation beyond it is an error.
+    void set_memory_cap(uint64_t bytes);
+    uint64_t memory_used() const;
+
+    /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
+    Result<Buffer> buffer(size_t bytes, std::string_view what);
+    /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
+    Result<void> reserve(Buffer& buffer, size_t bytes, std::string_view what);
+
+    /// The compute program of an embedded shader ("gi/vpl/shade.comp"), compiled once for each set of defines.
+    /// `#include "path"` is resolved among the embedded files. Errors carry the compiler's first message.
+    Result<const Program*> program(std::string_view path, const Defines& defines = {});
+
+    void finish();  ///< waits until all work is done
+
+ private:
+    Device();
+    friend class Buffer;
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Times passes of a frame: wall clock with `finish` around each pass (exact on software devices; on a GPU it costs
+/// a little overlap and is exact as well).
+class PassTimes {
+ public:
+    explicit PassTimes(Device& device) : device_(device) {}
+    void begin(std::string name);
+    void end();
+    struct Pass {
+        std::string name;
+        double seconds;
+    };
+    const std::vector<Pass>& passes() const { return passes_; }
+    void clear() { passes_.clear(); }
+
+ private:
+    Device& device_;
+    std::string name_;
+    double start_ = 0;
+    std::vector<Pass> passes_;
+};
+
+}  // namespace lucarne::gi

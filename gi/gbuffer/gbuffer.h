@@ -1,0 +1,26 @@
+#pragma once
+
+#include "gi/device/device.h"
+#include "gi/scene/surfel_pool.h"
+#include "gi/shared/camera.h"
+#include "gi/shared/gbuffer.h"
+#include "gi/shared/material.h"
+
+namespace lucarne::gi {
+
+/// What a camera or a light sees of a cut: one GBufferTexel a pixel and the id of the surfel behind it.
+struct GBuffer {
+    uint32_t width = 0, height = 0;
+    Buffer texels;  ///< GBufferTexel[width * height]
+    Buffer ids;     ///< uint[width * height], kNoSurfel where empty
+};
+
+/// Draws the discs of a cut by compute: per pixel the nearest intersection of its ray with a surfel's disc wins;
+/// equal depths go to the smaller id. Exact plane depths; nothing is smeared in the picture.
+/// Errors: out of device memory.
+Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target);
+
+/// The square view of a spot (apex at the light, field the full cone) for light G-buffer and shadow map.
+CameraView spot_view(const SpotLight& spot, uint32_t resolution);
+
+}  // namespace lucarne::gi

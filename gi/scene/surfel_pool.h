@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "gi/device/device.h"
+#include "gi/scene/scene.h"
+#include "gi/shared/surfel.h"
+#include "octree/source.h"
+
+namespace lucarne::gi {
+
+/// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB (.5
+/// linear where the scan has none), normals from `normal` or `normal_oct`, material by the scene's assignments.
+std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
+                                       const octree::NodeData& data, const Scene& scene);
+
+/// One node of a cut as the stream chose it.
+struct CutEntry {
+    uint32_t node = 0;
+    uint32_t count = 0;  ///< prefix
+};
+
+/// A cut on the device, made by SurfelPool::make_cut. Bindings are fixed for every shader: see bind().
+class DeviceCut {
+ public:
+    uint32_t surfels() const { return surfels_; }  ///< points drawn
+    uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
+    /// Binds pool (0), items (1), blocks (2, uvec2). gi/shared/cut.glsl declares them.
+    void bind() const;
+
+ private:
+    friend class SurfelPool;
+    const Buffer* pool_ = nullptr;
+    Buffer items_, blocks_buffer_;
+    std::vector<CutItem> host_items_;
+    uint32_t surfels_ = 0, blocks_ = 0;
+};
+
+/// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's load,
+/// replace and evict events. A node takes consecutive pages.
+class SurfelPool {
+ public:
+    static constexpr uint32_t kPageSurfels = 1024;
+    /// `capacity` surfels (rounded to pages), 16 bytes each, all taken at once so that the cap is hard.
+    static Result<SurfelPool> create(Device& device, uint32_t capacity);
+
+    /// False when there is no room: the caller evicts and tries again.
+    Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
+    void evict(uint32_t node);
+    bool holds(uint32_t node) const;
+    uint32_t used() const;      ///< surfels' worth of pages in use
+    uint32_t capacity() const;
+
+    /// Builds a cut from resident nodes (entries must be ancestor-closed; those that are not resident are left out
+    /// with their descendants). `local_origin` in world units; everything on the device is metres relative to it.
+    Result<void> make_cut(Device& device, const octree::NodeSource& source, std::span<const CutEntry> entries,
+                          const glm::dvec3& local_origin, DeviceCut& cut) const;
+
+    /// The cut's surfels with their footprints, decoded on the host by the same rules, in the order of their ids
+    /// without the gaps: what the reference engine traces.
+    std::vector<Surfel> download(const DeviceCut& cut) const;
+
+ private:
+    Buffer buffer_;
+    struct Span {
+        uint32_t first, count;
+    };
+    std::unordered_map<uint32_t, Span> resident_;
+    std::vector<Span> free_;  ///< sorted by first, merged
+    uint32_t capacity_ = 0;
+};
+
+}  // namespace lucarne::gi

@@ -1,0 +1,29 @@
+// A pinhole camera (or a spot light's view) shared by C++ and GLSL (std140 and std430).
+#ifndef LUCARNE_GI_SHARED_CAMERA_H
+#define LUCARNE_GI_SHARED_CAMERA_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/vec4.hpp>
+namespace lucarne::gi {
+using uint = uint32_t;
+using vec4 = glm::vec4;
+#endif
+
+// The ray through pixel (x, y), row 0 on top, has the direction
+//   d = forward + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1)
+// which is scaled so that dot(d, forward) = 1: depth along forward times d is the point. `right` and `up` carry the
+// tangents of half the field of view.
+struct CameraView {
+    vec4 origin;   // xyz: metres, relative to the local origin; w: near plane (m)
+    vec4 forward;  // unit
+    vec4 right;    // unit * tan(half horizontal field)
+    vec4 up;       // unit * tan(half vertical field)
+    uint width, height, pad0, pad1;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(CameraView) == 80);
+}  // namespace lucarne::gi
+#endif
+#endif

@@ -1,0 +1,23 @@
+// The G-buffer's texel, shared by C++ and GLSL (std430): one SSBO of width * height of them, row 0 on top.
+#ifndef LUCARNE_GI_SHARED_GBUFFER_H
+#define LUCARNE_GI_SHARED_GBUFFER_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace lucarne::gi {
+using uint = uint32_t;
+#endif
+
+struct GBufferTexel {
+    float depth;    // along the camera's forward axis, m; 0: nothing here
+    uint normal;    // octahedral 2 x 16 bit, turned toward the viewer (a surfel is an opaque sheet with two equal
+                    // sides); surfels without a normal face the viewer
+    uint albedo;    // as PackedSurfel.d: sRGB-coded 3 x 10 bit | flags
+    uint material;  // index | radius of the surfel as a half float << 16
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(GBufferTexel) == 16);
+}  // namespace lucarne::gi
+#endif
+#endif

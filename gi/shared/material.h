@@ -1,0 +1,32 @@
+// Materials and lights as the devices hold them (std430), shared by C++ and GLSL.
+#ifndef LUCARNE_GI_SHARED_MATERIAL_H
+#define LUCARNE_GI_SHARED_MATERIAL_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/vec4.hpp>
+namespace lucarne::gi {
+using uint = uint32_t;
+using vec4 = glm::vec4;
+#endif
+
+// BRDF: kd/pi + ks (n+2)/(2 pi) cos^n(angle to the mirror direction), kd + ks <= 1 in every channel.
+// kd = min(albedo * diffuse, .95), scaled down where kd + ks would exceed 1.
+struct Material {
+    vec4 diffuse;   // rgb scale of the scan's colour; w: ks, specular intensity
+    vec4 emission;  // rgb radiance, W/(sr m^2); w: n, Phong exponent
+};
+
+// A spot: radiant intensity I(w) = intensity * soft edge, W/sr. The edge falls from 1 at cos_inner to 0 at
+// cos_outer as smoothstep of the cosine.
+struct SpotLight {
+    vec4 position;   // m, relative to the local origin; w: cos_outer (half the full angle)
+    vec4 direction;  // unit; w: cos_inner
+    vec4 intensity;  // rgb, W/sr
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(Material) == 32 && sizeof(SpotLight) == 48);
+}  // namespace lucarne::gi
+#endif
+#endif

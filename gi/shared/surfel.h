@@ -1,0 +1,56 @@
+// Surfels as the devices hold them: structs shared by C++ and GLSL (std430), and what decodes them.
+#ifndef LUCARNE_GI_SHARED_SURFEL_H
+#define LUCARNE_GI_SHARED_SURFEL_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+namespace lucarne::gi {
+using uint = uint32_t;
+using vec3 = glm::vec3;
+#endif
+
+// 16 bytes a surfel.
+//   a: x | y << 16           16-bit fractions of the node's cube
+//   b: z | area << 16 | material << 24
+//      area: own share at full resolution as s^2 * 2^(-code/8), s the node's size; 255: unknown (0)
+//   c: normal, octahedral, two signed 16-bit fractions
+//   d: albedo, sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
+struct PackedSurfel {
+    uint a, b, c, d;
+};
+const uint kSurfelHasNormal = 0x40000000u;
+
+// One node of a cut. A surfel's position is origin + size * fraction; metres, relative to the frame's local origin.
+struct CutItem {
+    vec3 origin;
+    float size;
+    uint first;        // of its surfels in the pool
+    uint count;        // prefix in use
+    float area_floor;  // m^2, at that prefix
+    uint first_block;  // of its blocks in the cut's block list
+    int child[8];      // the cut's item in each octant, -1 for none
+};
+
+// Surfels are processed in blocks of kBlockSurfels: block b of a cut is item blocks[b].x from surfel blocks[b].y on.
+// A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone, never
+// on what else is resident, so that ties broken by id are the same on every run.
+const uint kBlockSurfels = 256u;
+const uint kNoSurfel = 0xffffffffu;
+
+#ifdef __cplusplus
+static_assert(sizeof(PackedSurfel) == 16 && sizeof(CutItem) == 64);
+
+/// A surfel as the host sees it (the reference engine, tests).
+struct Surfel {
+    glm::vec3 position;  ///< metres, relative to the local origin
+    glm::vec3 normal;    ///< unit; zero where the point has none
+    glm::vec3 albedo;    ///< linear Rec. 709, before the material's scale
+    float radius;        ///< m
+    float area;          ///< m^2
+    uint32_t material;
+};
+}  // namespace lucarne::gi
+#endif
+#endif

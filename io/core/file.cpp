@@ -1,0 +1,203 @@
+#include "io/core/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+namespace lucarne {
+namespace {
+
+std::string reason(int code) { return std::strerror(code); }
+
+Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data, const std::filesystem::path& path) {
+    while (!data.empty()) {
+        const ssize_t n = ::pwrite(fd, data.data(), data.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0)
+            return failed(path.string(), fmt::format("cannot be written ({})", reason(n < 0 ? errno : ENOSPC)),
+                          errno == ENOSPC || n == 0 ? "free some space or choose another disk" : "");
+        offset += static_cast<uint64_t>(n);
+        data = data.subspan(static_cast<size_t>(n));
+    }
+    return {};
+}
+
+Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out, const std::filesystem::path& path) {
+    size_t done = 0;
+    while (done < out.size()) {
+        const ssize_t n = ::pread(fd, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return failed(path.string(), fmt::format("cannot be read ({})", reason(errno)));
+        if (n == 0) break;
+        done += static_cast<size_t>(n);
+    }
+    return done;
+}
+
+Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out, const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const size_t got, read_up_to(fd, offset, out, path));
+    if (got != out.size())
+        return rejected(path.string(), fmt::format("ends early: {} bytes wanted at {}, {} there", out.size(), offset, got));
+    return {};
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace
+
+Result<InputFile> InputFile::open(const std::filesystem::path& path) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a FIFO must not hang us
+    if (fd < 0) return rejected(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
+    struct stat status {};
+    if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+        ::close(fd);
+        return rejected(path.string(), "is not a regular file");
+    }
+    return InputFile(fd, static_cast<uint64_t>(status.st_size), path);
+}
+
+InputFile::InputFile(InputFile&& other) noexcept { *this = std::move(other); }
+InputFile& InputFile::operator=(InputFile&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    std::swap(size_, other.size_);
+    std::swap(path_, other.path_);
+    return *this;
+}
+InputFile::~InputFile() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+Result<void> InputFile::read_at(uint64_t offset, std::span<std::byte> out) const {
+    return read_exactly(fd_, offset, out, path_);
+}
+Result<size_t> InputFile::read_some(uint64_t offset, std::span<std::byte> out) const {
+    return read_up_to(fd_, offset, out, path_);
+}
+
+Result<void> check_output(const std::filesystem::path& path, bool overwrite) {
+    struct stat status {};
+    if (path.filename().empty()) return bad_arguments(path.string(), "is not a file name");
+    if (::stat(path.c_str(), &status) == 0) {
+        if (S_ISDIR(status.st_mode)) return failed(path.string(), "is a folder", "choose a file name");
+        if (!overwrite) return failed(path.string(), "exists already", "choose another name or pass --overwrite");
+    }
+    const auto folder = folder_of(path);
+    if (::stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode))
+        return failed(path.string(), fmt::format("the folder {} does not exist", folder.string()), "create it first");
+    if (::access(folder.c_str(), W_OK) != 0)
+        return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)), "choose another folder");
+    return {};
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path, bool overwrite) {
+    LUCARNE_TRY(check_output(path, overwrite));
+    OutputFile file;
+    file.path_ = path;
+    file.overwrite_ = overwrite;
+    file.fd_ = ::open(folder_of(path).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (file.fd_ < 0) {
+        file.temporary_ = path.string() + fmt::format(".part-{}", ::getpid());
+        file.fd_ = ::open(file.temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+        if (file.fd_ < 0) {
+            const int code = errno;
+            file.temporary_.clear();
+            return failed(path.string(), fmt::format("cannot be created ({})", reason(code)));
+        }
+    }
+    return file;
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept { *this = std::move(other); }
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    std::swap(overwrite_, other.overwrite_);
+    std::swap(committed_, other.committed_);
+    std::swap(path_, other.path_);
+    std::swap(temporary_, other.temporary_);
+    std::swap(position_, other.position_);
+    return *this;
+}
+OutputFile::~OutputFile() {
+    if (fd_ >= 0) ::close(fd_);
+    if (!committed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+Result<void> OutputFile::append(std::span<const std::byte> data) {
+    LUCARNE_TRY(write_all(fd_, position_, data, path_));
+    position_ += data.size();
+    return {};
+}
+Result<void> OutputFile::append(std::string_view text) { return append(std::as_bytes(std::span(text))); }
+Result<void> OutputFile::write_at(uint64_t offset, std::span<const std::byte> data) {
+    return write_all(fd_, offset, data, path_);
+}
+Result<void> OutputFile::read_at(uint64_t offset, std::span<std::byte> out) const {
+    return read_exactly(fd_, offset, out, path_);
+}
+
+Result<void> OutputFile::commit() {
+    if (::fsync(fd_) != 0) return failed(path_.string(), fmt::format("cannot be synced ({})", reason(errno)));
+    if (temporary_.empty()) {
+        // linkat never replaces a name, so an overwrite goes through a second name and rename.
+        const std::string self = fmt::format("/proc/self/fd/{}", fd_);
+        std::filesystem::path name = path_;
+        if (overwrite_) name += fmt::format(".part-{}", ::getpid());
+        if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)
+            return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
+        if (overwrite_) temporary_ = name;
+    } else if (!overwrite_ && ::access(path_.c_str(), F_OK) == 0) {
+        return failed(path_.string(), "exists already", "choose another name or pass --overwrite");
+    }
+    if (!temporary_.empty() && ::rename(temporary_.c_str(), path_.c_str()) != 0)
+        return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
+    committed_ = true;
+    if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+        ::fsync(folder);  // the name itself; not every file system supports it
+        ::close(folder);
+    }
+    return {};
+}
+
+Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
+    int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (fd < 0) {
+        std::string name = (folder / "lucarne-XXXXXX").string();
+        fd = ::mkstemp(name.data());
+        if (fd < 0)
+            return failed(folder.string(), fmt::format("no temporary file can be made here ({})", reason(errno)),
+                          "choose another folder with --temp");
+        ::unlink(name.c_str());
+    }
+    return ScratchFile(fd, folder);
+}
+
+ScratchFile::ScratchFile(ScratchFile&& other) noexcept { *this = std::move(other); }
+ScratchFile& ScratchFile::operator=(ScratchFile&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    std::swap(folder_, other.folder_);
+    return *this;
+}
+ScratchFile::~ScratchFile() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+Result<void> ScratchFile::write_at(uint64_t offset, std::span<const std::byte> data) {
+    return write_all(fd_, offset, data, folder_ / "(temporary file)");
+}
+Result<void> ScratchFile::read_at(uint64_t offset, std::span<std::byte> out) const {
+    return read_exactly(fd_, offset, out, folder_ / "(temporary file)");
+}
+void ScratchFile::discard(uint64_t offset, uint64_t bytes) {
+    (void)::fallocate(fd_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
+                      static_cast<off_t>(bytes));
+}
+
+}  // namespace lucarne

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+/// A regular file opened for reading at any offset. Thread-safe (pread). Directories, devices, missing and
+/// unreadable files are rejected with their reason.
+class InputFile {
+ public:
+    static Result<InputFile> open(const std::filesystem::path& path);
+    InputFile(InputFile&& other) noexcept;
+    InputFile& operator=(InputFile&& other) noexcept;
+    ~InputFile();
+
+    uint64_t size() const { return size_; }
+    const std::filesystem::path& path() const { return path_; }
+    /// Reads exactly `out.size()` bytes at `offset`; fewer is an error that says so (a truncated file).
+    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    /// Reads up to `out.size()` bytes at `offset` and returns how many there were; 0 at the end.
+    Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const;
+
+ private:
+    InputFile(int fd, uint64_t size, std::filesystem::path path) : fd_(fd), size_(size), path_(std::move(path)) {}
+    int fd_ = -1;
+    uint64_t size_ = 0;
+    std::filesystem::path path_;
+};
+
+/// A file that appears under its name whole or not at all: it is written nameless (O_TMPFILE, so that even
+/// SIGKILL leaves nothing) or, where the file system cannot do that, beside its name and removed on failure.
+/// `commit` syncs it and gives it its name. Any write that fails (a full disk) is an error; the destructor of
+/// an uncommitted file leaves nothing behind. write_at is thread-safe.
+class OutputFile {
+ public:
+    /// Refuses a name that exists unless `overwrite`; refuses a folder that is missing or cannot be written.
+    static Result<OutputFile> create(const std::filesystem::path& path, bool overwrite);
+    OutputFile(OutputFile&& other) noexcept;
+    OutputFile& operator=(OutputFile&& other) noexcept;
+    ~OutputFile();
+
+    Result<void> append(std::span<const std::byte> data);  ///< at position(); unbuffered: hand over large pieces
+    Result<void> append(std::string_view text);
+    Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
+    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    uint64_t position() const { return position_; }  ///< the end of what `append` wrote
+    Result<void> commit();
+
+ private:
+    OutputFile() = default;
+    int fd_ = -1;
+    bool overwrite_ = false, committed_ = false;
+    std::filesystem::path path_, temporary_;  ///< `temporary_` is empty for a nameless file
+    uint64_t position_ = 0;
+};
+
+/// A nameless scratch file in `folder`: gone with the process however it ends.
+class ScratchFile {
+ public:
+    static Result<ScratchFile> create(const std::filesystem::path& folder);
+    ScratchFile(ScratchFile&& other) noexcept;
+    ScratchFile& operator=(ScratchFile&& other) noexcept;
+    ~ScratchFile();
+
+    Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
+    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    /// Gives the blocks of a range back to the file system where it can; a hint, never an error.
+    void discard(uint64_t offset, uint64_t bytes);
+
+ private:
+    explicit ScratchFile(int fd, std::filesystem::path folder) : fd_(fd), folder_(std::move(folder)) {}
+    int fd_ = -1;
+    std::filesystem::path folder_;
+};
+
+/// Why `path` can be written as an output, checked before long work starts: the same refusals as
+/// OutputFile::create, with nothing created.
+Result<void> check_output(const std::filesystem::path& path, bool overwrite);
+
+}  // namespace lucarne

@@ -1,0 +1,52 @@
+#include "io/core/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace lucarne {
+
+Result<uint64_t> parse_bytes(std::string_view option, std::string_view text) {
+    double number = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const std::string_view unit = text.substr(static_cast<size_t>(end - text.data()));
+    static constexpr std::string_view kPrefixes = "KMGT";
+    double factor = 0;
+    if (unit.empty() || unit == "B") {
+        factor = 1;
+    } else if (const auto at = kPrefixes.find(static_cast<char>(unit[0] & ~0x20)); at != std::string_view::npos) {
+        const auto rest = unit.substr(1);
+        if (rest.empty() || rest == "B" || rest == "iB") factor = std::pow(1024.0, static_cast<double>(at + 1));
+    }
+    const double bytes = number * factor;
+    if (code != std::errc{} || factor == 0 || !(bytes >= 0) || bytes > 9e15)
+        return bad_arguments(std::string(option), fmt::format("'{}' is not an amount of memory", text),
+                             "write for example 512M or 2G");
+    return static_cast<uint64_t>(bytes);
+}
+
+Result<ImageSize> parse_size(std::string_view option, std::string_view text) {
+    ImageSize size;
+    const char* last = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), last, size.width);
+    if (first.ec == std::errc{} && first.ptr != last && *first.ptr == 'x') {
+        const auto second = std::from_chars(first.ptr + 1, last, size.height);
+        if (second.ec == std::errc{} && second.ptr == last && size.width >= 1 && size.height >= 1 &&
+            size.width <= 16384 && size.height <= 16384)
+            return size;
+    }
+    return bad_arguments(std::string(option), fmt::format("'{}' is not a picture size", text),
+                         "write WIDTHxHEIGHT, for example 1280x720");
+}
+
+std::string bytes_text(uint64_t bytes) {
+    static constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+    auto value = static_cast<double>(bytes);
+    int unit = 0;
+    while (value >= 1024 && unit < 4) value /= 1024, ++unit;
+    return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.1f} {}", value, kUnits[unit]);
+}
+
+}  // namespace lucarne

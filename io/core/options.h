@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+/// "512M", "2G", "1.5GiB", "4096" to bytes (binary units). `option` names it in the error.
+Result<uint64_t> parse_bytes(std::string_view option, std::string_view text);
+
+struct ImageSize {
+    uint32_t width = 0, height = 0;
+};
+/// "1280x720"; both between 1 and 16384.
+Result<ImageSize> parse_size(std::string_view option, std::string_view text);
+
+/// "1.5 GiB".
+std::string bytes_text(uint64_t bytes);
+
+}  // namespace lucarne

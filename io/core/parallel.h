@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+/// Caps the threads of every parallel loop while it lives; 0 means all cores.
+class ThreadLimit {
+ public:
+    explicit ThreadLimit(unsigned threads)
+        : control_(tbb::global_control::max_allowed_parallelism,
+                   threads ? threads : std::max(1u, std::thread::hardware_concurrency())) {}
+
+ private:
+    tbb::global_control control_;
+};
+
+/// body(first, last) over [0, count) in pieces of at most `grain`, in parallel. The pieces do not depend on
+/// the number of threads, so a body that depends on nothing but its piece gives the same result every run.
+template <class Body>
+void parallel_ranges(size_t count, size_t grain, const Body& body) {
+    const size_t pieces = (count + grain - 1) / grain;
+    tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
+        const size_t first = piece * grain;
+        body(first, std::min(count, first + grain));
+    });
+}
+
+/// Collects the failure of parallel work. Of several the one with the lowest `order` is kept, so that the
+/// message does not depend on timing where every piece is tried.
+class FirstError {
+ public:
+    void report(size_t order, Error error) {
+        const std::lock_guard lock(mutex_);
+        if (!error_ || order < order_) {
+            error_ = std::move(error);
+            order_ = order;
+        }
+        any_ = true;
+    }
+    bool any() const { return any_; }
+    Result<void> result() {
+        const std::lock_guard lock(mutex_);
+        if (error_) return tl::make_unexpected(*error_);
+        return {};
+    }
+
+ private:
+    std::mutex mutex_;
+    std::optional<Error> error_;
+    size_t order_ = 0;
+    std::atomic<bool> any_{false};
+};
+
+}  // namespace lucarne

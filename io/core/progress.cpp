@@ -1,0 +1,71 @@
+#include "io/core/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lucarne {
+namespace {
+
+std::atomic<bool>& silent_flag() {
+    static std::atomic<bool> flag{false};
+    return flag;
+}
+
+std::string count_text(double n) {
+    if (n >= 1e9) return fmt::format("{:.2f}G", n / 1e9);
+    if (n >= 1e6) return fmt::format("{:.1f}M", n / 1e6);
+    if (n >= 1e4) return fmt::format("{:.0f}k", n / 1e3);
+    return fmt::format("{:.0f}", n);
+}
+
+}  // namespace
+
+Progress::Progress(std::string label, uint64_t total, std::string unit)
+    : label_(std::move(label)), unit_(std::move(unit)), total_(total),
+      start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {
+    next_print_ms_ = terminal_ ? 100 : 10'000;
+}
+
+Progress::~Progress() { print(true); }
+
+void Progress::set_silent(bool silent) { silent_flag() = silent; }
+
+double Progress::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Progress::add(uint64_t amount) {
+    done_ += amount;
+    const auto now = static_cast<int64_t>(seconds() * 1000);
+    int64_t due = next_print_ms_.load();
+    if (now < due || !next_print_ms_.compare_exchange_strong(due, now + (terminal_ ? 100 : 10'000))) return;
+    print(false);
+}
+
+void Progress::print(bool last) {
+    if (silent_flag()) return;
+    const std::lock_guard lock(print_mutex_);
+    const double elapsed = std::max(seconds(), 1e-6);
+    const auto done = static_cast<double>(done_.load());
+    const double rate = done / elapsed;
+    if (last) {
+        fmt::print(stderr, "{}lucarne: {}: {} {} in {:.1f} s ({}/s){}\n", terminal_ ? "\r" : "", label_,
+                   count_text(done), unit_, elapsed, count_text(rate), terminal_ ? "\x1b[K" : "");
+    } else if (total_ == 0) {
+        fmt::print(stderr, "{}lucarne: {}: {} {}, {}/s{}", terminal_ ? "\r" : "", label_, count_text(done), unit_,
+                   count_text(rate), terminal_ ? "\x1b[K" : "\n");
+    } else {
+        const double share = std::min(1.0, done / static_cast<double>(total_));
+        const double left = rate > 0 ? (static_cast<double>(total_) - done) / rate : 0;
+        const auto filled = static_cast<size_t>(share * 20);
+        const std::string bar = terminal_ ? "[" + std::string(filled, '#') + std::string(20 - filled, '.') + "] " : "";
+        fmt::print(stderr, "{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", terminal_ ? "\r" : "", label_, bar,
+                   share * 100, count_text(rate), unit_, std::max(0.0, left), terminal_ ? "\x1b[K" : "\n");
+    }
+    std::fflush(stderr);
+}
+
+}  // namespace lucarne

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "io/points.h"
+
+namespace lucarne::io {
+
+/// Opens a scan file; its format is told by its content, never by its name. Reads the header only.
+/// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
+Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path);
+
+struct WriteOptions {
+    bool overwrite = false;
+    uint64_t expected_points = 0;  ///< a hint; 0 where unknown
+};
+
+/// A writer for the format that `path`'s extension names (.las, .ply); the file appears when `finish` succeeds.
+/// `info.details` of a source of the same format restores its header (version, point format, VLRs, types).
+Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
+                                                 const ScanInfo& info, const WriteOptions& options);
+
+}  // namespace lucarne::io

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/core/error.h"
+
+namespace lucarne::io {
+
+/// The numbers are part of the cache format (octree/FORMAT.md).
+enum class ScalarType : uint8_t { u8 = 1, i8 = 2, u16 = 3, i16 = 4, u32 = 5, i32 = 6, u64 = 7, i64 = 8, f32 = 9, f64 = 10 };
+constexpr size_t scalar_bytes(ScalarType type) {
+    constexpr std::array<uint8_t, 11> kBytes = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return kBytes[static_cast<size_t>(type)];
+}
+std::string_view scalar_name(ScalarType type);                       ///< "u8" ... "f64"
+std::optional<ScalarType> scalar_type(std::string_view name);
+
+/// How a record stores its three coordinates: exactly as the file did.
+enum class PositionType : uint8_t {
+    i32_scaled = 1,  ///< LAS: x = integer * scale + offset
+    f32 = 2,
+    f64 = 3,
+};
+constexpr size_t position_bytes(PositionType type) { return type == PositionType::f64 ? 24 : 12; }
+
+struct Attribute {
+    std::string name;
+    ScalarType type = ScalarType::u8;
+    uint32_t components = 1;
+    uint32_t offset = 0;  ///< in the record
+    size_t bytes() const { return scalar_bytes(type) * components; }
+    bool operator==(const Attribute&) const = default;
+};
+
+/// Names every folder agrees on; formats may add any others.
+namespace names {
+inline constexpr std::string_view color = "color";            ///< u8 x3 or u16 x3, sRGB; full range
+inline constexpr std::string_view normal = "normal";          ///< f32 x3, as the file had it; (0,0,0) = none
+inline constexpr std::string_view normal_oct = "normal_oct";  ///< u8 x3, estimated; see octree/attributes.h
+inline constexpr std::string_view area = "area";              ///< u16, surface share at full resolution; ditto
+inline constexpr std::string_view intensity = "intensity";
+inline constexpr std::string_view classification = "classification";  ///< u8
+inline constexpr std::string_view scan = "scan";  ///< u16: index of the input file; only with several inputs
+// LAS, each as the LAS specification defines it (flags: bit 0 synthetic, 1 key point, 2 withheld, 3 overlap):
+inline constexpr std::string_view return_number = "return_number";          // u8
+inline constexpr std::string_view number_of_returns = "number_of_returns";  // u8
+inline constexpr std::string_view scan_direction = "scan_direction";        // u8
+inline constexpr std::string_view edge_of_flight_line = "edge_of_flight_line";  // u8
+inline constexpr std::string_view class_flags = "class_flags";              // u8
+inline constexpr std::string_view scanner_channel = "scanner_channel";      // u8
+inline constexpr std::string_view scan_angle_rank = "scan_angle_rank";      // i8, degrees (formats 0-3)
+inline constexpr std::string_view scan_angle = "scan_angle";                // i16, 0.006 degrees (formats 6-8)
+inline constexpr std::string_view user_data = "user_data";                  // u8
+inline constexpr std::string_view point_source_id = "point_source_id";      // u16; the station where poses are known
+inline constexpr std::string_view gps_time = "gps_time";                    // f64
+inline constexpr std::string_view nir = "nir";                              // u16
+}  // namespace names
+
+/// The layout of one point record: the position first, then the attributes packed in order, no padding.
+/// Little-endian in memory as on disk.
+struct Schema {
+    PositionType position = PositionType::f64;
+    glm::dvec3 scale{1.0}, offset{0.0};  ///< i32_scaled only
+    std::vector<Attribute> attributes;
+    uint32_t stride = position_bytes(PositionType::f64);
+
+    /// Appends an attribute behind the last and grows the stride.
+    void add(std::string name, ScalarType type, uint32_t components = 1);
+    const Attribute* find(std::string_view name) const;
+    bool operator==(const Schema&) const = default;
+};
+
+/// A run of records, `schema.stride` bytes each.
+struct PointBatch {
+    std::vector<std::byte> bytes;
+    size_t count = 0;
+};
+
+template <class T>
+T load(const std::byte* at) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+template <class T>
+void store(std::byte* at, T value) {
+    std::memcpy(at, &value, sizeof value);
+}
+
+/// The world position of a record in the file's own unit.
+inline glm::dvec3 position_of(const Schema& schema, const std::byte* record) {
+    switch (schema.position) {
+        case PositionType::i32_scaled: {
+            const glm::dvec3 integers(load<int32_t>(record), load<int32_t>(record + 4), load<int32_t>(record + 8));
+            return integers * schema.scale + schema.offset;
+        }
+        case PositionType::f32:
+            return {load<float>(record), load<float>(record + 4), load<float>(record + 8)};
+        case PositionType::f64: break;
+    }
+    return {load<double>(record), load<double>(record + 8), load<double>(record + 16)};
+}
+
+/// One component of an attribute as a double, whatever its type.
+double scalar_at(ScalarType type, const std::byte* at);
+void store_scalar(ScalarType type, std::byte* at, double value);  ///< rounds and clamps to the type's range
+
+/// Where a scanner stood, in the coordinates of the points. `id` is the value of point_source_id of the
+/// points it saw (or of `scan` when `by_scan`).
+struct Station {
+    uint32_t id = 0;
+    glm::dvec3 position{0.0};
+};
+
+/// What a file says besides its points.
+struct ScanInfo {
+    std::string path;
+    std::string format;                 ///< "LAS 1.2, point format 3"
+    uint64_t declared_points = 0;       ///< what the header says; the truth is what read() gives
+    double metres_per_unit = 1.0;
+    std::vector<Station> stations;
+    std::string details = "{}";         ///< JSON object: what export needs to write the same format again
+};
+
+/// One pass over a scan's points. Not thread-safe.
+class PointReader {
+ public:
+    virtual ~PointReader() = default;
+    /// Replaces `batch` by up to `most` points; 0 at the end. Points with a non-finite coordinate are dropped.
+    virtual Result<size_t> read(PointBatch& batch, size_t most) = 0;
+    virtual uint64_t dropped() const = 0;  ///< how many so far
+};
+
+/// A scan that can be read as often as one likes, with bounded memory.
+class PointSource {
+ public:
+    virtual ~PointSource() = default;
+    virtual const Schema& schema() const = 0;
+    virtual const ScanInfo& info() const = 0;
+    virtual Result<std::unique_ptr<PointReader>> open() const = 0;
+};
+
+/// Takes batches in the schema it was made for.
+class PointWriter {
+ public:
+    virtual ~PointWriter() = default;
+    virtual Result<void> write(std::span<const std::byte> records) = 0;  ///< whole records
+    virtual Result<void> finish() = 0;  ///< completes the header, syncs, names the file
+};
+
+}  // namespace lucarne::io

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/points.h"
+#include "octree/key.h"
+
+namespace lucarne::octree {
+
+inline constexpr uint32_t kNoNode = UINT32_MAX;
+inline constexpr size_t kPrefixSteps = 4;  ///< prefixes of 1, 1/2, 1/4, 1/8
+
+/// What is known of a node without loading its points.
+struct NodeInfo {
+    NodeKey key;
+    uint32_t parent = kNoNode;
+    uint32_t first_child = kNoNode;  ///< children stand together in the directory, in octant order
+    uint8_t child_mask = 0;          ///< bit i: the child in octant i exists
+    uint32_t count = 0;              ///< points that stand in this node itself
+    uint64_t subtree_count = 0;      ///< with all descendants
+    uint32_t payload_bytes = 0;      ///< on disk
+    /// Least surface share of a surfel (file unit squared) where this node is the deepest of a cut and the
+    /// first count/2^i of its points are drawn. See octree/footprint.h.
+    std::array<float, kPrefixSteps> area_floor{};
+
+    /// The node in octant `o`, or kNoNode.
+    uint32_t child(uint32_t o) const {
+        if (!(child_mask >> o & 1)) return kNoNode;
+        return first_child + static_cast<uint32_t>(__builtin_popcount(child_mask & ((1u << o) - 1)));
+    }
+    /// The mean distance of neighbouring points at the full prefix, in the file's unit.
+    float spacing() const { return __builtin_sqrtf(area_floor[0]); }
+};
+
+/// A loaded node: `count` records in the schema's layout, in prefix order.
+struct NodeData {
+    uint32_t count = 0;
+    std::vector<std::byte> records;
+};
+
+/// What a source is as a whole.
+struct SourceHeader {
+    io::Schema schema;
+    Cube root;                     ///< the root node's cube
+    glm::dvec3 min{0.0}, max{0.0}; ///< tight bounds of the points
+    uint64_t points = 0;
+    double metres_per_unit = 1.0;
+    std::vector<io::ScanInfo> scans;
+};
+
+/// Anything that hands out octree nodes: a cache today, a growing build or a remote file later. Thread-safe.
+/// The directory is in memory (64 bytes a node or so); points are loaded node by node.
+class NodeSource {
+ public:
+    virtual ~NodeSource() = default;
+    virtual const SourceHeader& header() const = 0;
+    virtual std::span<const NodeInfo> nodes() const = 0;  ///< breadth first, the root is 0; may be empty
+    /// Loads and checks one node; blocking. Errors: unreadable, truncated, checksum.
+    virtual Result<NodeData> load(uint32_t node) const = 0;
+};
+
+}  // namespace lucarne::octree

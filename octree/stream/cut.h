@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "octree/source.h"
+
+namespace lucarne::octree {
+
+/// A node of a cut and how long a prefix of it is used.
+struct CutNode {
+    uint32_t node = 0;
+    uint32_t count = 0;
+    float priority = 0;  ///< what loading it adds to the picture; larger is sooner
+};
+
+/// The nodes chosen for a purpose: closed under parents, sorted by node index. All nodes but the cut's leaves are
+/// used whole; a leaf's prefix is where the level of detail fades in.
+struct Cut {
+    std::vector<CutNode> nodes;
+    uint64_t points = 0;
+    bool budget_hit = false;  ///< the wanted spacing was not reached everywhere
+};
+
+/// A pinhole view in world units (the file's), for choosing nodes.
+struct View {
+    glm::dvec3 position{0.0}, forward{0.0, 1.0, 0.0}, right{1.0, 0.0, 0.0}, up{0.0, 0.0, 1.0};  ///< unit axes
+    double tan_half_width = 1, tan_half_height = 1;
+    uint32_t width = 1, height = 1;  ///< pixels or shadow-map texels
+    double near_plane = 1e-3;
+};
+
+/// What a camera sees, refined where the projected spacing of the points is largest until it is under
+/// `pixel_spacing` pixels everywhere or `budget` points are taken. Nodes outside the view are left out.
+Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double pixel_spacing = 1.0);
+
+/// The same for a light's view (a shadow map or light G-buffer): the receivers must not be finer than the casters,
+/// so it follows the spacing seen from the light.
+Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget, double texel_spacing = 1.0);
+
+/// What may bounce or block light: everything, seen or not, refined toward `centre` (the camera's focus) in
+/// proportion to distance, under `budget`.
+Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget);
+
+/// Every node whole.
+Cut full_cut(const NodeSource& source);
+
+}  // namespace lucarne::octree
