@@ -1,0 +1,57 @@
+#include "octree/normals/area_floor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace lucarne::octree {
+namespace {
+
+/// The least c >= 0 with sum(max(a_i, c)) = surface; reorders `areas`. Bisects over the values themselves:
+/// what lies above c keeps its own area, what lies below shares the rest evenly.
+double floor_of(std::span<float> areas, double surface) {
+    size_t below = 0;    // known to lie under c
+    double above = 0.0;  // sum of those known to lie at or over c
+    while (!areas.empty()) {
+        const size_t middle = areas.size() / 2;
+        std::nth_element(areas.begin(), areas.begin() + static_cast<ptrdiff_t>(middle), areas.end());
+        const auto upper = areas.subspan(middle);
+        const double pivot = upper.front();
+        const double upper_sum = std::accumulate(upper.begin(), upper.end(), 0.0);
+        if (above + upper_sum + pivot * static_cast<double>(below + middle) >= surface) {
+            above += upper_sum;
+            areas = areas.first(middle);
+        } else {
+            below += middle + 1;
+            areas = upper.subspan(1);
+        }
+    }
+    return below > 0 ? std::max(0.0, (surface - above) / static_cast<double>(below)) : 0.0;
+}
+
+}  // namespace
+
+std::array<float, kPrefixSteps> area_floors(std::span<const float> inherited_areas,
+                                            std::span<const float> own_areas_in_prefix_order,
+                                            double surface) {
+    std::array<float, kPrefixSteps> floors{};
+    if (!(surface > 0) || !std::isfinite(surface)) return floors;
+    const size_t own = own_areas_in_prefix_order.size();
+    std::vector<float> areas;
+    areas.reserve(inherited_areas.size() + own);
+    const auto add = [&](std::span<const float> values) {
+        for (const float a : values) areas.push_back(a > 0 && std::isfinite(a) ? a : 0.0f);
+    };
+    float previous = 0.0f;
+    for (size_t step = 0; step < kPrefixSteps; ++step) {
+        areas.clear();
+        add(inherited_areas);
+        add(own_areas_in_prefix_order.first(std::min(own, std::max<size_t>(1, own >> step))));
+        previous = std::max(previous, static_cast<float>(floor_of(areas, surface)));
+        floors[step] = previous;
+    }
+    return floors;
+}
+
+}  // namespace lucarne::octree
