@@ -1,0 +1,98 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gi/engine.h"
+#include "gi/scene/scene.h"
+#include "io/core/options.h"
+#include "octree/source.h"
+#include "viewer/presets.h"
+
+namespace lucarne::viewer {
+
+/// Caps that hold whatever the cloud's size.
+struct PipelineOptions {
+    uint64_t host_memory = uint64_t{1} << 30;  ///< node data in memory, bytes
+    uint32_t pool_surfels =
+        8'000'000;  ///< surfels on the device, 16 bytes each; at most what one buffer holds
+    uint64_t device_memory = uint64_t{2} << 30;
+    unsigned load_threads = 2;
+};
+
+struct FrameRequest {
+    gi::SceneCamera camera;
+    ImageSize size{1280, 720};
+    bool wait = false;  ///< loads every cut whole first: the same pixels on every run
+    bool accumulate =
+        false;  ///< averages with the frames before for as long as nothing that is drawn changes
+};
+
+struct FrameStats {
+    std::vector<gi::PassTimes::Pass>
+        passes;          ///< in order: cuts, load, upload, G-buffer, the engine's, tone map
+    double seconds = 0;  ///< the whole frame
+    uint64_t view_points = 0, light_view_points = 0, light_points = 0;  ///< drawn
+    uint64_t wanted_points = 0, ready_points = 0;  ///< of all cuts, once a cut: chosen and drawn
+    uint64_t bytes_loaded = 0;                     ///< since the pipeline was opened
+    uint64_t nodes_pending = 0;                    ///< wanted and still on their way
+    uint32_t accumulated = 1;                      ///< frames in the picture
+    std::vector<std::pair<std::string, double>> engine;
+
+    double complete() const {  ///< share of the cuts that is drawn, 0..1
+        return wanted_points ? static_cast<double>(ready_points) / static_cast<double>(wanted_points) : 1.0;
+    }
+};
+
+/// Everything between an octree and a picture: what `render`, `view` and `fly` share. It owns the stream, the
+/// surfels on the device, the cuts, the G-buffer, the engine and the buffers of the picture. One thread.
+class Pipeline {
+ public:
+    /// `device` outlives the pipeline. Errors: no device memory.
+    static Result<std::unique_ptr<Pipeline>> open(gi::Device& device,
+                                                  std::shared_ptr<const octree::NodeSource> source,
+                                                  const PipelineOptions& options);
+    ~Pipeline();
+    Pipeline(const Pipeline&) = delete;
+    Pipeline& operator=(const Pipeline&) = delete;
+
+    const octree::NodeSource& source() const;
+
+    /// Errors: unknown name (arguments).
+    Result<void> set_engine(std::string_view name);
+    void set_settings(const gi::EngineSettings& settings);
+    void set_budgets(const CutBudgets& budgets);
+    /// Lights, materials, exposure. Moving a light is cheap; other materials send every surfel to the device
+    /// again.
+    void set_scene(gi::Scene scene);
+
+    const gi::EngineInfo& engine() const;
+    const gi::EngineSettings& settings() const;
+    const CutBudgets& budgets() const;
+    const gi::Scene& scene() const;
+
+    /// One frame into radiance() and picture(). Errors: a node that cannot be read, no device memory, the
+    /// engine's.
+    Result<FrameStats> render(const FrameRequest& request);
+
+    /// Of the last frame: vec4 a pixel (linear radiance, W/(sr m^2)) and RGBA8 (tone-mapped sRGB), row 0 on
+    /// top.
+    const gi::Buffer& radiance() const;
+    const gi::Buffer& picture() const;
+    /// The last frame's G-buffer and how its coordinates are to be read, for picking and tools.
+    const gi::GBuffer& gbuffer() const;
+    const gi::CameraView& camera() const;
+    glm::dvec3 local_origin() const;
+    /// The stops that the last picture was exposed by (measured where the scene leaves them open).
+    double exposure_ev() const;
+
+ private:
+    Pipeline();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace lucarne::viewer

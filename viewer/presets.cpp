@@ -1,0 +1,55 @@
+#include "viewer/presets.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace lucarne::viewer {
+
+void CutBudgets::cap(uint64_t points) {
+    view = std::min(view, points);
+    light_view = std::min(light_view, points);
+    light = std::min(light, points);
+}
+
+std::span<const Preset> presets() {
+    static const std::array<Preset, 3> all = {
+        Preset{
+            "preview",
+            "while something is being set up: 64 VPLs, 4x4 interleaved, coarse cuts",
+            {.bounces = 1, .vpls = 64, .interleave = 4, .atlas = 1024, .light_resolution = 256, .samples = 4},
+            {.view = 1'000'000, .light_view = 250'000, .light = 250'000, .pixel_spacing = 1.5}},
+        Preset{"interactive",
+               "while the camera moves: 256 VPLs, 4x4 interleaved, light cut of 1M points",
+               {.bounces = 1,
+                .vpls = 256,
+                .interleave = 4,
+                .atlas = 2048,
+                .light_resolution = 512,
+                .samples = 16},
+               {.view = 2'000'000, .light_view = 1'000'000, .light = 1'000'000, .pixel_spacing = 1.0}},
+        Preset{"high",
+               "for pictures: 1024 VPLs, every pixel lit by all of them, fine cuts",
+               {.bounces = 1,
+                .vpls = 1024,
+                .interleave = 1,
+                .atlas = 4096,
+                .light_resolution = 1024,
+                .samples = 64},
+               {.view = 4'000'000, .light_view = 2'000'000, .light = 2'000'000, .pixel_spacing = 0.7}},
+    };
+    return all;
+}
+
+Result<Preset> find_preset(std::string_view name) {
+    std::string known;
+    for (const auto& preset : presets()) {
+        if (preset.name == name) return preset;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", preset.name);
+    }
+    return bad_arguments("--preset", fmt::format("there is no preset '{}'", name), "choose one of: " + known);
+}
+
+}  // namespace lucarne::viewer

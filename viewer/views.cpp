@@ -1,0 +1,99 @@
+#include "viewer/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kOriginGrid = 256.0;  // m
+constexpr double kNearPlane = 0.01;    // m
+constexpr double kWidestAngle = 3.0;   // radians: a plane cannot hold a field of pi
+
+struct Axes {
+    glm::dvec3 forward, right, up;
+};
+
+/// Looks from `from` to `to`; where `up_hint` is parallel to that or useless, another up is found.
+Axes look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up_hint) {
+    const auto unit = [](const glm::dvec3& v, const glm::dvec3& otherwise) {
+        const double length = glm::length(v);
+        return length > 0 && std::isfinite(length) ? v / length : otherwise;
+    };
+    const glm::dvec3 forward = unit(to - from, {0, 1, 0});
+    const glm::dvec3 spare = std::abs(forward.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+    glm::dvec3 right = glm::cross(forward, unit(up_hint, spare));
+    if (glm::length(right) < 1e-6) right = glm::cross(forward, spare);
+    right = glm::normalize(right);
+    return {forward, right, glm::cross(right, forward)};
+}
+
+octree::View make_view(const glm::dvec3& position, const Axes& axes, double tan_half_height, double aspect) {
+    octree::View view;
+    view.position = position;
+    view.forward = axes.forward;
+    view.right = axes.right;
+    view.up = axes.up;
+    view.tan_half_height = tan_half_height;
+    view.tan_half_width = tan_half_height * aspect;
+    return view;
+}
+
+}  // namespace
+
+LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit) {
+    const double grid = kOriginGrid / metres_per_unit;
+    return {glm::round(position / grid) * grid, metres_per_unit};
+}
+
+octree::View octree_view(const gi::SceneCamera& camera, ImageSize size) {
+    const Axes axes = look_at(camera.position, camera.target, camera.up);
+    const double tangent = std::tan(std::clamp(camera.vertical_fov, 1e-3, kWidestAngle) / 2);
+    octree::View view =
+        make_view(camera.position, axes, tangent, static_cast<double>(size.width) / size.height);
+    view.width = size.width;
+    view.height = size.height;
+    return view;
+}
+
+gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame) {
+    const octree::View view = octree_view(camera, size);
+    gi::CameraView result{};
+    result.origin = glm::vec4(frame.to_local(view.position), static_cast<float>(kNearPlane));
+    result.forward = glm::vec4(glm::vec3(view.forward), 0.0f);
+    result.right = glm::vec4(glm::vec3(view.right * view.tan_half_width), 0.0f);
+    result.up = glm::vec4(glm::vec3(view.up * view.tan_half_height), 0.0f);
+    result.width = size.width;
+    result.height = size.height;
+    return result;
+}
+
+gi::SpotLight spot_light(const gi::SceneSpot& spot, const LocalFrame& frame) {
+    const Axes axes = look_at(spot.position, spot.target, {0, 0, 1});
+    const double half = std::clamp(spot.angle, 1e-3, kWidestAngle) / 2;
+    const double inner = half * (1 - std::clamp(spot.softness, 0.0, 1.0));
+    gi::SpotLight light{};
+    light.position = glm::vec4(frame.to_local(spot.position), static_cast<float>(std::cos(half)));
+    light.direction = glm::vec4(glm::vec3(axes.forward), static_cast<float>(std::cos(inner)));
+    light.intensity = glm::vec4(glm::vec3(spot.intensity), 0.0f);
+    return light;
+}
+
+octree::View octree_view(const gi::SceneSpot& spot, uint32_t resolution) {
+    const Axes axes = look_at(spot.position, spot.target, {0, 0, 1});
+    octree::View view =
+        make_view(spot.position, axes, std::tan(std::clamp(spot.angle, 1e-3, kWidestAngle) / 2), 1.0);
+    view.width = view.height = resolution;
+    return view;
+}
+
+gi::Material device_material(const gi::SceneMaterial& material) {
+    gi::Material result{};
+    result.diffuse = glm::vec4(glm::vec3(material.diffuse), static_cast<float>(material.specular));
+    result.emission = glm::vec4(glm::vec3(material.emission), static_cast<float>(material.shininess));
+    return result;
+}
+
+}  // namespace lucarne::viewer

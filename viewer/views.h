@@ -1,0 +1,39 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "gi/scene/scene.h"
+#include "gi/shared/camera.h"
+#include "gi/shared/material.h"
+#include "io/core/options.h"
+#include "octree/stream/cut.h"
+
+namespace lucarne::viewer {
+
+/// Where the devices' coordinates begin: device = (world - origin) * metres_per_unit, in metres.
+struct LocalFrame {
+    glm::dvec3 origin{0.0};
+    double metres_per_unit = 1.0;
+
+    glm::vec3 to_local(const glm::dvec3& world) const {
+        return glm::vec3((world - origin) * metres_per_unit);
+    }
+};
+
+/// The origin is the position rounded to a grid of 256 m, so that floats near the camera step by 15 um at
+/// most and the origin rarely changes along a path.
+LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit);
+
+/// A scene's camera as engines take it.
+gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame);
+/// The same for choosing nodes, in world units.
+octree::View octree_view(const gi::SceneCamera& camera, ImageSize size);
+
+/// A scene's spot as engines take it, and its square view for choosing nodes, `resolution` texels along a
+/// side.
+gi::SpotLight spot_light(const gi::SceneSpot& spot, const LocalFrame& frame);
+octree::View octree_view(const gi::SceneSpot& spot, uint32_t resolution);
+
+gi::Material device_material(const gi::SceneMaterial& material);
+
+}  // namespace lucarne::viewer
