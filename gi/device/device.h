@@ -23,7 +23,8 @@ struct DeviceInfo {
 
 class Device;
 
-/// A shader storage buffer. Move-only; frees its memory and its share of the device's budget.
+/// A shader storage buffer. Move-only; frees its memory and its share of the device's budget, and so must go before
+/// the device does.
 class Buffer {
  public:
     Buffer() = default;
@@ -66,13 +67,22 @@ class Program {
     void set_block(std::string_view uniform, std::span<const float> values) const;  ///< float or vec arrays: flat
     /// Enough groups of the program's local size for x * y * z invocations, then a storage barrier.
     void dispatch(uint32_t x, uint32_t y = 1, uint32_t z = 1) const;
+    /// The numbers of groups are three words of `groups` at `offset` bytes, written by the device.
+    void dispatch_indirect(const Buffer& groups, size_t offset = 0) const;
 
  private:
     friend class Device;
-    explicit Program(uint32_t id) : id_(id) {}
+    struct Uniform {
+        int32_t location;
+        uint32_t type;
+    };
+    explicit Program(uint32_t id);
+    /// Null for uniforms that the compiler found unused: setting those is no error.
+    const Uniform* find(std::string_view uniform) const;
+
     uint32_t id_;
     uint32_t local_[3] = {1, 1, 1};
-    mutable std::map<std::string, int32_t, std::less<>> locations_;
+    std::map<std::string, Uniform, std::less<>> uniforms_;
 };
 
 using Defines = std::vector<std::pair<std::string, std::string>>;

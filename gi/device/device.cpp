@@ -1,0 +1,207 @@
+#include "gi/device/device.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <tuple>
+
+#include <epoxy/gl.h>
+
+#include "gi/device/egl.h"
+#include "gi/device/shader_source.h"
+#include "io/core/log.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr const char* kMemoryTodo = "lower the number of points or the picture's size";
+
+std::string gl_string(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+#ifndef NDEBUG
+void on_debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text,
+                      const void*) {
+    if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) log::warn("OpenGL: {}", text);
+}
+#endif
+
+void clear_errors() {
+    while (glGetError() != GL_NO_ERROR) {
+    }
+}
+
+}  // namespace
+
+struct Device::State {
+    std::unique_ptr<HeadlessContext> context;  // empty: a window's; last to go
+    DeviceInfo info;
+    uint64_t cap = UINT64_MAX, used = 0;
+    std::map<std::tuple<std::string, Defines>, std::unique_ptr<Program>> programs;
+};
+
+Device::Device() : state_(std::make_unique<State>()) {}
+Device::~Device() {
+    state_->programs.clear();
+}
+
+Result<std::unique_ptr<Device>> Device::headless() {
+    LUCARNE_ASSIGN(auto context, HeadlessContext::create());
+    LUCARNE_ASSIGN(auto device, current());
+    device->state_->context = std::move(context);
+    return device;
+}
+
+Result<std::unique_ptr<Device>> Device::current() {
+    if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 45)
+        return failed("OpenGL", "no usable device: it has only " + gl_string(GL_VERSION),
+                      "OpenGL 4.5 is needed");
+    std::unique_ptr<Device> device(new Device);
+    DeviceInfo& info = device->state_->info;
+    info.vendor = gl_string(GL_VENDOR);
+    info.renderer = gl_string(GL_RENDERER);
+    info.version = gl_string(GL_VERSION);
+    for (const char* name : {"llvmpipe", "softpipe", "SWR", "Software"})
+        info.software = info.software || info.renderer.find(name) != std::string::npos;
+    info.atomic_int64 = epoxy_has_gl_extension("GL_NV_shader_atomic_int64") &&
+                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    info.max_buffer_bytes = static_cast<uint64_t>(bytes);
+#ifndef NDEBUG
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_debug_message, nullptr);
+#endif
+    return device;
+}
+
+const DeviceInfo& Device::info() const {
+    return state_->info;
+}
+void Device::set_memory_cap(uint64_t bytes) {
+    state_->cap = bytes;
+}
+uint64_t Device::memory_used() const {
+    return state_->used;
+}
+void Device::finish() {
+    glFinish();
+}
+
+Result<Buffer> Device::buffer(size_t bytes, std::string_view what) {
+    constexpr size_t kGrain = 16;  // a storage block ends on a vec4
+    const std::string name(what);
+    if (bytes > state_->info.max_buffer_bytes)
+        return failed(name,
+                      fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20,
+                                  state_->info.renderer, state_->info.max_buffer_bytes >> 20),
+                      kMemoryTodo);
+    bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
+    if (bytes > state_->cap - std::min(state_->cap, state_->used))
+        return failed(name,
+                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
+                                  bytes >> 20, state_->used >> 20, state_->cap >> 20),
+                      kMemoryTodo);
+    clear_errors();
+    Buffer made;
+    glCreateBuffers(1, &made.id_);
+    glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (glGetError() != GL_NO_ERROR)  // no share of the budget was taken yet: device_ is empty
+        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
+    made.device_ = this;
+    made.bytes_ = bytes;
+    state_->used += bytes;
+    return made;
+}
+
+Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what) {
+    if (target && target.bytes() >= bytes) return {};
+    target = Buffer();  // first, so that the old and the new never count together
+    LUCARNE_ASSIGN(target, buffer(bytes, what));
+    return {};
+}
+
+Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
+    std::tuple<std::string, Defines> key(path, defines);
+    if (const auto found = state_->programs.find(key); found != state_->programs.end())
+        return found->second.get();
+    LUCARNE_ASSIGN(const ShaderSource source, shader_source(path, defines, shader_texts()));
+    const char* text = source.text.c_str();
+    const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
+    GLint linked = GL_FALSE;
+    if (id) glGetProgramiv(id, GL_LINK_STATUS, &linked);
+    if (!linked) {
+        GLint length = 0;
+        if (id) glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
+        std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+        if (length > 0) glGetProgramInfoLog(id, length, &length, log.data());
+        log.resize(static_cast<size_t>(std::max(length, 0)));
+        glDeleteProgram(id);
+        return failed("shader " + std::string(path), readable_message(log, source.files),
+                      "the driver is " + state_->info.version);
+    }
+    auto& slot = state_->programs[std::move(key)];
+    slot.reset(new Program(id));
+    return slot.get();
+}
+
+Buffer::Buffer(Buffer&& other) noexcept {
+    *this = std::move(other);
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(id_, other.id_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+Buffer::~Buffer() {
+    if (id_) glDeleteBuffers(1, &id_);
+    if (device_) device_->state_->used -= bytes_;
+}
+
+void Buffer::bind(uint32_t binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
+
+void Buffer::upload(size_t offset, std::span<const std::byte> data) {
+    if (offset > bytes_ || data.size() > bytes_ - offset)
+        throw std::logic_error("upload beyond the buffer's end");
+    if (data.empty()) return;
+    glNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
+                         data.data());
+}
+
+void Buffer::download(size_t offset, std::span<std::byte> out) const {
+    if (offset > bytes_ || out.size() > bytes_ - offset)
+        throw std::logic_error("download beyond the buffer's end");
+    if (out.empty()) return;
+    glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(out.size()),
+                            out.data());
+}
+
+void Buffer::clear(uint32_t word) {
+    if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+namespace {
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+}  // namespace
+
+void PassTimes::begin(std::string name) {
+    device_.finish();
+    name_ = std::move(name);
+    start_ = seconds_now();
+}
+
+void PassTimes::end() {
+    device_.finish();
+    passes_.push_back({std::move(name_), seconds_now() - start_});
+}
+
+}  // namespace lucarne::gi

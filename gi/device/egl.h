@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "io/core/error.h"
+
+namespace lucarne::gi {
+
+/// A current OpenGL 4.5 core context without a window. Its destruction makes it no longer current.
+class HeadlessContext {
+ public:
+    /// Hardware first (EGL_EXT_platform_device), then Mesa's surfaceless platform, which always has llvmpipe.
+    /// Errors: no EGL, or no device with OpenGL 4.5.
+    static Result<std::unique_ptr<HeadlessContext>> create();
+    ~HeadlessContext();
+    HeadlessContext(const HeadlessContext&) = delete;
+    HeadlessContext& operator=(const HeadlessContext&) = delete;
+
+ private:
+    HeadlessContext(void* display, void* context) : display_(display), context_(context) {}
+    void* display_;  // EGLDisplay and EGLContext: their header drags X11's macros along
+    void* context_;
+};
+
+}  // namespace lucarne::gi
