@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "octree/source.h"
 
@@ -12,14 +13,15 @@ namespace lucarne::octree {
 struct CutNode {
     uint32_t node = 0;
     uint32_t count = 0;
-    float priority = 0;  ///< what loading it adds to the picture; larger is sooner
+    float priority = 0;  ///< spacing seen without it, pixels: what loading it adds; larger is sooner
 };
 
-/// The nodes chosen for a purpose: closed under parents, sorted by node index. All nodes but the cut's leaves are
-/// used whole; a leaf's prefix is where the level of detail fades in.
+/// The nodes chosen for a purpose: closed under parents, sorted by node index. All nodes but the cut's leaves
+/// are used whole; a leaf's prefix is where the level of detail fades in.
 struct Cut {
     std::vector<CutNode> nodes;
     uint64_t points = 0;
+    uint64_t visited = 0;     ///< nodes looked at to choose these
     bool budget_hit = false;  ///< the wanted spacing was not reached everywhere
 };
 
@@ -32,15 +34,18 @@ struct View {
 };
 
 /// What a camera sees, refined where the projected spacing of the points is largest until it is under
-/// `pixel_spacing` pixels everywhere or `budget` points are taken. Nodes outside the view are left out.
+/// `pixel_spacing` pixels everywhere or `budget` points are taken. Nodes outside the view are left out. A
+/// node fades in by its prefix between the distance where its parent's spacing is too wide and that where its
+/// own is just fine enough: a move that changes a node's distance by a small share e changes its prefix by at
+/// most 10 e of its count (with a budget that is not hit). More budget never makes any place coarser.
 Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double pixel_spacing = 1.0);
 
-/// The same for a light's view (a shadow map or light G-buffer): the receivers must not be finer than the casters,
-/// so it follows the spacing seen from the light.
+/// The same for a light's view (a shadow map or light G-buffer): the receivers must not be finer than the
+/// casters, so it follows the spacing seen from the light.
 Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget, double texel_spacing = 1.0);
 
 /// What may bounce or block light: everything, seen or not, refined toward `centre` (the camera's focus) in
-/// proportion to distance, under `budget`.
+/// proportion to distance, as fine as `budget` allows.
 Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget);
 
 /// Every node whole.

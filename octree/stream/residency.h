@@ -12,41 +12,56 @@
 namespace lucarne::octree {
 
 struct ResidencyOptions {
-    uint64_t memory = uint64_t{512} << 20;  ///< hard cap on node data held or on its way, bytes
-    unsigned threads = 2;                   ///< loading threads
+    uint64_t memory = uint64_t{512} << 20;  ///< hard cap on nodes held or on their way, bytes
+    unsigned threads = 2;                   ///< loading threads, 1 to 64
+    /// What a node takes of `memory`; empty: the bytes of its records. A caller that copies nodes into pages
+    /// of its own (a device's pool) counts those, so that what fits here fits there.
+    std::function<uint64_t(const NodeInfo&)> cost;
 };
 
-/// What happened since the last poll, in order. `replaced` is for sources whose nodes grow.
+/// What happened since the last poll, in order. Played back from the start, the nodes loaded and not evicted
+/// are at every moment within the cap.
 struct ResidencyEvent {
     enum class Kind { loaded, replaced, evicted } kind = Kind::loaded;
     uint32_t node = 0;
-    std::shared_ptr<const NodeData> data;  ///< loaded and replaced
+    std::shared_ptr<const NodeData> data;  ///< loaded and replaced; the residency keeps no copy of its own
 };
 
 struct ResidencyStats {
     uint64_t bytes_held = 0, bytes_loaded = 0;  ///< now; since the start
     uint64_t nodes_held = 0, loads = 0, evictions = 0, failures = 0;
-    uint64_t pending = 0;                       ///< wanted and not there yet
+    uint64_t pending = 0;     ///< wanted and not there yet
+    uint64_t refused = 0;     ///< wanted, and the cap has no room for them
+    uint64_t bytes_peak = 0;  ///< the most ever held or on their way
 };
 
 /// Keeps the nodes of the wanted cuts resident: loads what is missing in the background, most important first
-/// (parents before children), evicts the least recently wanted under a hard cap, and reports events. One caller.
+/// (parents before children), evicts the least recently wanted under a hard cap, and reports events. Where
+/// the wanted nodes are too large together, the most important that fit are held and the rest refused, so
+/// that nothing wanted is ever evicted for something less important. One caller; `cost` and events are on its
+/// thread.
 class Residency {
  public:
-    Residency(const NodeSource& source, const ResidencyOptions& options);
-    ~Residency();
+    Residency(const NodeSource& source, ResidencyOptions options);
+    ~Residency();  ///< waits for the loads that are being read
     Residency(const Residency&) = delete;
     Residency& operator=(const Residency&) = delete;
 
-    /// Replaces what is wanted: the union of `cuts`. Loads not started that nobody wants any more are dropped.
+    /// Replaces what is wanted: the union of `cuts`. Loads not started that nobody wants any more are
+    /// dropped.
     void want(std::span<const Cut* const> cuts);
+    /// These nodes have changed in the source: those held come again as `replaced` (as evicted and loaded
+    /// where there is no room for two copies), those that failed are tried once more. Takes effect with the
+    /// next want().
+    void renew(std::span<const uint32_t> nodes);
     /// Events since the last call; at most `limit`, so that a frame stays short. Never blocks on a load.
     std::vector<ResidencyEvent> poll(size_t limit = SIZE_MAX);
     /// Blocks until everything wanted is loaded, failed or refused by the cap; events wait for poll().
     void wait();
     bool resident(uint32_t node) const;
     ResidencyStats stats() const;
-    /// The first load that failed since the last call, if any: the caller decides what to tell the user.
+    /// The first load that failed since the last call, if any: the caller decides what to tell the user. A
+    /// node that failed is not tried again, and its descendants are not wanted.
     Result<void> take_error();
 
  private:

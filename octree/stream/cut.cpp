@@ -1,0 +1,221 @@
+// Choosing the nodes of a cut: one sweep over the quality w = 1 / (projected spacing)^2, the number of points
+// a pixel. Sources: Wimmer & Scheiblauer, "Instant Points", 2006 (best-first refinement of a nested octree);
+// Schuetz et al., "Real-Time Continuous Level of Detail Rendering of Point Clouds", 2019 (no jumps between
+// levels).
+//
+// At quality w a node that lies where a pixel covers `reach` world units needs the density w / reach^2. Its
+// parent's points give 1 / parent_spacing^2 and all of its own make that 1 / spacing^2: it is absent up to
+// begin = (reach / parent_spacing)^2, whole from end = (reach / spacing)^2 on, and linear between, as the
+// density of a prefix is. Children are never nearer than their parent, so they begin after it is whole. The
+// budget then is one number to find: the largest w whose points fit.
+#include "octree/stream/cut.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <queue>
+
+#include <glm/geometric.hpp>
+
+#include "octree/footprint.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// The least ratio of end to begin, which bounds how fast a node fades in: d(prefix share) <= w' / (1 -
+/// 1/1.25).
+constexpr double kLeastFade = 1.25;
+/// Light cuts weigh against view cuts as a picture of this many pixels a radian would: coarser than a screen.
+constexpr double kLightPixelsPerRadian = 256;
+/// Share of the scene's diagonal around the centre of a light cut that is refined evenly.
+constexpr double kLightCoreShare = 1.0 / 16;
+
+/// World units a pixel covers at a cube whose surfels reach `radius` beyond it; empty where it is not wanted.
+using Reach = std::function<std::optional<double>(const Cube& cube, double radius)>;
+
+struct Candidate {
+    uint32_t node = 0, count = 0;
+    double spacing = 0, begin = 0, end = 0;
+
+    uint32_t count_at(double w) const {
+        if (w >= end) return count;
+        if (w <= begin) return 0;
+        return static_cast<uint32_t>(count * ((w - begin) / (end - begin)));
+    }
+};
+
+double distance_to(const Cube& cube, const glm::dvec3& point) {
+    return glm::length(glm::max(glm::max(cube.min - point, point - (cube.min + cube.size)), glm::dvec3(0.0)));
+}
+
+/// The candidates in the order in which they become whole.
+class Sweep {
+ public:
+    Sweep(const NodeSource& source, const Reach& reach)
+        : nodes_(source.nodes()), root_(source.header().root), reach_(reach) {}
+
+    Cut run(uint64_t budget, double w_most) {
+        Cut cut;
+        if (nodes_.empty() || budget == 0) {
+            cut.budget_hit = !nodes_.empty();
+            return cut;
+        }
+        const double w_known = visit(budget, w_most);
+        const double w = points_at(w_known) <= budget ? w_known : quality_within(budget, w_known);
+        cut.budget_hit = w < w_known;
+        cut.visited = visited_;
+        for (const Candidate& candidate : candidates_) {
+            uint32_t count = candidate.count_at(w);
+            if (candidate.node == 0) count = std::max(count, std::min(candidate.count, 1u));  // never nothing
+            if (count == 0 && (candidate.count > 0 || w < candidate.end)) continue;
+            const double seen = candidate.begin > 0 ? 1 / std::sqrt(candidate.begin) : 1e30;
+            cut.nodes.push_back({candidate.node, count, static_cast<float>(std::min(seen, 1e30))});
+            cut.points += count;
+        }
+        std::ranges::sort(cut.nodes, {}, &CutNode::node);
+        return cut;
+    }
+
+ private:
+    /// Looks at all nodes that begin before `w_most`, or before the quality at which the whole ones alone are
+    /// over the budget; returns that quality.
+    double visit(uint64_t budget, double w_most) {
+        add(0, root_.size, 0, true);
+        uint64_t whole = 0;
+        while (!heap_.empty() && heap_.top().first <= w_most) {
+            const auto [end, place] = heap_.top();
+            heap_.pop();
+            const Candidate parent = candidates_[place];
+            whole += parent.count;
+            if (whole > budget) return end;
+            const NodeInfo& info = nodes_[parent.node];
+            for (uint32_t octant = 0; octant < 8; ++octant) {
+                const uint32_t child = info.child(octant);
+                if (child == kNoNode || child <= parent.node || child >= nodes_.size()) continue;
+                add(child, parent.spacing, parent.end, false);
+            }
+        }
+        return w_most;
+    }
+
+    void add(uint32_t node, double parent_spacing, double parent_end, bool root) {
+        ++visited_;
+        const NodeInfo& info = nodes_[node];
+        Candidate candidate{node, info.count, info.spacing(), 0, 0};
+        // A node without a measured spacing (a lone point) halves its parent's, as an octree's level does.
+        if (!(candidate.spacing > 0) || !std::isfinite(candidate.spacing))
+            candidate.spacing = parent_spacing / 2;
+        if (!root) candidate.spacing = std::min(candidate.spacing, parent_spacing);
+        const float floor_area = static_cast<float>(candidate.spacing * candidate.spacing);
+        const auto reach = reach_(root_.of(info.key), surfel_radius(0.0f, floor_area));
+        if (!reach || !(*reach > 0) || !std::isfinite(*reach)) return;
+        const auto quality = [&](double spacing) { return (*reach / spacing) * (*reach / spacing); };
+        if (!root) candidate.begin = std::max(parent_end, quality(parent_spacing));
+        candidate.end = std::max(quality(candidate.spacing), candidate.begin * (info.count ? kLeastFade : 1));
+        heap_.emplace(candidate.end, static_cast<uint32_t>(candidates_.size()));
+        candidates_.push_back(candidate);
+    }
+
+    uint64_t points_at(double w) const {
+        uint64_t points = 0;
+        for (const Candidate& candidate : candidates_) points += candidate.count_at(w);
+        return points;
+    }
+
+    /// The largest quality up to `w_known` whose points fit, bit by bit over doubles with 28 bits of
+    /// mantissa: the same grid for every budget, so that a larger budget never ends below a smaller one.
+    double quality_within(uint64_t budget, double w_known) const {
+        uint64_t bits = 0;
+        for (int bit = 62; bit >= 24; --bit) {
+            const uint64_t tried = bits | uint64_t{1} << bit;
+            const double w = std::bit_cast<double>(tried);
+            if (w < w_known && points_at(w) <= budget) bits = tried;
+        }
+        return std::bit_cast<double>(bits);
+    }
+
+    using Whole = std::pair<double, uint32_t>;  ///< the quality at which candidates_[second] is whole
+
+    std::span<const NodeInfo> nodes_;
+    Cube root_;
+    const Reach& reach_;
+    std::vector<Candidate> candidates_;
+    std::priority_queue<Whole, std::vector<Whole>, std::greater<>> heap_;
+    uint64_t visited_ = 0;
+};
+
+/// The four sides and the front of a view, normals inward.
+class Frustum {
+ public:
+    explicit Frustum(const View& view) : origin_(view.position), near_(view.near_plane) {
+        normals_[0] = view.forward;
+        normals_[1] = glm::normalize(view.forward * view.tan_half_width + view.right);
+        normals_[2] = glm::normalize(view.forward * view.tan_half_width - view.right);
+        normals_[3] = glm::normalize(view.forward * view.tan_half_height + view.up);
+        normals_[4] = glm::normalize(view.forward * view.tan_half_height - view.up);
+    }
+    /// False only where no point within `radius` of the cube is inside.
+    bool touches(const Cube& cube, double radius) const {
+        const double half = cube.size / 2;
+        const glm::dvec3 centre = cube.min + half - origin_;
+        for (size_t side = 0; side < normals_.size(); ++side) {
+            const glm::dvec3& n = normals_[side];
+            const double farthest =
+                glm::dot(n, centre) + half * glm::dot(glm::abs(n), glm::dvec3(1.0)) + radius;
+            if (farthest < (side == 0 ? near_ : 0.0)) return false;
+        }
+        return true;
+    }
+
+ private:
+    glm::dvec3 origin_;
+    double near_;
+    std::array<glm::dvec3, 5> normals_;
+};
+
+}  // namespace
+
+Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double pixel_spacing) {
+    const Frustum frustum(view);
+    const double pixel = std::min(2 * view.tan_half_width / std::max(view.width, 1u),
+                                  2 * view.tan_half_height / std::max(view.height, 1u));  // at distance 1
+    const double nearest = std::max(view.near_plane, 1e-9);  // of a node around the camera
+    const Reach reach = [&](const Cube& cube, double radius) -> std::optional<double> {
+        if (!frustum.touches(cube, radius)) return std::nullopt;
+        return pixel * std::max(nearest, distance_to(cube, view.position));
+    };
+    return Sweep(source, reach).run(budget, 1 / (pixel_spacing * pixel_spacing));
+}
+
+Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget, double texel_spacing) {
+    return view_cut(source, light, budget, texel_spacing);
+}
+
+Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget) {
+    const SourceHeader& header = source.header();
+    const double core =
+        kLightCoreShare * std::max(glm::length(header.max - header.min), header.root.size * 1e-6);
+    const Reach reach = [&](const Cube& cube, double) -> std::optional<double> {
+        return std::max(core, distance_to(cube, centre)) / kLightPixelsPerRadian;
+    };
+    return Sweep(source, reach).run(budget, std::numeric_limits<double>::infinity());
+}
+
+Cut full_cut(const NodeSource& source) {
+    Cut cut;
+    const auto nodes = source.nodes();
+    cut.visited = nodes.size();
+    cut.nodes.reserve(nodes.size());
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        const float level = static_cast<float>(nodes[node].key.level);
+        cut.nodes.push_back({node, nodes[node].count, std::exp2(-level)});
+        cut.points += nodes[node].count;
+    }
+    return cut;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,334 @@
+#include "octree/stream/residency.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <unordered_map>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+namespace lucarne::octree {
+namespace {
+
+using Events = std::list<ResidencyEvent>;
+
+struct Entry {
+    uint64_t bytes = 0;        ///< what a load takes
+    uint64_t held_bytes = 0;   ///< what the copy held takes
+    uint64_t last_wanted = 0;  ///< the number of the want() that last named it
+    float priority = 0;
+    uint32_t count = 0;
+    bool held = false, in_flight = false;
+    bool admitted = false;  ///< wanted, and within the cap with all that is more important
+    bool lost = false;      ///< it or an ancestor failed to load
+    bool stale = false;     ///< the source has something newer than what is held or on its way
+    bool known = false;     ///< the caller has polled it as loaded, and no eviction since was reported
+    std::optional<Events::iterator> unpolled;  ///< its loaded or replaced event, until the caller polls that
+};
+
+}  // namespace
+
+struct Residency::State {
+    State(const NodeSource& its_source, ResidencyOptions its_options)
+        : source(its_source), options(std::move(its_options)) {}
+
+    const NodeSource& source;
+    const ResidencyOptions options;
+
+    mutable std::mutex mutex;
+    std::condition_variable work, idle;
+    std::unordered_map<uint32_t, Entry> entries;  ///< all that is wanted, held or on its way
+    std::unordered_set<uint32_t> broken;          ///< failed; not tried again
+    std::vector<uint32_t> queue;                  ///< what to load, the most important last
+    std::vector<uint32_t> evictable;              ///< held and not admitted, the first to go last
+    Events events;
+    ResidencyStats stats;
+    uint64_t wants = 0, bytes_in_flight = 0;
+    unsigned loads_in_flight = 0;
+    std::optional<Error> error;
+    bool stop = false;
+    std::vector<std::thread> threads;
+
+    void take_wishes(std::span<const Cut* const> cuts);
+    void admit();
+    void forget_strangers();
+    void evict(uint32_t node);
+    bool make_room(uint64_t bytes);
+    std::optional<uint32_t> next_load();
+    void finish_load(uint32_t node, Result<NodeData>&& loaded);
+    void loader();
+    bool goes_before(uint32_t a, uint32_t b) const;
+};
+
+/// Marks the union of the cuts; a parent is never less important than its children.
+void Residency::State::take_wishes(std::span<const Cut* const> cuts) {
+    const auto nodes = source.nodes();
+    ++wants;
+    std::vector<uint32_t> wanted;
+    for (const Cut* cut : cuts)
+        for (const CutNode& wish : cut->nodes) {
+            if (wish.node >= nodes.size()) continue;
+            Entry& entry = entries[wish.node];
+            if (entry.last_wanted != wants) wanted.push_back(wish.node);
+            entry.priority =
+                entry.last_wanted == wants ? std::max(entry.priority, wish.priority) : wish.priority;
+            entry.last_wanted = wants;
+        }
+    std::ranges::sort(wanted, std::greater<>());  // children before parents
+    for (const uint32_t node : wanted) {
+        Entry& entry = entries[node];
+        if (!entry.in_flight) {
+            const NodeInfo& info = nodes[node];
+            entry.count = info.count;
+            entry.bytes =
+                options.cost ? options.cost(info) : uint64_t{info.count} * source.header().schema.stride;
+        }
+        if (const auto parent = entries.find(nodes[node].parent);
+            parent != entries.end() && parent->second.last_wanted == wants)
+            parent->second.priority = std::max(parent->second.priority, entry.priority);
+    }
+    queue = std::move(wanted);
+}
+
+/// Of the wanted nodes in `queue` admits the most important that fit together and leaves those to be loaded
+/// there.
+void Residency::State::admit() {
+    const auto nodes = source.nodes();
+    std::ranges::sort(queue, [&](uint32_t a, uint32_t b) {
+        const float pa = entries.at(a).priority, pb = entries.at(b).priority;
+        return pa != pb ? pa > pb : a < b;
+    });
+    for (auto& [node, entry] : entries) entry.admitted = false;
+    std::vector<uint32_t> missing;
+    uint64_t total = 0;
+    bool full = false;
+    stats.refused = 0;
+    for (const uint32_t node : queue) {
+        Entry& entry = entries.at(node);
+        const auto found = entries.find(nodes[node].parent);
+        const Entry* parent =
+            found != entries.end() && found->second.last_wanted == wants ? &found->second : nullptr;
+        entry.lost = broken.contains(node) || (parent && parent->lost);
+        if (entry.lost) continue;
+        const bool orphan = parent && !parent->admitted;
+        const uint64_t bytes = std::max(entry.bytes, entry.held_bytes);
+        const bool too_large = bytes > options.memory;
+        // What is larger than the whole cap never blocks the rest. The first that does not fit ends it: a
+        // smaller one further down would be held in the place of something more important.
+        full |= !orphan && !too_large && bytes > options.memory - total;
+        if (orphan || full || too_large) {
+            ++stats.refused;
+            continue;
+        }
+        total += bytes;
+        entry.admitted = true;
+        if ((!entry.held || entry.stale) && !entry.in_flight) missing.push_back(node);
+    }
+    std::ranges::reverse(missing);
+    queue = std::move(missing);
+}
+
+/// Forgets what is neither wanted nor here, and lists what may go, the longest unwanted last.
+void Residency::State::forget_strangers() {
+    evictable.clear();
+    std::erase_if(entries, [&](const auto& pair) {
+        return !pair.second.held && !pair.second.in_flight && pair.second.last_wanted != wants;
+    });
+    for (const auto& [node, entry] : entries)
+        if (entry.held && !entry.admitted) evictable.push_back(node);
+    std::ranges::sort(evictable, [&](uint32_t a, uint32_t b) { return goes_before(b, a); });
+}
+
+bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
+    const Entry &ea = entries.at(a), &eb = entries.at(b);
+    if (ea.last_wanted != eb.last_wanted) return ea.last_wanted < eb.last_wanted;
+    if (ea.priority != eb.priority) return ea.priority < eb.priority;
+    return a > b;  // children before parents
+}
+
+void Residency::State::evict(uint32_t node) {
+    Entry& entry = entries.at(node);
+    if (entry.unpolled) events.erase(*entry.unpolled);  // what the caller has not seen it need not see
+    entry.unpolled.reset();
+    if (entry.known) events.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
+    entry.known = false;
+    stats.bytes_held -= entry.held_bytes;
+    stats.nodes_held -= 1;
+    stats.evictions += 1;
+    entry.held = entry.stale = false;
+    entry.held_bytes = 0;
+}
+
+bool Residency::State::make_room(uint64_t bytes) {
+    while (stats.bytes_held + bytes_in_flight + bytes > options.memory) {
+        if (evictable.empty()) return false;
+        evict(evictable.back());
+        evictable.pop_back();
+    }
+    return true;
+}
+
+/// Takes the next node off the queue once there is room for it.
+std::optional<uint32_t> Residency::State::next_load() {
+    if (queue.empty()) return std::nullopt;
+    const uint32_t node = queue.back();
+    Entry& entry = entries.at(node);
+    if (!make_room(entry.bytes)) {
+        // Loads that nobody wants any more take the room until they end, or two copies of a node do not fit.
+        if (loads_in_flight > 0 || !entry.stale) return std::nullopt;
+        evict(node);
+        return next_load();
+    }
+    queue.pop_back();
+    entry.in_flight = true;
+    entry.stale = false;
+    bytes_in_flight += entry.bytes;
+    ++loads_in_flight;
+    stats.bytes_peak = std::max(stats.bytes_peak, stats.bytes_held + bytes_in_flight);
+    return node;
+}
+
+void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
+    Entry& entry = entries.at(node);
+    entry.in_flight = false;
+    bytes_in_flight -= entry.bytes;
+    --loads_in_flight;
+    if (loaded && (loaded->count != entry.count ||
+                   loaded->records.size() != uint64_t{entry.count} * source.header().schema.stride)) {
+        if (entry.stale) return;  // it changed on the way: the next want() asks again
+        loaded = rejected(fmt::format("node {}", node), "it holds something else than the directory says");
+    }
+    if (!loaded) {
+        ++stats.failures;
+        broken.insert(node);
+        if (!error) error = std::move(loaded).error();
+        return;
+    }
+    ++stats.loads;
+    stats.bytes_loaded += loaded->records.size();
+    auto data = std::make_shared<const NodeData>(std::move(*loaded));
+    if (entry.unpolled) events.erase(*entry.unpolled);
+    const auto kind = entry.known ? ResidencyEvent::Kind::replaced : ResidencyEvent::Kind::loaded;
+    entry.unpolled = events.insert(events.end(), {kind, node, std::move(data)});
+    stats.bytes_held += entry.bytes - entry.held_bytes;
+    entry.held_bytes = entry.bytes;
+    if (entry.held) return;
+    entry.held = true;
+    ++stats.nodes_held;
+    if (entry.admitted) return;
+    const auto later = [&](uint32_t other) { return goes_before(node, other); };
+    evictable.insert(std::ranges::partition_point(evictable, later), node);
+}
+
+void Residency::State::loader() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+        std::optional<uint32_t> node;
+        work.wait(lock, [&] { return stop || (node = next_load()).has_value(); });
+        if (stop) return;
+        lock.unlock();
+        Result<NodeData> loaded = [&]() -> Result<NodeData> {
+            try {
+                return source.load(*node);
+            } catch (const std::exception& problem) {
+                return failed(fmt::format("node {}", *node), problem.what());
+            }
+        }();
+        lock.lock();
+        finish_load(*node, std::move(loaded));
+        work.notify_all();
+        if (queue.empty() && loads_in_flight == 0) idle.notify_all();
+    }
+}
+
+Residency::Residency(const NodeSource& source, ResidencyOptions options)
+    : state_(std::make_unique<State>(source, std::move(options))) {
+    const unsigned threads = std::clamp(state_->options.threads, 1u, 64u);
+    for (unsigned i = 0; i < threads; ++i) {
+        try {
+            state_->threads.emplace_back([state = state_.get()] { state->loader(); });
+        } catch (const std::system_error&) {  // out of threads: fewer do as well, none does not
+            if (state_->threads.empty()) throw;
+            break;
+        }
+    }
+}
+
+Residency::~Residency() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+    }
+    state_->work.notify_all();
+    for (std::thread& thread : state_->threads) thread.join();
+}
+
+void Residency::want(std::span<const Cut* const> cuts) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->take_wishes(cuts);
+        state_->admit();
+        state_->forget_strangers();
+        if (state_->queue.empty() && state_->loads_in_flight == 0) state_->idle.notify_all();
+    }
+    state_->work.notify_all();
+}
+
+void Residency::renew(std::span<const uint32_t> nodes) {
+    const std::lock_guard lock(state_->mutex);
+    for (const uint32_t node : nodes) {
+        state_->broken.erase(node);
+        if (const auto entry = state_->entries.find(node); entry != state_->entries.end())
+            entry->second.stale = entry->second.held || entry->second.in_flight;
+    }
+}
+
+std::vector<ResidencyEvent> Residency::poll(size_t limit) {
+    const std::lock_guard lock(state_->mutex);
+    std::vector<ResidencyEvent> polled;
+    while (!state_->events.empty() && polled.size() < limit) {
+        ResidencyEvent& event = state_->events.front();
+        if (event.kind != ResidencyEvent::Kind::evicted) {
+            Entry& entry = state_->entries.at(event.node);
+            entry.unpolled.reset();
+            entry.known = true;
+        }
+        polled.push_back(std::move(event));
+        state_->events.pop_front();
+    }
+    return polled;
+}
+
+void Residency::wait() {
+    std::unique_lock lock(state_->mutex);
+    state_->idle.wait(lock, [&] { return state_->queue.empty() && state_->loads_in_flight == 0; });
+}
+
+bool Residency::resident(uint32_t node) const {
+    const std::lock_guard lock(state_->mutex);
+    const auto entry = state_->entries.find(node);
+    return entry != state_->entries.end() && entry->second.held;
+}
+
+ResidencyStats Residency::stats() const {
+    const std::lock_guard lock(state_->mutex);
+    ResidencyStats stats = state_->stats;
+    stats.pending = state_->queue.size();
+    for (const auto& [node, entry] : state_->entries) stats.pending += entry.in_flight && entry.admitted;
+    return stats;
+}
+
+Result<void> Residency::take_error() {
+    const std::lock_guard lock(state_->mutex);
+    if (!state_->error) return {};
+    Error error = std::move(*state_->error);
+    state_->error.reset();
+    return tl::make_unexpected(std::move(error));
+}
+
+}  // namespace lucarne::octree

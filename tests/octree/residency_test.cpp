@@ -1,0 +1,303 @@
+#include "octree/stream/residency.h"
+
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "tests/octree/plane_source.h"
+
+namespace lucarne::octree {
+namespace {
+
+using test::PlaneSource;
+constexpr uint32_t kPoints = 100;
+constexpr uint64_t kNode = kPoints * 16;  ///< bytes of a node
+
+Cut cut_of(const NodeSource& source, const std::vector<std::pair<uint32_t, float>>& nodes) {
+    Cut cut;
+    for (const auto& [node, priority] : nodes)
+        cut.nodes.push_back({node, source.nodes()[node].count, priority});
+    std::ranges::sort(cut.nodes, {}, &CutNode::node);
+    return cut;
+}
+
+void want(Residency& residency, const Cut& cut) {
+    const Cut* cuts[] = {&cut};
+    residency.want(cuts);
+}
+
+/// What a caller would hold after the events, checked for order and the cap at every step.
+class Replay {
+ public:
+    explicit Replay(uint64_t cap) : cap_(cap) {}
+    void play(const std::vector<ResidencyEvent>& events) {
+        for (const ResidencyEvent& event : events) {
+            switch (event.kind) {
+                case ResidencyEvent::Kind::loaded:
+                    EXPECT_TRUE(held_.insert(event.node).second) << "node " << event.node << " loaded twice";
+                    break;
+                case ResidencyEvent::Kind::replaced:
+                    EXPECT_TRUE(held_.contains(event.node)) << "node " << event.node << " replaced unseen";
+                    ++replaced_;
+                    break;
+                case ResidencyEvent::Kind::evicted:
+                    EXPECT_EQ(held_.erase(event.node), 1u) << "node " << event.node << " evicted unseen";
+                    break;
+            }
+            if (event.kind == ResidencyEvent::Kind::evicted) {
+                EXPECT_EQ(event.data, nullptr);
+            } else if (event.data) {
+                EXPECT_EQ(event.data->records.front(), static_cast<std::byte>(event.node))
+                    << "another node's data";
+            } else {
+                ADD_FAILURE() << "node " << event.node << " without data";
+            }
+            EXPECT_LE(held_.size() * kNode, cap_);
+        }
+    }
+    const std::set<uint32_t>& held() const { return held_; }
+    size_t replaced() const { return replaced_; }
+
+ private:
+    uint64_t cap_;
+    std::set<uint32_t> held_;
+    size_t replaced_ = 0;
+};
+
+TEST(Residency, LoadsEverythingWantedThatFits) {
+    const PlaneSource source(4, kPoints, 10.0);
+    Residency residency(source, {.memory = source.nodes().size() * kNode, .threads = 3});
+    want(residency, full_cut(source));
+    residency.wait();
+    Replay replay(source.nodes().size() * kNode);
+    replay.play(residency.poll());
+    EXPECT_EQ(replay.held().size(), source.nodes().size());
+    const ResidencyStats stats = residency.stats();
+    EXPECT_EQ(stats.pending, 0u);
+    EXPECT_EQ(stats.refused, 0u);
+    EXPECT_EQ(stats.bytes_held, source.nodes().size() * kNode);
+    EXPECT_EQ(stats.bytes_loaded, stats.bytes_held);
+    EXPECT_TRUE(residency.take_error());
+}
+
+TEST(Residency, LoadsTheMostImportantFirstAndParentsBeforeChildren) {
+    const PlaneSource source(3, kPoints, 10.0);
+    Residency residency(source, {.threads = 1});
+    // Node 2's child 9 matters most, so its ancestors come before it and before node 1 with all of its own.
+    want(residency, cut_of(source, {{0, 1}, {1, 5}, {2, 0}, {3, 4}, {5, 5}, {9, 9}}));
+    residency.wait();
+    EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 2, 9, 1, 5, 3}));
+}
+
+TEST(Residency, HoldsTheMostImportantThatFitAndCountsTheRest) {
+    const PlaneSource source(5, kPoints, 10.0);
+    constexpr uint64_t kFit = 37;
+    Residency residency(source, {.memory = kFit * kNode + kNode / 2, .threads = 2});
+    Replay replay(kFit * kNode);
+    for (int frame = 0; frame < 5; ++frame) {
+        want(residency, full_cut(source));
+        residency.wait();
+        replay.play(residency.poll());
+        std::set<uint32_t> expected;
+        for (uint32_t node = 0; node < kFit; ++node) expected.insert(node);  // breadth first: coarse first
+        EXPECT_EQ(replay.held(), expected);
+        EXPECT_EQ(residency.stats().refused, source.nodes().size() - kFit);
+        EXPECT_EQ(residency.stats().pending, 0u);
+    }
+    EXPECT_EQ(residency.stats().loads, kFit) << "the same wish loads nothing twice";
+    EXPECT_EQ(residency.stats().evictions, 0u);
+    EXPECT_LE(residency.stats().bytes_peak, kFit * kNode + kNode / 2);
+}
+
+TEST(Residency, EvictsTheLongestUnwantedFirst) {
+    const PlaneSource source(3, kPoints, 10.0);
+    Residency residency(source, {.memory = 4 * kNode, .threads = 1});
+    for (const uint32_t child : {1u, 2u, 3u}) {
+        want(residency, cut_of(source, {{0, 9}, {child, 1}}));
+        residency.wait();
+    }
+    want(residency, cut_of(source, {{0, 9}, {1, 1}}));  // wanted again: now 2 is the oldest
+    residency.wait();
+    EXPECT_EQ(residency.stats().loads, 4u);
+    want(residency, cut_of(source, {{0, 9}, {4, 1}}));
+    residency.wait();
+    EXPECT_FALSE(residency.resident(2));
+    for (const uint32_t node : {0u, 1u, 3u, 4u}) EXPECT_TRUE(residency.resident(node)) << node;
+}
+
+TEST(Residency, NeverEvictsAWantedNodeForALessImportantOne) {
+    const PlaneSource source(5, kPoints, 10.0);
+    constexpr uint64_t kFit = 20;
+    Residency residency(source, {.memory = kFit * kNode, .threads = 2});
+    Replay replay(kFit * kNode);
+    for (uint64_t frame = 0; frame < 60; ++frame) {
+        std::vector<std::pair<uint32_t, float>> wishes;
+        for (uint32_t node = 0; node < source.nodes().size(); ++node) {
+            const float level = static_cast<float>(source.nodes()[node].key.level);
+            wishes.emplace_back(
+                node, static_cast<float>(100 - 20 * level + 15 * unit_double(mix64(frame / 2, node))));
+        }
+        const Cut cut = cut_of(source, wishes);
+        const auto before = replay.held();
+        want(residency, cut);
+        residency.wait();
+        replay.play(residency.poll());
+        // Held: exactly the kFit most important, so whatever went was less important than all that stayed or
+        // came.
+        std::ranges::sort(wishes, [](const auto& a, const auto& b) {
+            return a.second != b.second ? a.second > b.second : a.first < b.first;
+        });
+        std::set<uint32_t> best;
+        for (size_t i = 0; i < kFit; ++i) best.insert(wishes[i].first);
+        ASSERT_EQ(replay.held(), best) << "frame " << frame;
+    }
+    EXPECT_LE(residency.stats().bytes_peak, kFit * kNode);
+}
+
+TEST(Residency, StaysUnderItsCapAndReportsConsistentlyWhileWishesChangeAllTheTime) {
+    const PlaneSource source(6, kPoints, 10.0);
+    constexpr uint64_t kCap = 100 * kNode;
+    Residency residency(source, {.memory = kCap, .threads = 4});
+    Replay replay(kCap);
+    for (uint64_t frame = 0; frame < 400; ++frame) {
+        std::set<uint32_t> closed = {0};
+        for (uint64_t i = 0; i < mix64(frame, 0) % 120; ++i)
+            for (uint32_t node = mix64(frame, i + 1) % source.nodes().size(); node != kNoNode;
+                 node = source.nodes()[node].parent)
+                closed.insert(node);
+        std::vector<std::pair<uint32_t, float>> wishes;
+        for (const uint32_t node : closed) wishes.emplace_back(node, 10.0f - source.nodes()[node].key.level);
+        const Cut cut = cut_of(source, wishes);
+        want(residency, cut);
+        if (frame % 7 == 0) {
+            const uint32_t changed[] = {0, static_cast<uint32_t>(mix64(frame) % source.nodes().size())};
+            residency.renew(changed);
+        }
+        if (frame % 5 == 0) residency.wait();
+        replay.play(residency.poll(frame % 3 ? 10 : SIZE_MAX));
+    }
+    residency.wait();
+    replay.play(residency.poll());
+    for (uint32_t node = 0; node < source.nodes().size(); ++node)
+        EXPECT_EQ(replay.held().contains(node), residency.resident(node)) << node;
+    const ResidencyStats stats = residency.stats();
+    EXPECT_EQ(stats.nodes_held, replay.held().size());
+    EXPECT_EQ(stats.bytes_held, replay.held().size() * kNode);
+    EXPECT_LE(stats.bytes_peak, kCap);
+    EXPECT_GT(stats.evictions, 0u);
+    EXPECT_GT(replay.replaced(), 0u);
+}
+
+TEST(Residency, DropsLoadsNotStartedThatNobodyWantsAnyMore) {
+    PlaneSource source(4, kPoints, 10.0);
+    source.shut();
+    Residency residency(source, {.threads = 1});
+    want(residency, full_cut(source));
+    source.await(1);
+    want(residency, cut_of(source, {{0, 2}, {3, 1}}));
+    EXPECT_EQ(residency.stats().pending, 2u) << "the root on its way and node 3";
+    source.open();
+    residency.wait();
+    EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 3}));
+}
+
+TEST(Residency, ReportsAFailedLoadOnceAndDoesNotTryItAgain) {
+    PlaneSource source(4, kPoints, 10.0);
+    source.break_node(2);
+    source.throw_at(3);
+    source.shorten(4);
+    Residency residency(source, {.threads = 2});
+    for (int frame = 0; frame < 10; ++frame) {
+        want(residency, full_cut(source));
+        residency.wait();
+    }
+    EXPECT_EQ(residency.stats().failures, 3u);
+    EXPECT_EQ(residency.stats().pending, 0u);
+    EXPECT_EQ(residency.stats().refused, 0u) << "what failed is not short of memory";
+    EXPECT_FALSE(residency.take_error());
+    EXPECT_TRUE(residency.take_error()) << "reported once";
+    for (const uint32_t node : {2u, 3u, 4u}) {
+        EXPECT_FALSE(residency.resident(node)) << node;
+        EXPECT_EQ(std::ranges::count(source.order(), node), 1);
+    }
+    EXPECT_TRUE(residency.resident(1));
+
+    source.mend_node(2);
+    const uint32_t mended[] = {2};
+    residency.renew(mended);
+    want(residency, full_cut(source));
+    residency.wait();
+    EXPECT_TRUE(residency.resident(2)) << "a node that changed in the source is tried once more";
+}
+
+TEST(Residency, ReplacesNodesThatChangedAndGivesThemUpFirstWhereTwoCopiesDoNotFit) {
+    const PlaneSource source(2, kPoints, 10.0);
+    for (const uint64_t room : {10u, 5u}) {
+        Residency residency(source, {.memory = room * kNode, .threads = 2});
+        Replay replay(room * kNode);
+        want(residency, full_cut(source));
+        residency.wait();
+        replay.play(residency.poll());
+        const uint32_t changed[] = {1, 3};
+        residency.renew(changed);
+        want(residency, full_cut(source));
+        residency.wait();
+        const auto events = residency.poll();
+        replay.play(events);
+        EXPECT_EQ(replay.held().size(), 5u);
+        EXPECT_EQ(events.size(), room == 10 ? 2u : 4u);
+        EXPECT_EQ(residency.stats().loads, 7u);
+        EXPECT_LE(residency.stats().bytes_peak, room * kNode);
+    }
+}
+
+TEST(Residency, ANodeLargerThanTheCapIsRefusedWithItsDescendantsAndBlocksNothingElse) {
+    PlaneSource source(3, kPoints, 10.0);
+    source.edit()[2].count = 50 * kPoints;
+    Residency residency(source, {.memory = 18 * kNode, .threads = 2});
+    want(residency, full_cut(source));
+    residency.wait();
+    EXPECT_EQ(residency.stats().nodes_held, 16u);
+    EXPECT_EQ(residency.stats().refused, 5u) << "node 2 and its four children";
+}
+
+TEST(Residency, CountsWhatANodeCostsItsCallerAgainstTheCap) {
+    const PlaneSource source(3, kPoints, 10.0);
+    Residency residency(
+        source, {.memory = 7000, .threads = 2, .cost = [](const NodeInfo&) { return uint64_t{1000}; }});
+    want(residency, full_cut(source));
+    residency.wait();
+    EXPECT_EQ(residency.stats().nodes_held, 7u);
+    EXPECT_EQ(residency.stats().bytes_held, 7000u);
+}
+
+TEST(Residency, ShutsDownWithLoadsOnTheirWay) {
+    for (int round = 0; round < 20; ++round) {
+        PlaneSource source(4, kPoints, 10.0);
+        source.shut();
+        std::thread opener;
+        {
+            Residency residency(source, {.threads = 4});
+            want(residency, full_cut(source));
+            source.await(4);
+            opener = std::thread([&] { source.open(); });
+        }
+        opener.join();
+        EXPECT_LE(source.order().size(), source.nodes().size());
+    }
+}
+
+TEST(Residency, WantsOfNodesThatDoNotExistAreIgnored) {
+    const PlaneSource source(2, kPoints, 10.0);
+    Residency residency(source, {});
+    Cut cut;
+    cut.nodes = {{0, 1, 1.0f}, {99, 1, 1.0f}, {kNoNode, 1, 1.0f}};
+    want(residency, cut);
+    residency.wait();
+    EXPECT_EQ(residency.stats().nodes_held, 1u);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
