@@ -44,8 +44,8 @@ struct Attribute {
 
 /// Names every folder agrees on; formats may add any others.
 namespace names {
-inline constexpr std::string_view color = "color";            ///< u8 x3 or u16 x3, sRGB; full range
-inline constexpr std::string_view normal = "normal";          ///< f32 x3, as the file had it; (0,0,0) = none
+inline constexpr std::string_view color = "color";            ///< u8, u16 or f32 x3, sRGB; see color_white
+inline constexpr std::string_view normal = "normal";          ///< f32 or f64 x3, as the file had it; (0,0,0) = none
 inline constexpr std::string_view normal_oct = "normal_oct";  ///< u8 x3, estimated; see octree/attributes.h
 inline constexpr std::string_view area = "area";              ///< u16, surface share at full resolution; ditto
 inline constexpr std::string_view intensity = "intensity";
@@ -128,9 +128,17 @@ struct ScanInfo {
     std::string format;                 ///< "LAS 1.2, point format 3"
     uint64_t declared_points = 0;       ///< what the header says; the truth is what read() gives
     double metres_per_unit = 1.0;
+    /// How many bits of a component of `color` are in use: 8 or 16 (many 16-bit fields hold 0-255; the
+    /// attribute stays as the file had it), 0 for floats from 0 to 1. Also in `details` as "color_bits".
+    uint32_t color_bits = 8;
     std::vector<Station> stations;
     std::string details = "{}";         ///< JSON object: what export needs to write the same format again
 };
+
+/// The value of a colour component that means full intensity: 255, 65535, or 1 for 0 bits.
+constexpr double color_white(uint32_t color_bits) {
+    return color_bits == 0 ? 1.0 : color_bits <= 8 ? 255.0 : 65535.0;
+}
 
 /// One pass over a scan's points. Not thread-safe.
 class PointReader {
@@ -138,10 +146,10 @@ class PointReader {
     virtual ~PointReader() = default;
     /// Replaces `batch` by up to `most` points; 0 at the end. Points with a non-finite coordinate are dropped.
     virtual Result<size_t> read(PointBatch& batch, size_t most) = 0;
-    virtual uint64_t dropped() const = 0;  ///< how many so far
+    virtual uint64_t dropped() const = 0;  ///< how many so far; who made the pass tells the user
 };
 
-/// A scan that can be read as often as one likes, with bounded memory.
+/// A scan that can be read as often as one likes, with bounded memory. Outlives its readers.
 class PointSource {
  public:
     virtual ~PointSource() = default;

@@ -61,7 +61,7 @@ void Progress::print(bool last) {
         const double share = std::min(1.0, done / static_cast<double>(total_));
         const double left = rate > 0 ? (static_cast<double>(total_) - done) / rate : 0;
         const auto filled = static_cast<size_t>(share * 20);
-        const std::string bar = terminal_ ? "[" + std::string(filled, '#') + std::string(20 - filled, '.') + "] " : "";
+        const std::string bar = terminal_ ? fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", 20 - filled) : "";
         fmt::print(stderr, "{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", terminal_ ? "\r" : "", label_, bar,
                    share * 100, count_text(rate), unit_, std::max(0.0, left), terminal_ ? "\x1b[K" : "\n");
     }

@@ -16,8 +16,9 @@ struct WriteOptions {
     uint64_t expected_points = 0;  ///< a hint; 0 where unknown
 };
 
-/// A writer for the format that `path`'s extension names (.las, .ply); the file appears when `finish` succeeds.
-/// `info.details` of a source of the same format restores its header (version, point format, VLRs, types).
+/// A writer for the format that `path`'s extension names (.las, .ply); the file appears when `finish`
+/// succeeds. `info.details` of a source of the same format restores its header (version, point format, VLRs,
+/// types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options);
 

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lucarne::io {
+
+/// RFC 4648, section 4, with padding: how `ScanInfo::details` holds bytes.
+std::string to_base64(std::span<const std::byte> data);
+std::optional<std::vector<std::byte>> from_base64(std::string_view text);  ///< empty where it is none
+
+}  // namespace lucarne::io

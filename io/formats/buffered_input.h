@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "io/core/file.h"
+
+namespace lucarne::io {
+
+/// Sequential reading of [offset, end) of a file through one buffer: large system calls, bounded memory.
+class BufferedInput {
+ public:
+    BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end);
+
+    /// What is buffered, at least `bytes` (at most kLargestPeek) unless the range ends before. Valid until
+    /// the next call.
+    Result<std::span<const std::byte>> peek(size_t bytes);
+    void skip(size_t bytes) { first_ += bytes; }  ///< of what `peek` returned
+    Result<void> skip_far(uint64_t bytes);        ///< any number of bytes; past the end is an error
+    /// The next line without its terminator; empty at the end of the range. A line over 1 MiB is rejected.
+    Result<std::optional<std::string_view>> line(char terminator);
+
+    uint64_t position() const { return next_ - (last_ - first_); }  ///< in the file
+    std::string path() const { return file_->path().string(); }
+
+    static constexpr size_t kLargestPeek = size_t{1} << 20;
+
+ private:
+    std::shared_ptr<const InputFile> file_;
+    uint64_t next_, end_;  ///< where the next system call reads; the end of the range
+    std::vector<std::byte> buffer_;
+    size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed
+};
+
+}  // namespace lucarne::io

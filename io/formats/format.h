@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/core/file.h"
+#include "io/formats/scan.h"
+
+namespace lucarne::io {
+
+/// One scan file format. A new one is a file that exports such a function and a line in registry.cpp.
+struct Format {
+    std::string_view name;                      ///< "LAS"
+    std::string_view extension;                 ///< ".las", lower case: what `create` is chosen by
+    bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 64)
+    Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file);
+    Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,
+                                                   const ScanInfo& info, const WriteOptions& options);
+};
+
+const Format& las_format();
+const Format& ply_format();
+
+/// A batch holds at most this many bytes of records, however wide they are.
+inline constexpr size_t kLargestBatch = size_t{64} << 20;
+inline size_t batch_limit(const Schema& schema, size_t most) {
+    return std::min(most, std::max<size_t>(1, kLargestBatch / schema.stride));
+}
+
+/// Coordinates that can be computed with: finite, and far enough from overflow that squares and differences
+/// stay finite. (NaN compares false.)
+inline bool usable(double coordinate) {
+    return coordinate <= 1e30 && coordinate >= -1e30;
+}
+
+/// `name` reduced to printable ASCII, and made different from every attribute of the schema.
+std::string unique_name(const Schema& schema, std::string_view name);
+
+}  // namespace lucarne::io

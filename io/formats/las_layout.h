@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+
+#include "io/formats/las_header.h"
+
+// How a LAS record becomes a record of ours and back. The bit fields at the front of a LAS record are
+// unpacked to one byte each; everything behind them (time, colour, near infrared, extra bytes) stands in the
+// same order in both and is copied as it is: the *tail*.
+namespace lucarne::io::las {
+
+/// The schema of a point format with its extra bytes. `descriptors` is the data of the extra bytes record
+/// (LASF_Spec 4), 192 bytes each; bytes of the record that it does not describe become `extra_bytes` u8 xN.
+Schema make_schema(const Header& header);
+
+/// An entry of the extra bytes record.
+inline constexpr size_t kDescriptorBytes = 192;
+struct ExtraType {
+    ScalarType type = ScalarType::u8;
+    uint32_t components = 1;
+};
+/// Empty where the type is not in the specification.
+std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor);
+std::string extra_name(std::span<const std::byte> descriptor);
+
+/// Unpacks `count` records of `header`'s format into records of make_schema(header).
+void decode(const Header& header, const std::byte* in, size_t count, std::byte* out, size_t out_stride);
+/// The inverse. False where a value does not fit its bit field (what is written then is of no use).
+bool encode(const Header& header, const std::byte* in, size_t in_stride, size_t count, std::byte* out);
+
+}  // namespace lucarne::io::las

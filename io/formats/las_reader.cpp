@@ -1,0 +1,121 @@
+// LAS 1.0-1.4, uncompressed, point formats 0-3 and 6-8. Source: see las_header.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/formats/buffered_input.h"
+#include "io/formats/format.h"
+#include "io/formats/las_crs.h"
+#include "io/formats/las_layout.h"
+#include "io/formats/stations.h"
+
+namespace lucarne::io {
+namespace {
+
+class LasReader final : public PointReader {
+ public:
+    LasReader(std::shared_ptr<const InputFile> file, const las::Header& header, const Schema& schema)
+        : input_(std::move(file), header.points_offset,
+                 header.points_offset + header.points * header.record_length),
+          header_(header),
+          schema_(schema),
+          left_(header.points) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const auto wanted = static_cast<size_t>(std::min<uint64_t>(batch_limit(schema_, most), left_));
+        batch.bytes.resize(wanted * schema_.stride);
+        batch.count = 0;
+        while (batch.count < wanted) {
+            LUCARNE_ASSIGN(const auto bytes, input_.peek(header_.record_length));
+            const size_t count = std::min(bytes.size() / header_.record_length, wanted - batch.count);
+            if (count == 0)
+                return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+            las::decode(header_, bytes.data(), count, batch.bytes.data() + batch.count * schema_.stride,
+                        schema_.stride);
+            input_.skip(count * header_.record_length);
+            batch.count += count;
+            left_ -= count;
+        }
+        return batch.count;
+    }
+    uint64_t dropped() const override { return 0; }  // integers with a finite scale and offset
+
+ private:
+    BufferedInput input_;
+    const las::Header& header_;
+    const Schema& schema_;
+    uint64_t left_;
+};
+
+class LasSource final : public PointSource {
+ public:
+    LasSource(std::shared_ptr<const InputFile> file, las::Header header)
+        : file_(std::move(file)), header_(std::move(header)), schema_(las::make_schema(header_)) {}
+
+    Result<void> describe() {
+        const std::string name = file_->path().string();
+        info_.path = name;
+        info_.format = fmt::format("LAS 1.{}, point format {}", header_.minor, header_.point_format);
+        info_.declared_points = header_.points;
+        info_.metres_per_unit = las::metres_per_unit(name, header_);
+        if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
+            LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
+        }
+        if (const Attribute* color = schema_.find(names::color)) {
+            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color));
+        }
+        nlohmann::json details = las::to_details(header_);
+        details["color_bits"] = info_.color_bits;
+        info_.details = details.dump();
+        return {};
+    }
+
+    const Schema& schema() const override { return schema_; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override {
+        return std::make_unique<LasReader>(file_, header_, schema_);
+    }
+
+ private:
+    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by blocks of points
+    /// spread evenly over the file. Nothing is converted, so a wrong guess loses nothing.
+    Result<uint32_t> sample_color_bits(const Attribute& color) const {
+        constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
+        const uint64_t step = std::max<uint64_t>(kBlockPoints, header_.points / kBlocks);
+        std::vector<std::byte> raw, record(schema_.stride);
+        for (uint64_t first = 0; first < header_.points; first += step) {
+            const uint64_t count = std::min(kBlockPoints, header_.points - first);
+            raw.resize(static_cast<size_t>(count * header_.record_length));
+            LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
+            for (size_t at = 0; at < raw.size(); at += header_.record_length) {
+                las::decode(header_, &raw[at], 1, record.data(), schema_.stride);
+                for (size_t c = 0; c < 3; ++c)
+                    if (load<uint16_t>(&record[color.offset + 2 * c]) > 255) return 16u;
+            }
+        }
+        return 8u;
+    }
+
+    std::shared_ptr<const InputFile> file_;
+    las::Header header_;
+    Schema schema_;
+    ScanInfo info_;
+};
+
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file) {
+    LUCARNE_ASSIGN(auto header, las::read_header(*file));
+    auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
+    LUCARNE_TRY(source->describe());
+    return source;
+}
+
+}  // namespace
+
+const Format& las_format() {
+    static constexpr Format kFormat{
+        "LAS", ".las", [](std::string_view head) { return head.starts_with("LASF"); }, open_las, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "io/formats/ply_header.h"
+
+// How a PLY vertex becomes a record of ours.
+namespace lucarne::io::ply {
+
+/// The scalar properties of a vertex, packed in order: the file's own record where it is binary and has no
+/// lists, else put together first.
+struct Layout {
+    /// Copies, byte-swaps or widens `count` neighbouring scalars.
+    struct Step {
+        enum class Kind : uint8_t { copy, swap, to_double } kind = Kind::copy;
+        ScalarType type = ScalarType::u8;  ///< in the file
+        uint32_t from = 0, to = 0, count = 1;
+    };
+    Schema schema;
+    std::vector<Step> steps;
+    uint32_t packed_bytes = 0;
+    bool big_endian = false;
+    bool flat = false;  ///< the file has no z: it is 0
+
+    /// False (and the record is of no use) where a coordinate is not finite.
+    bool unpack(const std::byte* packed, std::byte* record) const;
+};
+
+/// `x`, `y`, `z` become the position: f32 where all three are float, else f64, which holds every PLY type.
+/// red/green/blue (or diffuse_red..., r/g/b) become `color`, nx/ny/nz (or normal_x...) `normal`, where their
+/// types allow; everything else keeps its name and type.
+Layout make_layout(const Header& header);
+
+}  // namespace lucarne::io::ply

@@ -1,0 +1,299 @@
+// PLY: ASCII, binary little and big endian. Source: see ply_header.h.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/buffered_input.h"
+#include "io/formats/format.h"
+#include "io/formats/ply_layout.h"
+#include "io/formats/text.h"
+
+namespace lucarne::io {
+namespace {
+
+/// The next `bytes` bytes, which have to be there.
+Result<const std::byte*> take(BufferedInput& input, size_t bytes) {
+    LUCARNE_ASSIGN(const auto got, input.peek(bytes));
+    if (got.size() < bytes)
+        return rejected(input.path(), fmt::format("ends early, at {} bytes", input.position() + got.size()));
+    input.skip(bytes);
+    return got.data();
+}
+
+/// The length of a list, 0 or more.
+Result<uint64_t> list_length(BufferedInput& input, ScalarType type, bool big_endian) {
+    const size_t bytes = scalar_bytes(type);
+    LUCARNE_ASSIGN(const std::byte* at, take(input, bytes));
+    std::array<std::byte, 8> native{};
+    for (size_t i = 0; i < bytes; ++i) native[i] = at[big_endian ? bytes - 1 - i : i];
+    const double length = scalar_at(type, native.data());
+    if (length < 0) return rejected(input.path(), "has a list of negative length");
+    return static_cast<uint64_t>(length);
+}
+
+/// One binary entry with lists. The scalars are appended to `packed` where it is wanted.
+Result<void> walk_entry(BufferedInput& input, const ply::Element& element, bool big_endian,
+                        std::byte* packed) {
+    for (const auto& p : element.properties) {
+        if (p.count) {
+            LUCARNE_ASSIGN(const uint64_t length, list_length(input, *p.count, big_endian));
+            LUCARNE_TRY(input.skip_far(length * scalar_bytes(p.type)));
+            continue;
+        }
+        LUCARNE_ASSIGN(const std::byte* at, take(input, scalar_bytes(p.type)));
+        if (!packed) continue;
+        std::memcpy(packed, at, scalar_bytes(p.type));
+        packed += scalar_bytes(p.type);
+    }
+    return {};
+}
+
+/// The next line that is not blank.
+Result<std::string_view> text_line(BufferedInput& input, const ply::Header& header) {
+    for (;;) {
+        LUCARNE_ASSIGN(const auto line, input.line(header.line_end));
+        if (!line) return rejected(input.path(), "ends early: its header promises more lines");
+        if (!std::all_of(line->begin(), line->end(), is_blank)) return *line;
+    }
+}
+
+Result<void> skip_element(BufferedInput& input, const ply::Header& header, const ply::Element& element) {
+    if (element.properties.empty()) return {};
+    if (header.encoding != ply::Encoding::ascii && !element.has_list()) {
+        if (element.count > (uint64_t{1} << 63) / element.record_bytes())
+            return rejected(input.path(),
+                            fmt::format("cannot hold its {} entries of '{}'", element.count, element.name));
+        return input.skip_far(element.count * element.record_bytes());
+    }
+    for (uint64_t i = 0; i < element.count; ++i) {
+        if (header.encoding == ply::Encoding::ascii)
+            LUCARNE_TRY(text_line(input, header));
+        else
+            LUCARNE_TRY(walk_entry(input, element, header.encoding == ply::Encoding::big_endian, nullptr));
+    }
+    return {};
+}
+
+/// Parses `word` into `at`. A "char" takes 128 to 255 as well: some writers mean uchar.
+bool parse_scalar(ScalarType type, std::string_view word, std::byte* at) {
+    const auto put = [&]<class T>(std::optional<T> value) {
+        if (value) store(at, *value);
+        return value.has_value();
+    };
+    switch (type) {
+        case ScalarType::f32:
+            return put(parse_number<float>(word));
+        case ScalarType::f64:
+            return put(parse_number<double>(word));
+        default:
+            break;
+    }
+    // Whole numbers are sometimes written as 255.0; all PLY integers are exact in a double.
+    const auto value = parse_number<double>(word);
+    if (!value || !(std::abs(*value) < 0x1p33) || *value != std::trunc(*value)) return false;
+    const auto whole = static_cast<int64_t>(*value);
+    const int64_t range = int64_t{1} << (8 * scalar_bytes(type));
+    const bool is_signed = type == ScalarType::i8 || type == ScalarType::i16 || type == ScalarType::i32;
+    if (whole >= (type == ScalarType::i8 || !is_signed ? range : range / 2) ||
+        whole < (is_signed ? -range / 2 : 0))
+        return false;
+    std::memcpy(at, &whole, scalar_bytes(type));  // little-endian: the low bytes come first
+    return true;
+}
+
+class PlyReader final : public PointReader {
+ public:
+    PlyReader(std::shared_ptr<const InputFile> file, const ply::Header& header, const ply::Layout& layout,
+              uint64_t offset)
+        : end_(file->size()),
+          input_(std::move(file), offset, end_),
+          header_(header),
+          layout_(layout),
+          left_(header.vertices().count),
+          packed_(layout.packed_bytes) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const size_t stride = layout_.schema.stride;
+        const size_t wanted = batch_limit(layout_.schema, most);
+        batch.bytes.resize(static_cast<size_t>(std::min<uint64_t>(wanted, left_)) * stride);
+        batch.count = 0;
+        const bool text = header_.encoding == ply::Encoding::ascii;
+        while (batch.count < wanted && left_ > 0) {
+            if (!text && !header_.vertices().has_list()) {
+                LUCARNE_TRY(read_fixed(batch, wanted));
+                continue;
+            }
+            if (text)
+                LUCARNE_TRY(parse_line());
+            else
+                LUCARNE_TRY(walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data()));
+            take_point(packed_.data(), batch);
+        }
+        batch.bytes.resize(batch.count * stride);
+        return batch.count;
+    }
+    uint64_t dropped() const override { return dropped_; }
+
+ private:
+    void take_point(const std::byte* packed, PointBatch& batch) {
+        const bool good = layout_.unpack(packed, batch.bytes.data() + batch.count * layout_.schema.stride);
+        batch.count += good;
+        dropped_ += !good;
+        --left_;
+    }
+
+    Result<void> read_fixed(PointBatch& batch, size_t wanted) {
+        LUCARNE_ASSIGN(const auto bytes, input_.peek(layout_.packed_bytes));
+        const auto count = static_cast<size_t>(
+            std::min<uint64_t>({bytes.size() / layout_.packed_bytes, wanted - batch.count, left_}));
+        if (count == 0)
+            return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+        for (size_t i = 0; i < count; ++i) take_point(bytes.data() + i * layout_.packed_bytes, batch);
+        input_.skip(count * layout_.packed_bytes);
+        return {};
+    }
+
+    Result<void> parse_line() {
+        auto got = text_line(input_, header_);
+        const auto& vertices = header_.vertices();
+        const uint64_t number = vertices.count - left_ + 1;
+        if (!got && input_.position() >= end_)
+            return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+        LUCARNE_ASSIGN(std::string_view line, std::move(got));
+        std::byte* at = packed_.data();
+        for (const auto& p : vertices.properties) {
+            const auto word = next_word(line);
+            if (p.count) {
+                const auto length = parse_number<uint32_t>(word);
+                if (!length) return bad_value(number, p.name, word);
+                for (uint32_t i = 0; i < *length && !line.empty(); ++i) next_word(line);
+                continue;
+            }
+            if (!parse_scalar(p.type, word, at)) return bad_value(number, p.name, word);
+            at += scalar_bytes(p.type);
+        }
+        if (!next_word(line).empty())
+            return rejected(input_.path(),
+                            fmt::format("vertex {} has more values than the header names", number));
+        return {};
+    }
+    Result<void> bad_value(uint64_t number, const std::string& property, std::string_view word) const {
+        return rejected(input_.path(), fmt::format("vertex {} has '{}' for its property {}", number,
+                                                   word.substr(0, 40), property));
+    }
+
+    uint64_t end_;
+    BufferedInput input_;
+    const ply::Header& header_;
+    const ply::Layout& layout_;
+    uint64_t left_, dropped_ = 0;
+    std::vector<std::byte> packed_;  ///< a vertex put together from words or around lists
+};
+
+class PlySource final : public PointSource {
+ public:
+    PlySource(std::shared_ptr<const InputFile> file, ply::Header header)
+        : file_(std::move(file)), header_(std::move(header)), layout_(ply::make_layout(header_)) {}
+
+    Result<void> describe() {
+        const std::string name = file_->path().string();
+        LUCARNE_TRY(find_vertices());
+        constexpr std::array kEncodings = {"ASCII", "binary little endian", "binary big endian"};
+        info_.path = name;
+        info_.format = fmt::format("PLY, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
+        info_.declared_points = header_.vertices().count;
+        LUCARNE_ASSIGN(info_.stations, ply::stations_of(name, header_));
+        LUCARNE_ASSIGN(info_.color_bits, find_color_bits());
+        if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
+        nlohmann::json details = ply::to_details(header_);
+        details["color_bits"] = info_.color_bits;
+        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        return {};
+    }
+
+    const Schema& schema() const override { return layout_.schema; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override {
+        return std::make_unique<PlyReader>(file_, header_, layout_, vertices_offset_);
+    }
+
+ private:
+    bool fixed() const { return header_.encoding != ply::Encoding::ascii && !header_.vertices().has_list(); }
+
+    /// Passes over the elements before the vertices, and checks that these can be there.
+    Result<void> find_vertices() {
+        BufferedInput input(file_, header_.data_offset, file_->size());
+        for (size_t e = 0; e < header_.vertex; ++e)
+            LUCARNE_TRY(skip_element(input, header_, header_.elements[e]));
+        vertices_offset_ = input.position();
+        const auto& vertices = header_.vertices();
+        // A word of text takes two bytes with what separates it, but for the very last.
+        const uint64_t least =
+            header_.encoding == ply::Encoding::ascii ? 2 * vertices.properties.size() : layout_.packed_bytes;
+        const uint64_t there =
+            (file_->size() - vertices_offset_ + (header_.encoding == ply::Encoding::ascii)) / least;
+        if (vertices.count > there)
+            return rejected(file_->path().string(),
+                            fmt::format("is truncated: its header promises {} points, at most {} are there",
+                                        vertices.count, there));
+        return {};
+    }
+
+    /// Full intensity is told by the largest component of a sample: spread over the file where vertices can
+    /// be addressed, else from its beginning. Nothing is converted, so a wrong guess loses nothing.
+    Result<uint32_t> find_color_bits() const {
+        const Attribute* color = layout_.schema.find(names::color);
+        if (!color || color->type == ScalarType::u8) return 8u;
+        if (const auto stated = ply::color_bits_of(header_)) return *stated;
+        constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
+        const uint64_t count = header_.vertices().count;
+        const uint64_t step =
+            fixed() ? std::max<uint64_t>(kBlockPoints, count / kBlocks) : std::max<uint64_t>(count, 1);
+        double largest = 0;
+        for (uint64_t first = 0; first < count; first += step) {
+            PlyReader reader(file_, header_, layout_,
+                             vertices_offset_ + (fixed() ? first * layout_.packed_bytes : 0));
+            PointBatch batch;
+            const auto points =
+                static_cast<size_t>(fixed() ? std::min(kBlockPoints, count - first) : kBlocks * kBlockPoints);
+            // What is wrong further inside is for the real pass to report.
+            if (!reader.read(batch, points)) break;
+            for (size_t i = 0; i < batch.count * 3; ++i) {
+                const std::byte* record = batch.bytes.data() + i / 3 * layout_.schema.stride;
+                largest = std::max(largest, scalar_at(color->type, record + color->offset +
+                                                                       i % 3 * scalar_bytes(color->type)));
+            }
+        }
+        if (color->type == ScalarType::u16) return largest > 255 ? 16u : 8u;
+        return largest > 255 ? 16u : largest > 1 ? 8u : 0u;
+    }
+
+    std::shared_ptr<const InputFile> file_;
+    ply::Header header_;
+    ply::Layout layout_;
+    uint64_t vertices_offset_ = 0;
+    ScanInfo info_;
+};
+
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file) {
+    LUCARNE_ASSIGN(auto header, ply::read_header(file));
+    auto source = std::make_unique<PlySource>(std::move(file), std::move(header));
+    LUCARNE_TRY(source->describe());
+    return source;
+}
+
+bool is_ply(std::string_view head) {
+    return head.starts_with("ply") && head.size() > 3 && (is_blank(head[3]) || head[3] == '\n');
+}
+
+}  // namespace
+
+const Format& ply_format() {
+    static constexpr Format kFormat{"PLY", ".ply", is_ply, open_ply, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

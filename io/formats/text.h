@@ -1,0 +1,49 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+// Words and numbers of text formats, whatever the locale.
+namespace lucarne::io {
+
+constexpr bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// Cuts the next word off the front of `line`; empty when there is none.
+inline std::string_view next_word(std::string_view& line) {
+    size_t first = 0;
+    while (first < line.size() && is_blank(line[first])) ++first;
+    size_t last = first;
+    while (last < line.size() && !is_blank(line[last])) ++last;
+    const auto word = line.substr(first, last - first);
+    line.remove_prefix(last);
+    return word;
+}
+
+/// The whole word as a number; integers only without fraction and in range. "nan" and "inf" are numbers; what
+/// is too large for a float becomes infinite, what is too small zero.
+template <class T>
+std::optional<T> parse_number(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    const char* end = word.data() + word.size();
+    T value{};
+    const auto [stop, code] = std::from_chars(word.data(), end, value);
+    if (stop != end) return std::nullopt;
+    if (code == std::errc{}) return value;
+    if constexpr (std::is_floating_point_v<T>) {
+        if (code != std::errc::result_out_of_range) return std::nullopt;
+        const size_t exponent = word.find_first_of("eE");
+        const bool tiny = exponent != word.npos ? word.substr(exponent + 1).starts_with('-')
+                                                : word.find_first_of("123456789") > word.find('.');
+        const T size = tiny ? T{0} : std::numeric_limits<T>::infinity();
+        return word[0] == '-' ? -size : size;
+    } else {
+        return std::nullopt;
+    }
+}
+
+}  // namespace lucarne::io

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "io/formats/scan.h"
+
+// What the tests of io share: the folder of shared scans, a folder that goes away, whole scans in memory.
+namespace lucarne::io::testing {
+
+/// The shared test data, or empty where there is none.
+inline std::filesystem::path shared_data() {
+    const char* given = std::getenv("LUCARNE_SHARED");
+    const auto folder =
+        given ? std::filesystem::path(given) : std::filesystem::path(LUCARNE_SOURCE_DIR) / ".." / "shared";
+    return std::filesystem::exists(folder / "data") ? folder / "data" : std::filesystem::path();
+}
+
+class TemporaryFolder {
+ public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "lucarne-test-XXXXXX").string();
+        path_ = mkdtemp(name.data());
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+
+ private:
+    std::filesystem::path path_;
+};
+
+inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+inline std::string read_bytes(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Every record of one pass.
+struct Records {
+    std::vector<std::byte> bytes;
+    size_t count = 0;
+    uint64_t dropped = 0;
+};
+
+inline Result<Records> read_all(const PointSource& source, size_t batch_points = 1000) {
+    Records all;
+    LUCARNE_ASSIGN(const auto reader, source.open());
+    PointBatch batch;
+    for (;;) {
+        LUCARNE_ASSIGN(const size_t got, reader->read(batch, batch_points));
+        if (got == 0) break;
+        all.bytes.insert(all.bytes.end(), batch.bytes.begin(),
+                         batch.bytes.begin() + static_cast<std::ptrdiff_t>(got * source.schema().stride));
+        all.count += got;
+    }
+    all.dropped = reader->dropped();
+    return all;
+}
+
+}  // namespace lucarne::io::testing
