@@ -1,0 +1,178 @@
+#include "io/core/json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "io/core/file.h"
+
+namespace lucarne {
+namespace {
+
+constexpr uint64_t kLargestFile = uint64_t{16} << 20;
+
+/// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ..." without its
+/// head.
+std::string_view reason(std::string_view what) {
+    const size_t column = what.find("column ");
+    const size_t colon = column == std::string_view::npos ? column : what.find(": ", column);
+    return colon == std::string_view::npos ? what : what.substr(colon + 2);
+}
+
+}  // namespace
+
+Result<nlohmann::json> parse_json(std::string_view text, const std::string& name) {
+    try {
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::string_view before =
+            text.substr(0, std::min(text.size(), error.byte ? error.byte - 1 : 0));
+        const auto line = 1 + std::ranges::count(before, '\n');
+        const size_t start = before.rfind('\n');
+        const size_t column = before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1;
+        return rejected(name, fmt::format("line {}, column {}: {}", line, column, reason(error.what())),
+                        "correct the JSON there");
+    } catch (const nlohmann::json::exception& error) {
+        return rejected(name, error.what(), "correct the JSON");
+    }
+}
+
+Result<nlohmann::json> load_json(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const InputFile file, InputFile::open(path));
+    if (file.size() > kLargestFile)
+        return rejected(path.string(), "is larger than 16 MiB", "give a JSON file written for Lucarne");
+    std::string text(file.size(), '\0');
+    LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(text))));
+    return parse_json(text, path.string());
+}
+
+Result<JsonObject> JsonObject::of(const nlohmann::json& value, std::string name, std::string pointer) {
+    JsonObject object(value, std::move(name), std::move(pointer));
+    if (!value.is_object()) return object.wrong(fmt::format("must be an object, not {}", value.type_name()));
+    return object;
+}
+
+bool JsonObject::has(std::string_view key) const {
+    return value_->contains(key);
+}
+
+const nlohmann::json* JsonObject::take(std::string_view key) {
+    taken_.emplace_back(key);
+    const auto found = value_->find(key);
+    return found == value_->end() ? nullptr : &*found;
+}
+
+std::string JsonObject::pointer_to(std::string_view key) const {
+    std::string pointer = pointer_ + "/";
+    for (const char c : key) pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);  // RFC 6901
+    return pointer;
+}
+
+tl::unexpected<Error> JsonObject::wrong(std::string why, std::string_view key) const {
+    const std::string place = key.empty() ? pointer_ : pointer_to(key);
+    return rejected(name_, fmt::format("{}: {}", place.empty() ? "the whole document" : place, why),
+                    "see data/README.md");
+}
+
+tl::unexpected<Error> JsonObject::wrong_or_missing(std::string_view key, std::string_view expected) const {
+    const auto found = value_->find(key);
+    if (found == value_->end()) return wrong(fmt::format("the key '{}' is missing", key));
+    return wrong(fmt::format("must be {}, not {}", expected, found->dump().substr(0, 60)), key);
+}
+
+Result<double> JsonObject::number(std::string_view key, JsonRange range, std::optional<double> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    if (value && value->is_number()) {
+        const double number = value->get<double>();
+        if (std::isfinite(number) && number >= range.least && number <= range.most) return number;
+    }
+    return wrong_or_missing(key, range.least > -1e300 || range.most < 1e300
+                                     ? fmt::format("a number from {} to {}", range.least, range.most)
+                                     : "a number");
+}
+
+Result<int64_t> JsonObject::integer(std::string_view key, int64_t least, int64_t most,
+                                    std::optional<int64_t> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    const bool fits = value && value->is_number_integer() &&
+                      (!value->is_number_unsigned() || value->get<uint64_t>() <= uint64_t{INT64_MAX});
+    if (fits && value->get<int64_t>() >= least && value->get<int64_t>() <= most) return value->get<int64_t>();
+    return wrong_or_missing(key, fmt::format("an integer from {} to {}", least, most));
+}
+
+Result<std::string> JsonObject::text(std::string_view key, std::optional<std::string> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    if (value && value->is_string()) return value->get<std::string>();
+    return wrong_or_missing(key, "a text");
+}
+
+Result<bool> JsonObject::boolean(std::string_view key, std::optional<bool> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    if (value && value->is_boolean()) return value->get<bool>();
+    return wrong_or_missing(key, "true or false");
+}
+
+Result<glm::dvec3> JsonObject::vector(std::string_view key, JsonRange range,
+                                      std::optional<glm::dvec3> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    if (!value || !value->is_array() || value->size() != 3)
+        return wrong_or_missing(key, "three numbers [x, y, z]");
+    glm::dvec3 vector(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const nlohmann::json& component = (*value)[static_cast<size_t>(axis)];
+        const double number = component.is_number() ? component.get<double>() : NAN;
+        if (!(number >= range.least && number <= range.most))
+            return wrong_or_missing(key,
+                                    range.least > -1e300 || range.most < 1e300
+                                        ? fmt::format("three numbers from {} to {}", range.least, range.most)
+                                        : "three numbers [x, y, z]");
+        vector[axis] = number;
+    }
+    return vector;
+}
+
+Result<size_t> JsonObject::choice(std::string_view key, const std::vector<std::string_view>& choices,
+                                  std::optional<size_t> otherwise) {
+    const nlohmann::json* value = take(key);
+    if (!value && otherwise) return *otherwise;
+    if (value && value->is_string())
+        for (size_t i = 0; i < choices.size(); ++i)
+            if (choices[i] == value->get_ref<const std::string&>()) return i;
+    return wrong_or_missing(key, fmt::format("one of {}", fmt::join(choices, ", ")));
+}
+
+Result<std::vector<JsonObject>> JsonObject::objects(std::string_view key, size_t most) {
+    std::vector<JsonObject> objects;
+    const nlohmann::json* value = take(key);
+    if (!value) return objects;
+    if (!value->is_array() || value->size() > most)
+        return wrong(fmt::format("must be an array of at most {} objects", most), key);
+    for (size_t i = 0; i < value->size(); ++i) {
+        LUCARNE_ASSIGN(JsonObject object, of((*value)[i], name_, fmt::format("{}/{}", pointer_to(key), i)));
+        objects.push_back(std::move(object));
+    }
+    return objects;
+}
+
+Result<std::optional<JsonObject>> JsonObject::object(std::string_view key) {
+    const nlohmann::json* value = take(key);
+    if (!value) return std::nullopt;
+    LUCARNE_ASSIGN(JsonObject object, of(*value, name_, pointer_to(key)));
+    return std::optional(std::move(object));
+}
+
+Result<void> JsonObject::finish() const {
+    for (const auto& [key, value] : value_->items())
+        if (std::ranges::find(taken_, key) == taken_.end())
+            return wrong(fmt::format("is not a known key; known here are: {}", fmt::join(taken_, ", ")), key);
+    return {};
+}
+
+}  // namespace lucarne

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+/// Reads a JSON text written by a person (a scene, a camera path). Errors name the line and column.
+Result<nlohmann::json> parse_json(std::string_view text, const std::string& name);
+/// The same for a file of at most 16 MiB.
+Result<nlohmann::json> load_json(const std::filesystem::path& path);
+
+struct JsonRange {
+    double least = -1e300, most = 1e300;
+};
+
+/// One object of such a file, read key by key. Every error names the file and the place as a JSON pointer: a
+/// missing or unknown key, a wrong type, a number out of range. Refers to the document, which outlives it.
+class JsonObject {
+ public:
+    static Result<JsonObject> of(const nlohmann::json& value, std::string name, std::string pointer = "");
+
+    bool has(std::string_view key) const;
+    // Each takes a key, which from then on is known. Without `otherwise` the key must be there.
+    Result<double> number(std::string_view key, JsonRange range = {}, std::optional<double> otherwise = {});
+    Result<int64_t> integer(std::string_view key, int64_t least, int64_t most,
+                            std::optional<int64_t> otherwise = {});
+    Result<std::string> text(std::string_view key, std::optional<std::string> otherwise = {});
+    Result<bool> boolean(std::string_view key, std::optional<bool> otherwise = {});
+    /// [x, y, z], every component within the range.
+    Result<glm::dvec3> vector(std::string_view key, JsonRange range = {},
+                              std::optional<glm::dvec3> otherwise = {});
+    /// One of `choices`; its index.
+    Result<size_t> choice(std::string_view key, const std::vector<std::string_view>& choices,
+                          std::optional<size_t> otherwise = {});
+    /// The objects of an array of at most `most`; empty where the key is missing.
+    Result<std::vector<JsonObject>> objects(std::string_view key, size_t most = 10000);
+    /// An object; empty where the key is missing.
+    Result<std::optional<JsonObject>> object(std::string_view key);
+
+    /// Call last: a key that nothing above took is an error.
+    Result<void> finish() const;
+    /// An error at this object or at one of its keys.
+    tl::unexpected<Error> wrong(std::string why, std::string_view key = {}) const;
+
+ private:
+    JsonObject(const nlohmann::json& value, std::string name, std::string pointer)
+        : value_(&value), name_(std::move(name)), pointer_(std::move(pointer)) {}
+    const nlohmann::json* take(std::string_view key);
+    std::string pointer_to(std::string_view key) const;
+    tl::unexpected<Error> wrong_or_missing(std::string_view key, std::string_view expected) const;
+
+    const nlohmann::json* value_;
+    std::string name_, pointer_;
+    std::vector<std::string> taken_;
+};
+
+}  // namespace lucarne
