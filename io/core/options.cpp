@@ -27,6 +27,22 @@ Result<uint64_t> parse_bytes(std::string_view option, std::string_view text) {
     return static_cast<uint64_t>(bytes);
 }
 
+Result<uint64_t> parse_count(std::string_view option, std::string_view text) {
+    double number = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const std::string_view unit = text.substr(static_cast<size_t>(end - text.data()));
+    double factor = 0;
+    if (unit.empty()) factor = 1;
+    if (unit.size() == 1)
+        if (const auto at = std::string_view("KMG").find(static_cast<char>(unit[0] & ~0x20)); at != std::string_view::npos)
+            factor = std::pow(1000.0, static_cast<double>(at + 1));
+    const double count = std::round(number * factor);
+    if (code != std::errc{} || factor == 0 || !(count >= 0) || count > 0x1p53)
+        return bad_arguments(std::string(option), fmt::format("'{}' is not a count", text),
+                             "write for example 250000 or 5M");
+    return static_cast<uint64_t>(count);
+}
+
 Result<ImageSize> parse_size(std::string_view option, std::string_view text) {
     ImageSize size;
     const char* last = text.data() + text.size();

@@ -10,6 +10,9 @@ namespace lucarne {
 /// "512M", "2G", "1.5GiB", "4096" to bytes (binary units). `option` names it in the error.
 Result<uint64_t> parse_bytes(std::string_view option, std::string_view text);
 
+/// "250000", "5M", "1.5k", "2G" to a count (powers of 1000), at most 2^53. `option` names it in the error.
+Result<uint64_t> parse_count(std::string_view option, std::string_view text);
+
 struct ImageSize {
     uint32_t width = 0, height = 0;
 };

@@ -8,20 +8,26 @@
 
 namespace lucarne::io {
 
-/// How a virtual scan is made. The same options give the same bytes on every machine and thread count.
+/// How a virtual scan is made. The same options give the same bytes, whatever the threads and the batches.
 struct SyntheticOptions {
     std::string scene = "cornell";  ///< one of synthetic_scenes()
     uint64_t points = 1'000'000;    ///< about how many for scans, exactly for even sampling
-    uint32_t stations = 0;          ///< 0: the scene's own stations, and `even` when it has none
-    bool even = false;              ///< blue-noise-like sampling by area instead of scanning
-    bool normals = false;           ///< keep the true normals (attribute `normal`)
-    double noise = 0.002;           ///< standard deviation of the range, metres
+    uint32_t stations = 0;          ///< 0: the scene's own; more are placed where there is room
+    bool even = false;     ///< evenly by area, hidden surfaces too, without noise, instead of scanning
+    bool normals = false;  ///< keep the true normals (attribute `normal`)
+    double noise = 0.002;  ///< standard deviation of the range, metres
     uint64_t seed = 1;
 };
 
-std::vector<std::string> synthetic_scenes();
+struct SyntheticScene {
+    std::string name, summary;
+};
+const std::vector<SyntheticScene>& synthetic_scenes();
 
-/// A virtual scan as a stream: nothing is held but one batch and the scene. Station poses are in info().
+/// A virtual scan as a stream: nothing is held but a few batches and the scene. Positions are in steps of 0.1
+/// mm; attributes: intensity u16, color u8 x3 (the albedo), point_source_id u16 (the station, from 1; not
+/// with `even`) and normal f32 x3 (on request). Station poses are in info(). Errors: ErrorKind::arguments,
+/// naming the option.
 Result<std::unique_ptr<PointSource>> synthetic_source(const SyntheticOptions& options);
 
 }  // namespace lucarne::io

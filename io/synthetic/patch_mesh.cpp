@@ -1,0 +1,233 @@
+#include "io/synthetic/patch_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::io {
+namespace {
+
+constexpr double kTinyArea = 1e-10;      ///< m^2: quads below it are left out
+constexpr double kSmoothCosine = 0.766;  ///< cos 40 degrees
+
+double triangle_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return glm::length(glm::cross(b - a, c - a)) / 2;
+}
+
+/// The direction of the air of a quad, not normalised: the cross product of its diagonals holds for triangles
+/// too.
+glm::dvec3 face_direction(const PatchQuad& q) {
+    return glm::cross(q[2] - q[0], q[3] - q[1]);
+}
+
+glm::dvec3 unit_or_up(const glm::dvec3& direction) {
+    const double length = glm::length(direction);
+    return length > 0 ? direction / length : glm::dvec3(0, 0, 1);
+}
+
+template <class Value>
+glm::dvec3 bilinear(const Value& at, size_t quad, double t, double s) {
+    const glm::dvec3 a(at[4 * quad]), b(at[4 * quad + 1]), c(at[4 * quad + 2]), d(at[4 * quad + 3]);
+    return (a * (1 - t) + b * t) * (1 - s) + (d * (1 - t) + c * t) * s;
+}
+
+}  // namespace
+
+glm::dvec3 PatchMesh::position(size_t quad, double t, double s) const {
+    return bilinear(corners, quad, t, s);
+}
+
+glm::dvec3 PatchMesh::normal(size_t quad, double t, double s) const {
+    return unit_or_up(bilinear(normals, quad, t, s));
+}
+
+void PatchBuilder::add(Finish finish, std::span<const std::vector<ShadedQuad>> bands) {
+    Patch patch;
+    patch.first_band = static_cast<uint32_t>(mesh_.bands.size());
+    patch.area_before = mesh_.area();
+    patch.finish = finish;
+    for (const auto& quads : bands) {
+        PatchBand band;
+        band.first_quad = static_cast<uint32_t>(mesh_.quads());
+        double width = 0;
+        for (const ShadedQuad& quad : quads) {
+            const auto& c = quad.corners;
+            const double area = triangle_area(c[0], c[1], c[3]) + triangle_area(c[2], c[3], c[1]);
+            if (area < kTinyArea) continue;
+            const double low = glm::length(c[1] - c[0]), high = glm::length(c[2] - c[3]);
+            const double height = 2 * area / (low + high);
+            mesh_.low_before.push_back(band.low);
+            mesh_.high_before.push_back(band.high);
+            band.low += height * low;
+            band.high += height * high;
+            width += (low + high) / 2;
+            mesh_.finishes.push_back(finish);
+            for (int i = 0; i < 4; ++i) {
+                mesh_.corners.emplace_back(c[i]);
+                mesh_.normals.emplace_back(quad.normals[i]);
+            }
+        }
+        band.quads = static_cast<uint32_t>(mesh_.quads()) - band.first_quad;
+        if (band.quads == 0) continue;
+        band.height_before = patch.height;
+        band.height = band.area() / width;
+        band.area_before = patch.area;
+        patch.height += band.height;
+        patch.area += band.area();
+        ++patch.bands;
+        mesh_.bands.push_back(band);
+    }
+    if (patch.bands > 0) mesh_.patches.push_back(patch);
+}
+
+void PatchBuilder::grid(Finish finish, const Grid& grid) {
+    const size_t row_points = grid.rows.size(), column_points = grid.rows.front().size();
+    const size_t bands = grid.close_rows ? row_points : row_points - 1;
+    const size_t columns = grid.close_columns ? column_points : column_points - 1;
+    const auto quad_at = [&](size_t row, size_t column) {
+        const size_t next_row = (row + 1) % row_points, next_column = (column + 1) % column_points;
+        return PatchQuad{grid.rows[row][column], grid.rows[row][next_column],
+                         grid.rows[next_row][next_column], grid.rows[next_row][column]};
+    };
+    std::vector<glm::dvec3> faces(bands * columns);
+    for (size_t row = 0; row < bands; ++row)
+        for (size_t column = 0; column < columns; ++column)
+            faces[row * columns + column] = face_direction(quad_at(row, column)) * (grid.flip ? -1.0 : 1.0);
+    /// The normal at the corner of a face towards (row + up, column + right).
+    const auto corner_normal = [&](size_t row, size_t column, bool right, bool up) {
+        const glm::dvec3 own = unit_or_up(faces[row * columns + column]);
+        glm::dvec3 sum(0);
+        for (const int dr : {0, up ? 1 : -1})
+            for (const int dc : {0, right ? 1 : -1}) {
+                auto r = static_cast<int64_t>(row) + dr, c = static_cast<int64_t>(column) + dc;
+                const auto wrap = [](int64_t& value, size_t size, bool closed) {
+                    if (closed) value = (value + static_cast<int64_t>(size)) % static_cast<int64_t>(size);
+                    return value >= 0 && value < static_cast<int64_t>(size);
+                };
+                if (!wrap(r, bands, grid.close_rows) || !wrap(c, columns, grid.close_columns)) continue;
+                const glm::dvec3& face = faces[static_cast<size_t>(r) * columns + static_cast<size_t>(c)];
+                if (glm::dot(face, own) > kSmoothCosine * glm::length(face)) sum += unit_or_up(face);
+            }
+        return unit_or_up(glm::length(sum) > 0 ? sum : own);
+    };
+    std::vector<std::vector<ShadedQuad>> out(bands);
+    for (size_t row = 0; row < bands; ++row)
+        for (size_t column = 0; column < columns; ++column)
+            out[row].push_back(
+                {quad_at(row, column),
+                 {corner_normal(row, column, false, false), corner_normal(row, column, true, false),
+                  corner_normal(row, column, true, true), corner_normal(row, column, false, true)}});
+    add(finish, out);
+}
+
+void PatchBuilder::rectangle(Finish finish, const glm::dvec3& origin, const glm::dvec3& u,
+                             const glm::dvec3& v) {
+    grid(finish, {{{origin, origin + u}, {origin + v, origin + u + v}}});
+}
+
+void PatchBuilder::sheet(Finish finish, const Plane& plane, std::span<const Outline> outlines) {
+    struct Edge {
+        glm::dvec2 low, high;
+        double u(double v) const { return low.x + (high.x - low.x) * (v - low.y) / (high.y - low.y); }
+    };
+    // A trapezoidal decomposition: bands between the heights of all corners, in each the edges that cross it
+    // in pairs.
+    std::vector<Edge> edges;
+    std::vector<double> heights;
+    for (const Outline& outline : outlines)
+        for (size_t i = 0; i < outline.size(); ++i) {
+            const glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+            heights.push_back(a.y);
+            if (a.y != b.y) edges.push_back(a.y < b.y ? Edge{a, b} : Edge{b, a});
+        }
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    const glm::dvec3 normal = glm::normalize(glm::cross(plane.u, plane.v));
+    std::vector<std::vector<ShadedQuad>> bands;
+    for (size_t i = 0; i + 1 < heights.size(); ++i) {
+        const double low = heights[i], high = heights[i + 1];
+        std::vector<const Edge*> crossing;
+        for (const Edge& edge : edges)
+            if (edge.low.y <= low && edge.high.y >= high) crossing.push_back(&edge);
+        std::sort(crossing.begin(), crossing.end(), [&](const Edge* a, const Edge* b) {
+            return a->u((low + high) / 2) < b->u((low + high) / 2);
+        });
+        auto& band = bands.emplace_back();
+        for (size_t k = 0; k + 1 < crossing.size(); k += 2) {
+            const Edge &left = *crossing[k], &right = *crossing[k + 1];
+            band.push_back({{plane.at({left.u(low), low}), plane.at({right.u(low), low}),
+                             plane.at({right.u(high), high}), plane.at({left.u(high), high})},
+                            {normal, normal, normal, normal}});
+        }
+    }
+    add(finish, bands);
+}
+
+void PatchBuilder::extrude(Finish finish, const Plane& plane, const Outline& outline, double depth, Air air,
+                           bool closed) {
+    double twice_area = 0;  // tells which way the outline goes round
+    for (size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+        twice_area += a.x * b.y - a.y * b.x;
+    }
+    const glm::dvec3 back = glm::normalize(glm::cross(plane.u, plane.v)) * -depth;
+    Grid surface;
+    surface.rows.resize(2);
+    for (const glm::dvec2& corner : outline) {
+        surface.rows[0].push_back(plane.at(corner));
+        surface.rows[1].push_back(plane.at(corner) + back);
+    }
+    surface.close_columns = closed;
+    // cross(along the outline, back) points into an outline that goes round counter-clockwise.
+    surface.flip = (twice_area > 0) != (air == Air::inside);
+    grid(finish, surface);
+}
+
+void PatchBuilder::box(Finish finish, const glm::dvec3& min, const glm::dvec3& max, unsigned faces, Air air) {
+    const glm::dvec3 size = max - min;
+    for (unsigned face = 0; face < 6; ++face) {
+        if (!(faces >> face & 1)) continue;
+        const auto axis = static_cast<int>(face / 2);
+        const bool high = face % 2 == 1;
+        glm::dvec3 origin = min, u(0), v(0);
+        if (high) origin[axis] = max[axis];
+        u[(axis + 1) % 3] = size[(axis + 1) % 3];
+        v[(axis + 2) % 3] = size[(axis + 2) % 3];
+        // cross(u, v) points along +axis.
+        if (high == (air == Air::outside))
+            rectangle(finish, origin, u, v);
+        else
+            rectangle(finish, origin, v, u);
+    }
+}
+
+void PatchBuilder::revolve(Finish finish, const glm::dvec3& foot, std::span<const glm::dvec2> profile,
+                           int segments) {
+    Grid surface;
+    for (const glm::dvec2& point : profile) {
+        auto& row = surface.rows.emplace_back();
+        for (int i = 0; i < segments; ++i) {
+            const double angle = 2 * M_PI * i / segments;
+            row.push_back(foot + glm::dvec3(point.x * std::cos(angle), point.x * std::sin(angle), point.y));
+        }
+    }
+    surface.close_columns = true;
+    grid(finish, surface);
+}
+
+void PatchBuilder::sweep(Finish finish, std::span<const glm::dvec3> path, const glm::dvec3& side,
+                         std::span<const glm::dvec2> section) {
+    Grid surface;
+    for (size_t i = 0; i < path.size(); ++i) {
+        const glm::dvec3 tangent = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
+        const glm::dvec3 up = glm::normalize(glm::cross(tangent, side));
+        auto& row = surface.rows.emplace_back();
+        for (const glm::dvec2& offset : section) row.push_back(path[i] + side * offset.x + up * offset.y);
+    }
+    // side x up = side x (tangent x side) = tangent: a section that turns left in (side, up) turns left about
+    // the tangent, and along it x along the path points outwards.
+    grid(finish, surface);
+}
+
+}  // namespace lucarne::io

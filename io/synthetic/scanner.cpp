@@ -1,0 +1,169 @@
+// A terrestrial laser scanner: a mirror sweeps vertical lines while the head turns once.
+//
+// Each beam has a width. A second ray inside it tells whether it straddles an edge in depth; there, half of
+// the beams report the mean range of their whole footprint: the mixed pixels that real phase scanners leave
+// behind edges. Beams are lost where little light comes back: on dark, far or grazing surfaces.
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+#include "io/synthetic/generator.h"
+
+namespace lucarne::io {
+namespace {
+
+using glm::dvec3;
+
+constexpr uint64_t kPieceRays = 8192;
+constexpr double kLowest = -62 * M_PI / 180,
+                 kHighest = M_PI / 2;     ///< elevations: the tripod hides what is below
+constexpr double kBeamHalfAngle = .0003;  ///< radians; FARO and Z+F scanners of 2015-2020 state .0002-.0004
+constexpr double kEdgeDepth = .02;        ///< metres between two ranges in a beam that make an edge of it
+constexpr int kFootprintRays = 6;
+constexpr double kMixedShare = .5;      ///< of the beams on an edge; the others report their centre
+constexpr double kReferenceRange = 15;  ///< metres: beyond it the signal falls with the square of the range
+constexpr double kLostBelow = .002, kKeptAbove = .02;  ///< signals between which a return may be lost
+constexpr double kAlwaysLost = .002;                   ///< share lost for no reason one can see
+constexpr uint64_t kPilotRays = 1 << 14;
+
+/// One sweep: lines of constant azimuth, in equal angular steps both ways.
+struct Sweep {
+    uint64_t lines = 1, beams = 1;
+    uint64_t rays() const { return lines * beams; }
+    static Sweep of(double rays) {
+        const double step = std::sqrt(2 * M_PI * (kHighest - kLowest) / std::max(1.0, rays));
+        return {static_cast<uint64_t>(std::max(1.0, std::round(2 * M_PI / step))),
+                static_cast<uint64_t>(std::max(1.0, std::round((kHighest - kLowest) / step)))};
+    }
+};
+
+class Scanner final : public PieceGenerator {
+ public:
+    Scanner(std::shared_ptr<const SceneGeometry> geometry, const RecordPacker& packer, const ScanSetup& setup)
+        : geometry_(std::move(geometry)), packer_(packer), setup_(setup) {
+        const double wanted = static_cast<double>(setup.points) / static_cast<double>(setup.stations.size());
+        for (size_t station = 0; station < setup.stations.size(); ++station) {
+            // A coarse sweep first, to learn which share of the beams comes back.
+            const double share =
+                static_cast<double>(pilot(station)) / static_cast<double>(kPilotSweep.rays());
+            sweeps_.push_back(Sweep::of(share > 0 ? wanted / share : 0));
+            pieces_before_.push_back(pieces_);
+            pieces_ += (sweeps_.back().rays() + kPieceRays - 1) / kPieceRays;
+        }
+    }
+    uint64_t pieces() const override { return pieces_; }
+
+    void generate(uint64_t piece, std::vector<std::byte>& records) const override {
+        const auto after = std::upper_bound(pieces_before_.begin(), pieces_before_.end(), piece);
+        const auto station = static_cast<size_t>(after - pieces_before_.begin()) - 1;
+        const Sweep& sweep = sweeps_[station];
+        const uint64_t first = (piece - pieces_before_[station]) * kPieceRays;
+        const uint64_t last = std::min(sweep.rays(), first + kPieceRays);
+        for (uint64_t ray = first; ray < last; ++ray)
+            if (const auto point = shoot(station, sweep, ray)) packer_.append(*point, records);
+    }
+
+ private:
+    inline static const Sweep kPilotSweep = Sweep::of(static_cast<double>(kPilotRays));
+
+    uint64_t pilot(size_t station) const {
+        std::atomic<uint64_t> returned{0};
+        parallel_ranges(kPilotSweep.rays(), 1024, [&](size_t first, size_t last) {
+            uint64_t here = 0;
+            for (size_t ray = first; ray < last; ++ray)
+                here += shoot(station, kPilotSweep, ray).has_value() ? 1 : 0;
+            returned += here;
+        });
+        return returned;
+    }
+
+    std::optional<RecordPacker::Point> shoot(size_t station, const Sweep& sweep, uint64_t ray) const {
+        Random random(mix64(setup_.seed, station), ray);
+        const dvec3& origin = setup_.stations[station];
+        const auto step = [&](uint64_t index,
+                              uint64_t count) {  // the encoders' jitter is a quarter of a step
+            return (static_cast<double>(index) + .5 + .25 * (2 * random.uniform() - 1)) /
+                   static_cast<double>(count);
+        };
+        const double azimuth = 2 * M_PI * step(ray / sweep.beams, sweep.lines);
+        const double elevation = kLowest + (kHighest - kLowest) * step(ray % sweep.beams, sweep.beams);
+        const dvec3 direction(std::cos(elevation) * std::cos(azimuth),
+                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+        const auto hit = geometry_->cast(origin, direction);
+        if (!hit) return std::nullopt;
+
+        const double facing = std::abs(dot(hit->normal, direction));
+        const double signal =
+            (hit->albedo.x + hit->albedo.y + hit->albedo.z) / 3 * facing *
+            std::min(1.0, kReferenceRange * kReferenceRange / (hit->distance * hit->distance));
+        const double kept = std::clamp((signal - kLostBelow) / (kKeptAbove - kLostBelow), 0.0, 1.0);
+        if (random.uniform() >= kept * (1 - kAlwaysLost)) return std::nullopt;
+
+        RecordPacker::Point point{{}, hit->normal, hit->albedo, signal, static_cast<uint16_t>(station + 1)};
+        if (dot(hit->normal, direction) > 0) point.normal = -point.normal;
+        double range = hit->distance;
+        const dvec3 side = glm::normalize(std::abs(direction.z) < .9 ? cross(direction, dvec3(0, 0, 1))
+                                                                     : cross(direction, dvec3(1, 0, 0)));
+        const dvec3 up = cross(side, direction);
+        if (straddles_edge(origin, direction, side, up, *hit, random) && random.uniform() < kMixedShare)
+            mix_footprint(origin, direction, side, up, random, range, point.albedo);
+        // Box and Muller 1958; 1 - u keeps the logarithm finite.
+        range += setup_.noise * std::sqrt(-2 * std::log(1 - random.uniform())) *
+                 std::cos(2 * M_PI * random.uniform());
+        point.position = origin + direction * range;
+        return point;
+    }
+
+    /// A direction inside the beam, uniform over its disc.
+    static dvec3 in_beam(const dvec3& direction, const dvec3& side, const dvec3& up, Random& random) {
+        const double radius = kBeamHalfAngle * std::sqrt(random.uniform()),
+                     angle = 2 * M_PI * random.uniform();
+        return glm::normalize(direction + side * (radius * std::cos(angle)) +
+                              up * (radius * std::sin(angle)));
+    }
+
+    bool straddles_edge(const dvec3& origin, const dvec3& direction, const dvec3& side, const dvec3& up,
+                        const SurfaceHit& hit, Random& random) const {
+        const dvec3 probe = in_beam(direction, side, up, random);
+        const auto other = geometry_->cast(origin, probe);
+        if (!other) return false;  // nothing comes back from beyond: the centre's range stands
+        // A slanted surface is no edge: compare with the range at which the probe meets the hit's own plane.
+        const double slope = dot(hit.normal, probe);
+        const double expected =
+            std::abs(slope) > 1e-3 ? dot(hit.position - origin, hit.normal) / slope : hit.distance;
+        return std::abs(other->distance - expected) > kEdgeDepth &&
+               std::abs(other->distance - hit.distance) > kEdgeDepth;
+    }
+
+    void mix_footprint(const dvec3& origin, const dvec3& direction, const dvec3& side, const dvec3& up,
+                       Random& random, double& range, dvec3& albedo) const {
+        double count = 1;
+        for (int i = 0; i < kFootprintRays; ++i)
+            if (const auto hit = geometry_->cast(origin, in_beam(direction, side, up, random))) {
+                range += hit->distance;
+                albedo += hit->albedo;
+                count += 1;
+            }
+        range /= count;
+        albedo /= count;
+    }
+
+    std::shared_ptr<const SceneGeometry> geometry_;
+    RecordPacker packer_;
+    ScanSetup setup_;
+    std::vector<Sweep> sweeps_;
+    std::vector<uint64_t> pieces_before_;
+    uint64_t pieces_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<PieceGenerator> make_scanner(std::shared_ptr<const SceneGeometry> geometry,
+                                             const RecordPacker& packer, const ScanSetup& setup) {
+    return std::make_unique<Scanner>(std::move(geometry), packer, setup);
+}
+
+}  // namespace lucarne::io

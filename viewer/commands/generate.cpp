@@ -1,0 +1,91 @@
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "io/core/progress.h"
+#include "io/formats/scan.h"
+#include "io/synthetic/synthetic.h"
+#include "viewer/commands/commands.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr size_t kBatchPoints = 1 << 17;
+
+struct GenerateOptions {
+    io::SyntheticOptions scan;
+    std::string points = "1M", output;
+    bool overwrite = false;
+};
+
+Result<void> generate(GenerateOptions options) {
+    LUCARNE_ASSIGN(options.scan.points, parse_count("--points", options.points));
+    LUCARNE_ASSIGN(const auto source, io::synthetic_source(options.scan));
+    const io::WriteOptions write{options.overwrite, options.scan.even ? options.scan.points : 0};
+    LUCARNE_ASSIGN(const auto writer,
+                   io::create_scan(options.output, source->schema(), source->info(), write));
+    LUCARNE_ASSIGN(const auto reader, source->open());
+    uint64_t points = 0;
+    {
+        Progress progress("generating " + options.scan.scene, options.scan.points, "points");
+        io::PointBatch batch;
+        while (true) {
+            LUCARNE_ASSIGN(const size_t count, reader->read(batch, kBatchPoints));
+            if (count == 0) break;
+            LUCARNE_TRY(writer->write(batch.bytes));
+            points += count;
+            progress.add(count);
+        }
+    }
+    LUCARNE_TRY(writer->finish());
+    const size_t stations = source->info().stations.size();
+    if (options.scan.even)
+        log::info("{}: {} points of {}, sampled evenly", options.output, points, options.scan.scene);
+    else
+        log::info("{}: {} points of {} from {} station{}", options.output, points, options.scan.scene,
+                  stations, stations == 1 ? "" : "s");
+    return {};
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<GenerateOptions>();
+    auto* command = app.add_subcommand("generate", "Make a virtual scan with known truth");
+    std::string scenes = "Scenes:";
+    for (const auto& scene : io::synthetic_scenes())
+        scenes += fmt::format("\n  {:<11}{}", scene.name, scene.summary);
+    command->footer(scenes);
+    command->add_option("scene", options->scan.scene, "Which scene, see below")
+        ->required()
+        ->type_name("SCENE");
+    command->add_option("-o,--output", options->output, "The scan to write: .las or .ply")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--points", options->points, "How many points: about, or exactly with --even")
+        ->capture_default_str()
+        ->type_name("N[k|M|G]");
+    auto* stations = command
+                         ->add_option("--stations", options->scan.stations,
+                                      "How many scanner stations (default: the scene's own)")
+                         ->type_name("N");
+    command
+        ->add_flag("--even", options->scan.even,
+                   "Sample all surfaces evenly instead of scanning, without noise")
+        ->excludes(stations);
+    command->add_option("--noise", options->scan.noise, "Standard deviation of the range, metres")
+        ->capture_default_str()
+        ->type_name("M");
+    command->add_flag("--normals", options->scan.normals, "Keep the true normals");
+    command->add_option("--seed", options->scan.seed, "The same seed gives the same file")
+        ->capture_default_str()
+        ->type_name("S");
+    command->add_flag("--overwrite", options->overwrite, "Replace the output if it exists");
+    command->callback([options, &chosen] { chosen = [options] { return generate(*options); }; });
+}
+
+}  // namespace lucarne::viewer
