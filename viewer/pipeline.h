@@ -16,10 +16,10 @@ namespace lucarne::viewer {
 
 /// Caps that hold whatever the cloud's size.
 struct PipelineOptions {
-    uint64_t host_memory = uint64_t{1} << 30;  ///< node data in memory, bytes
-    uint32_t pool_surfels =
-        8'000'000;  ///< surfels on the device, 16 bytes each; at most what one buffer holds
-    uint64_t device_memory = uint64_t{2} << 30;
+    /// Surfels on the device, 16 bytes each; fewer where one buffer cannot hold them. Nodes on their way to
+    /// it take memory of the host: no more of them than fit the pool.
+    uint32_t pool_surfels = 8'000'000;
+    uint64_t device_memory = uint64_t{2} << 30;  ///< bytes of all buffers
     unsigned load_threads = 2;
 };
 
@@ -65,8 +65,8 @@ class Pipeline {
     Result<void> set_engine(std::string_view name);
     void set_settings(const gi::EngineSettings& settings);
     void set_budgets(const CutBudgets& budgets);
-    /// Lights, materials, exposure. Moving a light is cheap; other materials send every surfel to the device
-    /// again.
+    /// Lights, materials, exposure. Moving a light is cheap; assigning materials to other points sends every
+    /// surfel to the device again.
     void set_scene(gi::Scene scene);
 
     const gi::EngineInfo& engine() const;

@@ -28,6 +28,7 @@ struct Preset {
 };
 
 inline constexpr std::string_view kDefaultPreset = "interactive";
+inline constexpr std::string_view kDefaultEngine = "vpl";
 
 /// All presets, cheapest first.
 std::span<const Preset> presets();

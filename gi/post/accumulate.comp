@@ -1,0 +1,16 @@
+// The running mean of pictures.
+layout(local_size_x = 256) in;
+layout(std430, binding = 0) readonly buffer Sample {
+    vec4 taken[];
+};
+layout(std430, binding = 1) buffer Mean {
+    vec4 mean[];
+};
+uniform uint pixels;
+uniform uint count;  // with this one
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= pixels) return;
+    mean[i] = count <= 1u ? taken[i] : mean[i] + (taken[i] - mean[i]) / float(count);
+}
