@@ -14,7 +14,8 @@
 namespace lucarne::gi {
 
 /// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB (.5
-/// linear where the scan has none), normals from `normal` or `normal_oct`, material by the scene's assignments.
+/// linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The material is the
+/// last one in the scene whose conditions all hold ([0], the default, has none); those beyond 256 are not used.
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
                                        const octree::NodeData& data, const Scene& scene);
 
@@ -24,7 +25,8 @@ struct CutEntry {
     uint32_t count = 0;  ///< prefix
 };
 
-/// A cut on the device, made by SurfelPool::make_cut. Bindings are fixed for every shader: see bind().
+/// A cut on the device, made by SurfelPool::make_cut; valid until a node of it is evicted or the pool moves.
+/// Bindings are fixed for every shader: see bind().
 class DeviceCut {
  public:
     uint32_t surfels() const { return surfels_; }  ///< points drawn
@@ -48,7 +50,7 @@ class SurfelPool {
     /// `capacity` surfels (rounded to pages), 16 bytes each, all taken at once so that the cap is hard.
     static Result<SurfelPool> create(Device& device, uint32_t capacity);
 
-    /// False when there is no room: the caller evicts and tries again.
+    /// False when there is no room: the caller evicts and tries again. A node that is resident is replaced.
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
     bool holds(uint32_t node) const;
@@ -65,13 +67,15 @@ class SurfelPool {
     std::vector<Surfel> download(const DeviceCut& cut) const;
 
  private:
-    Buffer buffer_;
     struct Span {
         uint32_t first, count;
     };
-    std::unordered_map<uint32_t, Span> resident_;
-    std::vector<Span> free_;  ///< sorted by first, merged
-    uint32_t capacity_ = 0;
+    void release(Span pages);
+
+    Buffer buffer_;
+    std::unordered_map<uint32_t, Span> resident_;  ///< in surfels
+    std::vector<Span> free_;                       ///< in pages; sorted by first, merged
+    uint32_t capacity_ = 0, used_pages_ = 0;
 };
 
 }  // namespace lucarne::gi

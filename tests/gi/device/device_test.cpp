@@ -7,19 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "gi/device/shader_source.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {
 
-class DeviceTest : public ::testing::Test {
- protected:
-    void SetUp() override {
-        auto made = Device::headless();
-        if (!made) GTEST_SKIP() << made.error().line();
-        device = std::move(*made);
-    }
-    std::unique_ptr<Device> device;
-};
+using DeviceTest = OnDevice;
 
 TEST_F(DeviceTest, HeadlessContextOffersWhatTheShadersNeed) {
     EXPECT_FALSE(device->info().renderer.empty());
@@ -79,6 +72,15 @@ TEST_F(DeviceTest, UnknownShaderIsAnError) {
     const auto program = device->program("gi/none.comp");
     ASSERT_FALSE(program);
     EXPECT_EQ(program.error().what, "shader gi/none.comp");
+}
+
+TEST_F(DeviceTest, ShaderThatDoesNotCompileIsAnErrorThatNamesItsFile) {
+    const auto program = device->program("gi/gbuffer/resolve.comp", {{"uint", "unsigned"}});
+    ASSERT_FALSE(program);
+    EXPECT_EQ(program.error().what, "shader gi/gbuffer/resolve.comp");
+    EXPECT_NE(program.error().why.find("gi/"), std::string::npos) << program.error().why;
+    EXPECT_TRUE(device->program("gi/gbuffer/resolve.comp"))
+        << "the same file without the define is another program";
 }
 
 TEST_F(DeviceTest, PassesAreTimedInOrder) {

@@ -1,0 +1,97 @@
+// Surfels as discs in a view: projection, and where a pixel's ray meets them. View space: x right, y down, z along
+// the view's forward axis (the depth), metres; the ray through a pixel is (x, y, 1).
+#include "gi/shared/cut.glsl"
+
+uniform vec4 view_right;    // unit; w: tangent of half the field
+uniform vec4 view_down;     // likewise
+uniform vec4 view_forward;  // unit; w: near plane, m
+uniform vec4 view_origin;
+uniform uint view_width;
+uniform uint view_height;
+
+struct Disc {
+    vec3 centre;
+    vec3 normal;
+    float radius;
+    float extent;  // half the depth it spans, m
+};
+
+// Of discs that overlap on one surface the one whose centre is nearest shall win, or their planes' noise would decide:
+// the ordering depth is the plane's, pushed back by this share of the radius times (distance / radius)^2. Less than
+// a radius, so that nothing shows through from a few radii behind.
+const float kPush = 0.5;
+const uint kNoKey = 0xffffffffu;
+
+vec2 pixels_per_tangent() { return vec2(view_width, view_height) / (2.0 * vec2(view_right.w, view_down.w)); }
+vec2 pixel_tangent(vec2 pixel) {
+    return (2.0 * (pixel + 0.5) / vec2(view_width, view_height) - 1.0) * vec2(view_right.w, view_down.w);
+}
+vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz), dot(v, view_forward.xyz)); }
+
+// False where no part of the disc is before the near plane.
+bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
+    disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
+    disc.radius = cut_surfel_radius(item, surfel);
+    if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
+    float distance2 = dot(disc.centre, disc.centre);
+    vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
+    disc.normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : toward;
+    disc.extent = disc.radius * sqrt(max(1.0 - disc.normal.z * disc.normal.z, 0.0));
+    return disc.centre.z + disc.extent > view_forward.w;
+}
+
+// The range of tangents x/z (axis 0) or y/z (axis 1) that a disc before the eye spans: the two planes through the
+// eye that touch it. With a = (1, 0, -u): (a.c)^2 = r^2 (|a|^2 - (a.n)^2), a quadratic in u.
+vec2 tangent_range(float centre, float normal, Disc disc) {
+    float r2 = disc.radius * disc.radius;
+    float a = disc.centre.z * disc.centre.z - disc.extent * disc.extent;
+    float b = centre * disc.centre.z + r2 * normal * disc.normal.z;
+    float c = centre * centre - r2 * (1.0 - normal * normal);
+    float root = sqrt(max(b * b - a * c, 0.0));
+    return vec2(b - root, b + root) / a;
+}
+
+// The pixels [box.xy, box.zw] whose centres the disc may cover, clipped to the picture; `home` is the pixel of its
+// centre, which it always takes. False where there are none.
+bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
+    vec2 scale = pixels_per_tangent();
+    vec2 middle = 0.5 * vec2(view_width, view_height);
+    ivec2 last = ivec2(view_width, view_height) - 1;
+    home = ivec2(-1);
+    if (disc.centre.z > view_forward.w)
+        home = ivec2(floor(clamp(disc.centre.xy / disc.centre.z * scale + middle, vec2(-1.0), vec2(last + 1))));
+    box = ivec4(ivec2(0), last);
+    if (disc.centre.z > 1.001 * disc.extent) {  // else it reaches behind the eye
+        vec2 x = tangent_range(disc.centre.x, disc.normal.x, disc);
+        vec2 y = tangent_range(disc.centre.y, disc.normal.y, disc);
+        vec2 low = vec2(x.x, y.x) * scale + middle, high = vec2(x.y, y.y) * scale + middle;
+        box.xy = max(min(ivec2(ceil(clamp(low - 0.5, vec2(-1.0), vec2(last + 1)))), home), ivec2(0));
+        box.zw = min(max(ivec2(floor(clamp(high - 0.5, vec2(-1.0), vec2(last + 1)))), home), last);
+    }
+    return box.x <= box.z && box.y <= box.w;
+}
+
+// Depth along the forward axis where the ray meets the disc's plane, kept within the depths that the disc spans (a
+// plane seen edge-on would put its pixel anywhere).
+float disc_depth(Disc disc, vec2 ray) {
+    float slope = dot(disc.normal, vec3(ray, 1.0));
+    if (abs(slope) < 1e-12) return disc.centre.z;
+    float z = dot(disc.normal, disc.centre) / slope;
+    return clamp(z, disc.centre.z - disc.extent, disc.centre.z + disc.extent);
+}
+
+// The order of the disc along the ray, or kNoKey where it is missed; bits of a positive float, so that integers
+// compare like depths. Every pass must find the same bits: precise.
+uint disc_key(Disc disc, vec2 ray, bool at_home) {
+    precise float slope = dot(disc.normal, vec3(ray, 1.0));
+    precise float z = dot(disc.normal, disc.centre) / (abs(slope) < 1e-12 ? 1e-12 : slope);
+    precise vec3 offset = vec3(ray * z, z) - disc.centre;
+    precise float d2 = dot(offset, offset);
+    float r2 = disc.radius * disc.radius;
+    bool inside = d2 <= r2;
+    if (!inside && !at_home) return kNoKey;
+    z = clamp(z, disc.centre.z - disc.extent, disc.centre.z + disc.extent);
+    if (!(z > view_forward.w)) return kNoKey;
+    precise float key = z + kPush * disc.radius * (inside && r2 > 0.0 ? d2 / r2 : 1.0);
+    return floatBitsToUint(key);
+}

@@ -1,0 +1,81 @@
+#include "gi/gbuffer/gbuffer.h"
+
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t kLargeQueue = 65535;  // discs; the least that OpenGL promises of groups in x
+constexpr uint32_t kLargeGroups = 4;     // that share the rows of one large disc
+constexpr uint32_t kLargeHeader = 4;     // words before the queue
+
+void set_view(const Program& program, const CameraView& view) {
+    const auto axis = [&](std::string_view name, const glm::vec3& v, float w) {
+        const std::array<float, 4> values = {v.x, v.y, v.z, w};
+        program.set_block(name, values);
+    };
+    const glm::vec3 right(view.right.x, view.right.y, view.right.z), up(view.up.x, view.up.y, view.up.z);
+    const float tan_x = glm::length(right), tan_y = glm::length(up);
+    axis("view_right", right / tan_x, tan_x);
+    axis("view_down", up / -tan_y, tan_y);
+    axis("view_forward", {view.forward.x, view.forward.y, view.forward.z}, view.origin.w);
+    axis("view_origin", {view.origin.x, view.origin.y, view.origin.z}, 0.0f);
+    program.set("view_width", view.width);
+    program.set("view_height", view.height);
+}
+
+}  // namespace
+
+Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target) {
+    const size_t pixels = size_t{view.width} * view.height;
+    target.width = view.width;
+    target.height = view.height;
+    LUCARNE_TRY(device.reserve(target.texels, pixels * sizeof(GBufferTexel), "G-buffer"));
+    LUCARNE_TRY(device.reserve(target.ids, pixels * sizeof(uint32_t), "G-buffer"));
+    LUCARNE_TRY(device.reserve(target.keys, pixels * sizeof(uint32_t), "G-buffer"));
+    LUCARNE_TRY(device.reserve(target.large, (kLargeHeader + kLargeQueue) * sizeof(uint32_t), "G-buffer"));
+    LUCARNE_ASSIGN(const Program* splat, device.program("gi/gbuffer/splat.comp"));
+    LUCARNE_ASSIGN(const Program* splat_large, device.program("gi/gbuffer/splat_large.comp"));
+    LUCARNE_ASSIGN(const Program* resolve, device.program("gi/gbuffer/resolve.comp"));
+    target.keys.clear(UINT32_MAX);
+    target.ids.clear(kNoSurfel);
+    cut.bind();
+    target.keys.bind(3);
+    target.ids.bind(4);
+    target.large.bind(5);
+    target.texels.bind(6);
+    for (const Program* program : {splat, splat_large, resolve}) set_view(*program, view);
+    for (const uint32_t id_pass : {0u, 1u}) {
+        target.large.upload_all(std::vector<uint32_t>{0, kLargeGroups, 1, 0});
+        splat->set("id_pass", id_pass);
+        splat_large->set("id_pass", id_pass);
+        splat->dispatch(cut.blocks() * kBlockSurfels);
+        splat_large->dispatch_indirect(target.large);
+    }
+    resolve->dispatch(static_cast<uint32_t>(pixels));
+    return {};
+}
+
+CameraView spot_view(const SpotLight& spot, uint32_t resolution) {
+    const glm::vec3 forward(spot.direction.x, spot.direction.y, spot.direction.z);
+    // Any frame about the axis will do; the helper axis is the one least along it.
+    const glm::vec3 helper = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, helper));
+    const glm::vec3 up = glm::cross(right, forward);
+    // A pinhole cannot see a half space: fields beyond 170 degrees are cut.
+    const float cosine = std::max(spot.position.w, std::cos(1.4835f));
+    const float tangent = std::sqrt(std::max(1 - cosine * cosine, 1e-6f)) / cosine;
+    CameraView view{};
+    constexpr float kNear = 1e-3f;  // m
+    view.origin = {spot.position.x, spot.position.y, spot.position.z, kNear};
+    view.forward = {forward.x, forward.y, forward.z, 0.0f};
+    view.right = {right.x * tangent, right.y * tangent, right.z * tangent, 0.0f};
+    view.up = {up.x * tangent, up.y * tangent, up.z * tangent, 0.0f};
+    view.width = view.height = resolution;
+    return view;
+}
+
+}  // namespace lucarne::gi

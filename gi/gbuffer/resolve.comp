@@ -1,0 +1,27 @@
+// One invocation a pixel: the texel of the surfel that took it.
+layout(local_size_x = 64) in;
+#include "gi/gbuffer/disc.glsl"
+#include "gi/shared/gbuffer.h"
+
+layout(std430, binding = 4) readonly buffer Ids { uint ids[]; };
+layout(std430, binding = 6) writeonly buffer Texels { GBufferTexel texels[]; };
+
+void main() {
+    uint at = gl_GlobalInvocationID.x;
+    if (at >= view_width * view_height) return;
+    uint id = ids[at];
+    uint item;
+    PackedSurfel surfel;
+    Disc disc;
+    GBufferTexel texel = GBufferTexel(0.0, 0u, 0u, 0u);
+    if (id != kNoSurfel && cut_surfel(id, item, surfel) && view_disc(item, surfel, disc)) {
+        vec3 ray = vec3(pixel_tangent(vec2(at % view_width, at / view_width)), 1.0);
+        vec3 normal = dot(disc.normal, ray) > 0.0 ? -disc.normal : disc.normal;
+        vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;
+        texel.depth = disc_depth(disc, ray.xy);
+        texel.normal = encode_octahedral(world);
+        texel.albedo = surfel.d;
+        texel.material = surfel_material(surfel.b) | packHalf2x16(vec2(0.0, disc.radius));
+    }
+    texels[at] = texel;
+}

@@ -1,0 +1,180 @@
+#include "gi/scene/surfel_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gi/shared/surfel_code.h"
+#include "octree/footprint.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t pages_for(size_t surfels) {
+    return static_cast<uint32_t>((surfels + SurfelPool::kPageSurfels - 1) / SurfelPool::kPageSurfels);
+}
+
+/// m^2; a hostile cache's floor must not make discs that cover the world: no node holds more surface than a
+/// few of its cube's faces.
+float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per_unit, float size) {
+    const float share = info.count ? static_cast<float>(count) / static_cast<float>(info.count) : 1.0f;
+    const float floors[4] = {info.area_floor[0], info.area_floor[1], info.area_floor[2], info.area_floor[3]};
+    const double floor = octree::floor_at_prefix(floors, share) * metres_per_unit * metres_per_unit;
+    const double most = 4.0 * size * size;
+    return floor > 0 ? static_cast<float>(std::min(floor, most)) : 0.0f;  // NaN: 0
+}
+
+/// The same walk as gi/shared/cut.glsl's.
+float local_floor(const std::vector<CutItem>& items, const CutItem* item, const PackedSurfel& surfel) {
+    for (uint32_t depth = 0; depth < kOctantLevels; ++depth) {
+        const int child = item->child[surfel_octant(surfel.a, surfel.b, depth)];
+        if (child < 0) break;
+        item = &items[static_cast<size_t>(child)];
+    }
+    return item->area_floor;
+}
+
+Surfel unpack(const std::vector<CutItem>& items, const CutItem& item, const PackedSurfel& packed) {
+    const float own = surfel_own_area(packed.b, item.size);
+    const float floor = local_floor(items, &item, packed);
+    Surfel surfel;
+    surfel.position = item.origin + item.size * surfel_fractions(packed.a, packed.b);
+    surfel.normal = packed.d & kSurfelHasNormal ? decode_octahedral(packed.c) : glm::vec3(0.0f);
+    surfel.albedo = decode_albedo(packed.d);
+    surfel.radius = octree::surfel_radius(own, floor);
+    surfel.area = octree::surfel_area(own, floor);
+    surfel.material = surfel_material(packed.b);
+    return surfel;
+}
+
+}  // namespace
+
+void DeviceCut::bind() const {
+    pool_->bind(0);
+    items_.bind(1);
+    blocks_buffer_.bind(2);
+}
+
+Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
+    const uint64_t most = uint64_t{UINT32_MAX} / kPageSurfels;
+    const auto pages = static_cast<uint32_t>(std::clamp<uint64_t>(pages_for(capacity), 1, most));
+    SurfelPool pool;
+    LUCARNE_ASSIGN(pool.buffer_,
+                   device.buffer(size_t{pages} * kPageSurfels * sizeof(PackedSurfel), "surfel pool"));
+    pool.capacity_ = pages * kPageSurfels;
+    pool.free_ = {{0, pages}};
+    return pool;
+}
+
+Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfels) {
+    evict(node);
+    const uint32_t pages = pages_for(surfels.size());
+    if (pages == 0) {
+        resident_[node] = {0, 0};
+        return true;
+    }
+    const auto fits =
+        std::find_if(free_.begin(), free_.end(), [&](const Span& s) { return s.count >= pages; });
+    if (fits == free_.end()) return false;
+    const uint32_t first = fits->first * kPageSurfels;
+    fits->first += pages;
+    fits->count -= pages;
+    if (fits->count == 0) free_.erase(fits);
+    used_pages_ += pages;
+    resident_[node] = {first, static_cast<uint32_t>(surfels.size())};
+    buffer_.upload(size_t{first} * sizeof(PackedSurfel), std::as_bytes(surfels));
+    return true;
+}
+
+void SurfelPool::evict(uint32_t node) {
+    const auto found = resident_.find(node);
+    if (found == resident_.end()) return;
+    const Span surfels = found->second;
+    resident_.erase(found);
+    if (surfels.count) release({surfels.first / kPageSurfels, pages_for(surfels.count)});
+}
+
+void SurfelPool::release(Span pages) {
+    used_pages_ -= pages.count;
+    const auto after = std::lower_bound(free_.begin(), free_.end(), pages,
+                                        [](const Span& a, const Span& b) { return a.first < b.first; });
+    auto here = free_.insert(after, pages);
+    if (const auto next = here + 1; next != free_.end() && here->first + here->count == next->first) {
+        here->count += next->count;
+        free_.erase(next);
+    }
+    if (here == free_.begin()) return;
+    if (const auto before = here - 1; before->first + before->count == here->first) {
+        before->count += here->count;
+        free_.erase(here);
+    }
+}
+
+bool SurfelPool::holds(uint32_t node) const {
+    return resident_.contains(node);
+}
+uint32_t SurfelPool::used() const {
+    return used_pages_ * kPageSurfels;
+}
+uint32_t SurfelPool::capacity() const {
+    return capacity_;
+}
+
+Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& source,
+                                  std::span<const CutEntry> entries, const glm::dvec3& local_origin,
+                                  DeviceCut& cut) const {
+    const auto nodes = source.nodes();
+    const double unit = source.header().metres_per_unit;
+    std::vector<CutEntry> sorted(entries.begin(), entries.end());
+    std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
+    std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
+    std::vector<CutItem> items;
+    std::vector<glm::uvec2> blocks;
+    uint64_t surfels = 0;
+    for (const CutEntry& entry : sorted) {
+        const auto resident = resident_.find(entry.node);
+        if (entry.node >= nodes.size() || resident == resident_.end() || item_of.contains(entry.node))
+            continue;
+        const octree::NodeInfo& info = nodes[entry.node];
+        const auto parent = item_of.find(info.parent);
+        if (info.parent != octree::kNoNode && parent == item_of.end()) continue;
+        const auto index = static_cast<uint32_t>(items.size());
+        if (parent != item_of.end()) items[parent->second].child[info.key.octant()] = static_cast<int>(index);
+        item_of.emplace(entry.node, index);
+        const octree::Cube cube = source.header().root.of(info.key);
+        CutItem item{};
+        item.origin = glm::vec3((cube.min - local_origin) * unit);
+        item.size = static_cast<float>(cube.size * unit);
+        item.first = resident->second.first;
+        item.count = std::min(entry.count, resident->second.count);
+        item.area_floor = sane_floor(info, item.count, unit, item.size);
+        item.first_block = static_cast<uint32_t>(blocks.size());
+        std::fill(std::begin(item.child), std::end(item.child), -1);
+        for (uint32_t at = 0; at < item.count; at += kBlockSurfels) blocks.emplace_back(index, at);
+        surfels += item.count;
+        items.push_back(item);
+    }
+    LUCARNE_TRY(device.reserve(cut.items_, items.size() * sizeof(CutItem), "cut"));
+    LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(glm::uvec2), "cut"));
+    cut.items_.upload_all(items);
+    cut.blocks_buffer_.upload_all(blocks);
+    cut.pool_ = &buffer_;
+    cut.host_items_ = std::move(items);
+    cut.surfels_ = static_cast<uint32_t>(surfels);  // at most the pool's capacity
+    cut.blocks_ = static_cast<uint32_t>(blocks.size());
+    return {};
+}
+
+std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
+    std::vector<Surfel> surfels;
+    surfels.reserve(cut.surfels());
+    std::vector<PackedSurfel> packed;
+    for (const CutItem& item : cut.host_items_) {
+        packed.resize(item.count);
+        buffer_.download(size_t{item.first} * sizeof(PackedSurfel),
+                         std::as_writable_bytes(std::span(packed)));
+        for (const PackedSurfel& one : packed) surfels.push_back(unpack(cut.host_items_, item, one));
+    }
+    return surfels;
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,146 @@
+// A node's records as surfels for the device.
+#include <algorithm>
+#include <cmath>
+
+#include <glm/vector_relational.hpp>
+
+#include "gi/scene/surfel_pool.h"
+#include "gi/shared/surfel_code.h"
+#include "octree/attributes.h"
+
+namespace lucarne::gi {
+namespace {
+
+using io::Attribute;
+
+glm::dvec3 vector_at(const Attribute& attribute, const std::byte* record) {
+    const std::byte* at = record + attribute.offset;
+    const size_t step = io::scalar_bytes(attribute.type);
+    return {io::scalar_at(attribute.type, at), io::scalar_at(attribute.type, at + step),
+            io::scalar_at(attribute.type, at + 2 * step)};
+}
+
+/// Reads one layout of records; attributes of an unexpected shape count as absent.
+class Packer {
+ public:
+    Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene)
+        : header_(header), scene_(scene), cube_(header.root.of(node.key)) {
+        color_ = find(io::names::color, 3);
+        normal_ = find(io::names::normal, 3);
+        normal_oct_ = find(io::names::normal_oct, 3);
+        area_ = find(io::names::area, 1);
+        classification_ = find(io::names::classification, 1);
+        scan_ = find(io::names::scan, 1);
+    }
+
+    PackedSurfel pack(const std::byte* record) const {
+        const glm::dvec3 position = io::position_of(header_.schema, record);
+        const uint32_t scan = scan_ ? static_cast<uint32_t>(scalar(scan_, record)) : 0;
+        const glm::uvec3 at(fraction(position.x - cube_.min.x), fraction(position.y - cube_.min.y),
+                            fraction(position.z - cube_.min.z));
+        PackedSurfel surfel;
+        surfel.a = at.x | at.y << 16;
+        surfel.b = at.z | area(record) << 16 | material(position, record, scan) << 24;
+        surfel.d = albedo(record, scan);
+        const glm::vec3 n = normal(record);
+        const bool has_normal = n != glm::vec3(0.0f);
+        surfel.c = has_normal ? encode_octahedral(n) : 0u;
+        if (has_normal) surfel.d |= kSurfelHasNormal;
+        return surfel;
+    }
+
+ private:
+    const Attribute* find(std::string_view name, uint32_t components) const {
+        const Attribute* found = header_.schema.find(name);
+        return found && found->components == components ? found : nullptr;
+    }
+    static double scalar(const Attribute* attribute, const std::byte* record) {
+        return io::scalar_at(attribute->type, record + attribute->offset);
+    }
+
+    uint32_t fraction(double offset) const {
+        const double steps = std::floor(offset / cube_.size * static_cast<double>(kFractionSteps));
+        return steps > 0 ? static_cast<uint32_t>(std::min(steps, 65535.0)) : 0u;
+    }
+
+    /// Eighths of an octave below the node's face: 2^(-1/8) is 9 %.
+    uint32_t area(const std::byte* record) const {
+        if (!area_ || area_->type != io::ScalarType::u16) return kUnknownArea;
+        const double own =
+            octree::decode_area(static_cast<uint16_t>(scalar(area_, record)), header_.root.size);
+        const double octaves = std::log2(cube_.size * cube_.size / own);
+        if (!(own > 0) || !std::isfinite(octaves)) return kUnknownArea;
+        return static_cast<uint32_t>(std::clamp(std::lround(octaves * 8), 0l, long{kUnknownArea} - 1));
+    }
+
+    uint32_t material(const glm::dvec3& position, const std::byte* record, uint32_t scan) const {
+        for (size_t i = std::min<size_t>(scene_.materials.size(), 256); i-- > 1;) {
+            const SceneMaterial& m = scene_.materials[i];
+            if (m.classification && !(classification_ && scalar(classification_, record) ==
+                                                             static_cast<double>(*m.classification)))
+                continue;
+            if (m.scan && static_cast<int64_t>(scan) != *m.scan) continue;
+            if (m.box && !(glm::all(glm::greaterThanEqual(position, m.box->first)) &&
+                           glm::all(glm::lessThanEqual(position, m.box->second))))
+                continue;
+            return static_cast<uint32_t>(i);
+        }
+        return 0;
+    }
+
+    /// The value of full white in the scan's colours.
+    double white(uint32_t scan) const {
+        (void)scan;
+        switch (color_->type) {
+            case io::ScalarType::u8:
+                return 255.0;
+            case io::ScalarType::u16:
+                return 65535.0;
+            default:
+                return 1.0;
+        }
+    }
+
+    uint32_t albedo(const std::byte* record, uint32_t scan) const {
+        constexpr double kDefault = 0.5;  // of a scan without colour, linear
+        glm::dvec3 srgb(linear_to_srgb(static_cast<float>(kDefault)));
+        if (color_) srgb = vector_at(*color_, record) / white(scan);
+        const auto ten_bits = [](double v) {
+            return v > 0 ? static_cast<uint32_t>(std::lround(std::min(v, 1.0) * 1023)) : 0u;
+        };
+        return ten_bits(srgb.x) | ten_bits(srgb.y) << 10 | ten_bits(srgb.z) << 20;
+    }
+
+    /// Unit, or zero. The file's own normals come before estimated ones.
+    glm::vec3 normal(const std::byte* record) const {
+        if (normal_) {
+            const glm::dvec3 n = vector_at(*normal_, record);
+            const double length = std::sqrt(glm::dot(n, n));
+            if (length > 0 && std::isfinite(length)) return glm::vec3(n / length);
+        }
+        if (normal_oct_ && normal_oct_->type == io::ScalarType::u8) {
+            octree::NormalCode code;
+            std::memcpy(code.data(), record + normal_oct_->offset, code.size());
+            return octree::decode_normal(code).value_or(glm::vec3(0.0f));
+        }
+        return glm::vec3(0.0f);
+    }
+
+    const octree::SourceHeader& header_;
+    const Scene& scene_;
+    const octree::Cube cube_;
+    const Attribute *color_, *normal_, *normal_oct_, *area_, *classification_, *scan_;
+};
+
+}  // namespace
+
+std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
+                                       const octree::NodeData& data, const Scene& scene) {
+    const size_t stride = header.schema.stride;
+    std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
+    const Packer packer(header, node, scene);
+    for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
+    return surfels;
+}
+
+}  // namespace lucarne::gi

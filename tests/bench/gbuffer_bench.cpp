@@ -1,0 +1,142 @@
+// How long the G-buffer takes: a nave seen from inside, its surfels at a constant spacing in the picture as a
+// view cut has them. Prints the median of several runs of each pass.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "gi/gbuffer/gbuffer.h"
+#include "tests/gi/surfel_cloud.h"
+
+namespace lucarne::gi {
+namespace {
+
+struct Patch {  // a rectangle, or a cylinder's part around `u` where bend is set: radius |v|, angle in `turn`
+    glm::vec3 corner, u, v, w;
+    float turn;  // 0: flat
+    glm::vec3 at(float a, float b) const {
+        return turn == 0 ? corner + a * u + b * v
+                         : corner + a * u + v * std::cos(turn * b) + w * std::sin(turn * b);
+    }
+    glm::vec3 normal(float b) const {
+        return turn == 0 ? glm::normalize(glm::cross(u, v))
+                         : glm::normalize(v * std::cos(turn * b) + w * std::sin(turn * b));
+    }
+    float area() const { return glm::length(u) * glm::length(v) * (turn == 0 ? 1.0f : std::abs(turn)); }
+};
+
+/// A nave along y, 12 m wide, 50 m long: floor, walls, barrel vault, two rows of columns, end wall, roof
+/// above.
+std::vector<Patch> nave() {
+    const glm::vec3 y(0, 50, 0);
+    std::vector<Patch> patches = {{{-6, 0, 0}, {12, 0, 0}, y, {}, 0},
+                                  {{-6, 0, 0}, {0, 0, 8}, y, {}, 0},
+                                  {{6, 0, 0}, {0, 0, 8}, y, {}, 0},
+                                  {{-6, 50, 0}, {12, 0, 0}, {0, 0, 14}, {}, 0},
+                                  {{0, 0, 8}, y, {6, 0, 0}, {0, 0, 6}, 3.14159f},
+                                  {{-7, 0, 15}, {14, 0, 0}, y, {}, 0},
+                                  {{-7, 0, 0}, {0, 0, 9}, y, {}, 0},
+                                  {{7, 0, 0}, {0, 0, 9}, y, {}, 0}};
+    for (float at = 4; at < 50; at += 4)
+        for (const float x : {-3.5f, 3.5f})
+            patches.push_back({{x, at, 0}, {0, 0, 9}, {0.45f, 0, 0}, {0, 0.45f, 0}, 6.28318f});
+    return patches;
+}
+
+constexpr float kThinned = 16;  // surface shares of the surfels in the cut over their own at full resolution
+
+/// About `wanted` surfels of the part that the camera sees, hidden or not, with a density of 1/distance^2.
+std::vector<Surfel> sample(const CameraView& view, size_t wanted) {
+    const glm::vec3 eye(view.origin.x, view.origin.y, view.origin.z),
+        f(view.forward.x, view.forward.y, view.forward.z);
+    const glm::vec3 r(view.right.x, view.right.y, view.right.z), u(view.up.x, view.up.y, view.up.z);
+    const auto seen = [&](const glm::vec3& p) {
+        const float z = glm::dot(p - eye, f);
+        return z > 0.3f && std::abs(glm::dot(p - eye, r)) < z * glm::dot(r, r) &&
+               std::abs(glm::dot(p - eye, u)) < z * glm::dot(u, u);
+    };
+    const auto patches = nave();
+    std::vector<Surfel> surfels;
+    double total = 0;  // integral of dA / d^2 over what is seen
+    for (const bool count_only : {true, false}) {
+        Random random(7);
+        const auto each = [&](const auto& take) {
+            for (const Patch& patch : patches) {
+                constexpr int kCells = 400;
+                for (int i = 0; i < kCells * kCells; ++i) {
+                    const float a = (static_cast<float>(i % kCells) + .5f) / kCells;
+                    const float b = (static_cast<float>(i / kCells) + .5f) / kCells;
+                    const glm::vec3 p = patch.at(a, b);
+                    if (seen(p))
+                        take(patch, a, b, patch.area() / (kCells * kCells), glm::dot(p - eye, p - eye));
+                }
+            }
+        };
+        if (count_only) {
+            each([&](const Patch&, float, float, float area, float d2) { total += area / d2; });
+            fmt::print("spacing: {:.2f} pixels\n",
+                       std::sqrt(total / static_cast<double>(wanted)) * view.width / 2 / glm::length(r));
+            continue;
+        }
+        each([&](const Patch& patch, float a, float b, float area, float d2) {
+            const double expected = area / d2 / total * static_cast<double>(wanted);
+            const auto n = static_cast<int>(expected + random.uniform());
+            // Stratified within the cell, as an even level of detail is.
+            const int side = std::max(1, static_cast<int>(std::ceil(std::sqrt(n))));
+            for (int k = 0; k < n; ++k) {
+                const float ja = (static_cast<float>(k % side) + static_cast<float>(random.uniform())) /
+                                 static_cast<float>(side);
+                const float jb = (static_cast<float>(k / side) + static_cast<float>(random.uniform())) /
+                                 static_cast<float>(side);
+                const float sa = a + (ja - .5f) / 400, sb = b + (jb - .5f) / 400;
+                Surfel s{};
+                s.position = patch.at(sa, sb);
+                s.normal = patch.normal(sb);
+                s.albedo = glm::vec3(0.5f);
+                s.area = static_cast<float>(d2 * total / static_cast<double>(wanted)) / kThinned;
+                surfels.push_back(s);
+            }
+        });
+    }
+    return surfels;
+}
+
+int run(size_t points, uint32_t width, uint32_t height) {
+    auto device = Device::headless();
+    if (!device) return std::fprintf(stderr, "%s\n", device.error().line().c_str()), 1;
+    const CameraView view = look({0.3f, 1, 3}, {0, 50, 5}, width, height, 1.0f);
+    std::vector<Surfel> surfels = sample(view, points);
+    const SurfelCloud cloud(std::move(surfels), {{-16, -1, -1}, 64}, 1024, kThinned);
+    auto packed = load_cloud(**device, cloud);
+    if (!packed) return std::fprintf(stderr, "%s\n", packed.error().line().c_str()), 1;
+    GBuffer gbuffer;
+    std::map<std::string, std::vector<double>> times;
+    for (int i = 0; i < 9; ++i) {
+        PassTimes passes(**device);
+        passes.begin("all");
+        if (auto done = rasterize(**device, (*packed)->cut, view, gbuffer); !done)
+            return std::fprintf(stderr, "%s\n", done.error().line().c_str()), 1;
+        passes.end();
+        for (const auto& pass : passes.passes()) times[pass.name].push_back(pass.seconds);
+    }
+    const auto ids = gbuffer.ids.download_all<uint32_t>(size_t{width} * height);
+    const auto empty = std::count(ids.begin(), ids.end(), kNoSurfel);
+    fmt::print("{} surfels in {} nodes, {}x{}: {} pixels empty\n", (*packed)->cut.surfels(),
+               cloud.nodes().size(), width, height, empty);
+    for (auto& [name, runs] : times) {
+        std::sort(runs.begin(), runs.end());
+        fmt::print("  {}: median {:.1f} ms, best {:.1f} ms\n", name, runs[runs.size() / 2] * 1e3,
+                   runs[0] * 1e3);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace lucarne::gi
+
+int main() {
+    const int first = lucarne::gi::run(5'000'000, 1280, 720);
+    return first ? first : lucarne::gi::run(1'000'000, 512, 512);
+}

@@ -1,0 +1,256 @@
+#include "gi/gbuffer/gbuffer.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/gi/on_device.h"
+#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi {
+namespace {
+
+const glm::vec3 kWhite(0.8f), kRed(0.8f, 0.0f, 0.0f);
+
+struct Picture {
+    CameraView view;
+    std::vector<GBufferTexel> texels;
+    std::vector<uint32_t> ids;
+    std::vector<Surfel> surfels;  ///< as the device holds them
+
+    glm::vec3 ray(uint32_t x, uint32_t y) const {
+        const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(view.width) - 1;
+        const float v = 2 * (static_cast<float>(y) + .5f) / static_cast<float>(view.height) - 1;
+        return glm::vec3(view.forward.x, view.forward.y, view.forward.z) +
+               u * glm::vec3(view.right.x, view.right.y, view.right.z) -
+               v * glm::vec3(view.up.x, view.up.y, view.up.z);
+    }
+    glm::vec3 eye() const { return {view.origin.x, view.origin.y, view.origin.z}; }
+    bool empty(size_t at) const { return ids[at] == kNoSurfel; }
+    bool red(size_t at) const { return !empty(at) && decode_albedo(texels[at].albedo).y < 0.1f; }
+};
+
+class GBufferTest : public OnDevice {
+ protected:
+    Picture draw(std::vector<Surfel> surfels, const CameraView& view, uint32_t keep = 1024) {
+        const SurfelCloud cloud(std::move(surfels), {{-32, -32, -32}, 64}, keep);
+        auto loaded = load_cloud(*device, cloud);
+        EXPECT_TRUE(loaded) << loaded.error().line();
+        GBuffer target;
+        const auto drawn = rasterize(*device, (*loaded)->cut, view, target);
+        EXPECT_TRUE(drawn) << drawn.error().line();
+        const size_t pixels = size_t{view.width} * view.height;
+        return {view, target.texels.download_all<GBufferTexel>(pixels),
+                target.ids.download_all<uint32_t>(pixels), (*loaded)->pool.download((*loaded)->cut)};
+    }
+};
+
+/// A wall at y = `at`, facing the camera, as an uneven pattern of about `spacing` metres.
+std::vector<Surfel> wall(float at, float half, float spacing, const glm::vec3& albedo, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> jitter(-0.5f, 0.5f);
+    std::vector<Surfel> surfels;
+    for (float x = -half; x <= half; x += spacing)
+        for (float z = -half; z <= half; z += spacing)
+            surfels.push_back({{x + jitter(random) * spacing, at, z + jitter(random) * spacing},
+                               glm::normalize(glm::vec3(0.1f * jitter(random), -1, 0.1f * jitter(random))),
+                               albedo,
+                               0,
+                               spacing * spacing,
+                               0});
+    return surfels;
+}
+
+void append(std::vector<Surfel>& to, const std::vector<Surfel>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
+    for (const float area : {1e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: both ways of drawing
+        const Surfel tilted{{0.3f, 3, 0.2f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 3};
+        const Picture p = draw({tilted}, look({0, 0, 0}, {0, 1, 0}, 320, 240));
+        ASSERT_EQ(p.surfels.size(), 1u);
+        const Surfel s = p.surfels[0];
+        size_t covered = 0;
+        for (uint32_t y = 0; y < 240; ++y)
+            for (uint32_t x = 0; x < 320; ++x) {
+                const size_t at = y * 320 + x;
+                const glm::vec3 ray = p.ray(x, y);
+                const float depth = glm::dot(s.normal, s.position - p.eye()) / glm::dot(s.normal, ray);
+                const float distance = glm::length(p.eye() + depth * ray - s.position);
+                if (distance < s.radius * 0.9999f) {
+                    ASSERT_FALSE(p.empty(at)) << x << " " << y;
+                }
+                if (p.empty(at)) continue;
+                ++covered;
+                EXPECT_LT(distance, s.radius * 1.0001f);
+                EXPECT_NEAR(p.texels[at].depth, depth, 1e-5f);
+                EXPECT_GT(glm::dot(decode_octahedral(p.texels[at].normal), s.normal), 0.9999f);
+                EXPECT_EQ(p.texels[at].material & 0xffff, 3u);
+                EXPECT_NEAR(glm::unpackHalf2x16(p.texels[at].material).y, s.radius, s.radius * 1e-3f);
+            }
+        EXPECT_GT(covered, 3u);
+    }
+}
+
+TEST_F(GBufferTest, NormalsAreTurnedTowardTheViewer) {
+    const Surfel away{{0, 3, 0}, {0, 1, 0}, kWhite, 0, 0.1f, 0};
+    const Picture p = draw({away}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
+    EXPECT_LT(decode_octahedral(p.texels[32 * 64 + 32].normal).y, -0.999f);
+}
+
+TEST_F(GBufferTest, SurfelWithoutANormalFacesTheViewer) {
+    const Surfel bare{{1, 3, 1}, glm::vec3(0.0f), kWhite, 0, 0.1f, 0};
+    const Picture p = draw({bare}, look({0, 0, 0}, {1, 3, 1}, 64, 64));
+    const glm::vec3 normal = decode_octahedral(p.texels[32 * 64 + 32].normal);
+    EXPECT_GT(glm::dot(normal, -glm::normalize(bare.position)), 0.999f);
+}
+
+TEST_F(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
+    constexpr float kSpacing = 0.02f;
+    const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f);
+    for (const float distance : {0.5f, 2.0f, 8.0f}) {
+        auto surfels = wall(distance, 1.0f, kSpacing, kWhite, 1);
+        append(surfels, wall(distance + 3 * radius, 1.0f, kSpacing, kRed, 2));
+        const float field = std::min(1.0f, 2 * std::atan(0.9f / (distance + 3 * radius)));
+        const CameraView camera = look({0, 0, 0}, {0, 1, 0}, 320, 320, field);
+        SpotLight spot{{0, 0, 0, std::cos(field / 2)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
+        for (const CameraView& view : {camera, spot_view(spot, 320)}) {
+            const Picture p = draw(surfels, view);
+            for (size_t at = 0; at < p.ids.size(); ++at) {
+                ASSERT_FALSE(p.empty(at)) << "a hole at distance " << distance;
+                ASSERT_FALSE(p.red(at)) << "red shows through at distance " << distance;
+            }
+        }
+    }
+}
+
+TEST_F(GBufferTest, WindowInAWallStaysOpen) {
+    constexpr float kSpacing = 0.02f, kHalf = 0.3f;
+    const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f) * 1.05f;  // areas are kept to 9 %
+    auto surfels = wall(2, 1.5f, kSpacing, kWhite, 1);
+    std::erase_if(surfels, [&](const Surfel& s) {
+        return std::max(std::abs(s.position.x), std::abs(s.position.z)) < kHalf;
+    });
+    append(surfels, wall(4, 2.5f, kSpacing, kRed, 2));
+    const CameraView camera = look({0, 0, 0}, {0, 1, 0}, 240, 240, 1.0f);
+    const SpotLight spot{{0, 0, 0, std::cos(0.5f)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
+    for (const CameraView& view : {camera, spot_view(spot, 240)}) {
+        const Picture p = draw(surfels, view);
+        const float pixel = 2 * 2 * std::tan(0.5f) / 240;  // on the wall
+        size_t open = 0;
+        for (uint32_t y = 0; y < 240; ++y)
+            for (uint32_t x = 0; x < 240; ++x) {
+                const glm::vec3 hit = p.ray(x, y) * 2.0f;
+                const float away = std::max(std::abs(hit.x), std::abs(hit.z));
+                if (away < kHalf - radius - pixel) {
+                    ++open;
+                    ASSERT_TRUE(p.red(y * 240 + x)) << "the window is closed at " << x << " " << y;
+                }
+                if (away > kHalf + pixel) {
+                    ASSERT_FALSE(p.red(y * 240 + x)) << "the wall is open at " << x << " " << y;
+                }
+            }
+        EXPECT_GT(open, 2000u);
+    }
+}
+
+TEST_F(GBufferTest, DiscSeenEdgeOnKeepsThePixelOfItsCentreAtASaneDepth) {
+    const Surfel edge{{0.001f, 5, 0.001f}, {0, 0, 1}, kWhite, 0, 1e-4f, 0};
+    const Picture p = draw({edge}, look({0, 0, 0.001f}, {0, 1, 0.001f}, 101, 101));
+    size_t covered = 0;
+    for (size_t at = 0; at < p.ids.size(); ++at) {
+        if (p.empty(at)) continue;
+        ++covered;
+        EXPECT_NEAR(p.texels[at].depth, 5, p.surfels[0].radius * 1.001f);
+    }
+    EXPECT_GE(covered, 1u);
+    EXPECT_LE(covered, 2u);
+}
+
+TEST_F(GBufferTest, DiscSmallerThanAPixelTakesOnePixel) {
+    const Surfel speck{{0.1f, 5, 0.1f}, {0, -1, 0}, kWhite, 0, 1e-8f, 0};
+    const Picture p = draw({speck}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
+    EXPECT_EQ(std::count_if(p.ids.begin(), p.ids.end(), [](uint32_t id) { return id != kNoSurfel; }), 1);
+}
+
+TEST_F(GBufferTest, DiscThatReachesBehindTheEyeCoversOnlyWhatIsBeforeIt) {
+    const Surfel floor{{0, 0, -1}, {0, 0, 1}, kWhite, 0, 50, 0};
+    const Picture p = draw({floor}, look({0, 0, 0}, {0, 1, 0}, 64, 64, 1.5f));
+    const float radius = p.surfels[0].radius;
+    for (uint32_t y = 0; y < 64; ++y)
+        for (uint32_t x = 0; x < 64; ++x) {
+            const glm::vec3 ray = p.ray(x, y);
+            const bool met = ray.z < 0 && glm::length(ray / -ray.z + glm::vec3(0, 0, 1)) < radius;
+            EXPECT_EQ(!p.empty(y * 64 + x), met) << x << " " << y;
+        }
+}
+
+TEST_F(GBufferTest, SurfelsBehindTheEyeAreNotSeen) {
+    const Surfel behind{{0, -3, 0}, {0, 1, 0}, kWhite, 0, 0.1f, 0};
+    const Picture p = draw({behind}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
+    for (size_t at = 0; at < p.ids.size(); ++at) EXPECT_TRUE(p.empty(at));
+}
+
+TEST_F(GBufferTest, PictureDoesNotDependOnTheOrderOfTheSurfels) {
+    auto surfels = wall(2, 1.0f, 0.01f, kWhite, 1);
+    const CameraView view = look({0, 0, 0}, {0.2f, 1, 0}, 200, 160);
+    const Picture first = draw(surfels, view, 1u << 20);
+    std::shuffle(surfels.begin(), surfels.end(), std::mt19937(3));
+    const Picture second = draw(surfels, view, 1u << 20);
+    size_t different = 0;
+    for (size_t at = 0; at < first.texels.size(); ++at)
+        different += std::memcmp(&first.texels[at], &second.texels[at], sizeof(GBufferTexel)) != 0;
+    EXPECT_LE(different, 3u) << "only equal keys may go to another surfel";
+}
+
+TEST_F(GBufferTest, RunsGiveTheSamePixels) {
+    auto surfels = wall(2, 1.0f, 0.005f, kWhite, 1);
+    const size_t count = surfels.size();
+    for (size_t i = 0; i < count; i += 3) surfels.push_back(surfels[i]);  // ties
+    const CameraView view = look({0, 0, 0}, {0.2f, 1, 0}, 200, 160);
+    const Picture first = draw(surfels, view);
+    for (int run = 0; run < 5; ++run) {
+        const Picture again = draw(surfels, view);
+        ASSERT_EQ(first.ids, again.ids);
+        ASSERT_EQ(
+            std::memcmp(first.texels.data(), again.texels.data(), first.texels.size() * sizeof(GBufferTexel)),
+            0);
+    }
+}
+
+TEST_F(GBufferTest, NoSurfelsGiveAnEmptyPicture) {
+    const Picture p = draw({}, look({0, 0, 0}, {0, 1, 0}, 64, 48));
+    for (size_t at = 0; at < p.ids.size(); ++at) {
+        ASSERT_TRUE(p.empty(at));
+        ASSERT_EQ(p.texels[at].depth, 0.0f);
+    }
+}
+
+TEST_F(GBufferTest, ManyLargeDiscsOverflowTheirQueueWithoutHoles) {
+    // More discs of over 256 pixels than the queue holds, all in one place: the nearest must win.
+    std::vector<Surfel> surfels;
+    for (int i = 0; i < 70000; ++i)
+        surfels.push_back({{0, 4 + 1e-4f * static_cast<float>(i % 10000), 0},
+                           {0, -1, 0},
+                           i % 10000 ? kRed : kWhite,
+                           0,
+                           0.2f,
+                           0});
+    const Picture p = draw(surfels, look({0, 0, 0}, {0, 1, 0}, 48, 48), 1u << 20);
+    EXPECT_FALSE(p.empty(24 * 48 + 24));
+    EXPECT_FALSE(p.red(24 * 48 + 24));
+    EXPECT_EQ(p.ids[24 * 48 + 24], 0u) << "the smallest id of those with the same key";
+}
+
+TEST_F(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
+    const SpotLight spot{{1, 2, 3, std::cos(0.4f)}, {0, 0, -1, 1}, {1, 1, 1, 0}};
+    const CameraView view = spot_view(spot, 128);
+    EXPECT_NEAR(glm::length(glm::vec3(view.right.x, view.right.y, view.right.z)), std::tan(0.4f), 1e-5f);
+    EXPECT_NEAR(glm::length(glm::vec3(view.up.x, view.up.y, view.up.z)), std::tan(0.4f), 1e-5f);
+    EXPECT_EQ(view.width, 128u);
+}
+
+}  // namespace
+}  // namespace lucarne::gi
