@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/reference/scatter.h"
+#include "gi/shared/spot.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::reference {
@@ -13,16 +14,6 @@ namespace {
 
 constexpr uint32_t kRouletteFrom = 4;  // bounces that every path may take before chance ends it
 constexpr float kLargestSurvival = 0.95f;
-
-/// I(w), W/sr, towards `point`: the edge falls as smoothstep of the cosine (gi/shared/material.h).
-glm::vec3 spot_intensity(const SpotLight& light, const glm::vec3& from_light) {
-    const float cosine =
-        glm::dot(from_light, glm::vec3(light.direction.x, light.direction.y, light.direction.z));
-    const float outer = light.position.w, inner = light.direction.w;
-    if (cosine <= outer) return glm::vec3(0.0f);
-    const float t = inner > outer ? std::min((cosine - outer) / (inner - outer), 1.0f) : 1.0f;
-    return glm::vec3(light.intensity.x, light.intensity.y, light.intensity.z) * (t * t * (3 - 2 * t));
-}
 
 }  // namespace
 
@@ -32,7 +23,7 @@ struct PathTracer::Vertex {
     glm::vec3 out;     // likewise, along the ray
     glm::vec3 origin;  // of rays that leave
     glm::vec3 emission;
-    Lobes lobes;
+    Reflectance surface;
 };
 
 PathTracer::PathTracer(const SurfelTracer& surfels, std::span<const SpotLight> lights,
@@ -47,7 +38,7 @@ PathTracer::Vertex PathTracer::vertex(const Start& start) const {
             start.viewer,
             offset_origin(start.position, start.normal, start.radius),
             glm::vec3(material.emission.x, material.emission.y, material.emission.z),
-            make_lobes(start.albedo, material)};
+            make_reflectance(material, start.albedo)};
 }
 
 bool PathTracer::counts(uint32_t bounce) const {
@@ -59,15 +50,10 @@ bool PathTracer::counts(uint32_t bounce) const {
 glm::vec3 PathTracer::own_light(const Vertex& v) const {
     glm::vec3 sum = v.emission;
     for (const SpotLight& light : lights_) {
-        const glm::vec3 place(light.position.x, light.position.y, light.position.z);
-        const glm::vec3 to_light = place - v.position;
-        const float distance2 = glm::dot(to_light, to_light);
-        if (!(distance2 > 0)) continue;
-        const glm::vec3 in = to_light / std::sqrt(distance2);
-        const float cosine = glm::dot(v.normal, in);
-        const glm::vec3 intensity = spot_intensity(light, -in);
-        if (cosine <= 0 || intensity == glm::vec3(0.0f) || surfels_.occluded(v.origin, place)) continue;
-        sum += evaluate(v.lobes, v.normal, v.out, in) * intensity * (cosine / distance2);
+        glm::vec3 in;
+        const glm::vec3 irradiance = spot_irradiance(light, v.position, v.normal, in);
+        if (irradiance == glm::vec3(0.0f) || surfels_.occluded(v.origin, glm::vec3(light.position))) continue;
+        sum += brdf(v.surface, v.normal, v.out, in) * irradiance;
     }
     return sum;
 }
@@ -85,7 +71,7 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
             if (random.uniform() >= survival) break;
             throughput /= survival;
         }
-        const auto scattered = scatter(at.lobes, at.normal, at.out, random);
+        const auto scattered = scatter(at.surface, at.normal, at.out, random);
         if (!scattered) break;
         const auto hit = surfels_.nearest(at.origin, scattered->direction);
         if (!hit) break;

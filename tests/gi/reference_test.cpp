@@ -13,8 +13,6 @@
 namespace lucarne::gi::reference {
 namespace {
 
-constexpr float kPi = 3.14159265f;
-
 std::unique_ptr<SurfelTracer> tracer_of(std::vector<Surfel> surfels) {
     auto tracer = SurfelTracer::create(std::move(surfels));
     EXPECT_TRUE(tracer) << tracer.error().line();
@@ -193,27 +191,19 @@ TEST(Reference, OneBounceFromALitWallMatchesQuadrature) {
 
 TEST(Reference, SamplesOfBothLobesIntegrateTheBrdf) {
     // The albedo of the mixture, by its own sampling against uniform sampling of the hemisphere.
-    const Lobes lobes = make_lobes(glm::vec3(0.3f), material(1, 0.5f, 20, 0));
+    const Reflectance surface = make_reflectance(material(1, 0.5f, 20, 0), glm::vec3(0.3f));
     const glm::vec3 out = glm::normalize(glm::vec3(0.6f, 0.1f, 0.8f));
     double sampled = 0, uniform = 0;
     const int count = 400000;
     for (int i = 0; i < count; ++i) {
         Random random(1, static_cast<uint64_t>(i));
-        if (const auto s = scatter(lobes, kZ, out, random)) sampled += s->weight.x;
+        if (const auto s = scatter(surface, kZ, out, random)) sampled += s->weight.x;
         const double z = random.uniform(), phi = 2 * M_PI * random.uniform(), r = std::sqrt(1 - z * z);
         uniform +=
-            evaluate(lobes, kZ, out, glm::vec3(r * std::cos(phi), r * std::sin(phi), z)).x * z * 2 * M_PI;
+            brdf(surface, kZ, out, glm::vec3(r * std::cos(phi), r * std::sin(phi), z)).x * z * 2 * M_PI;
     }
     EXPECT_NEAR(sampled / count, uniform / count, 0.005);
     EXPECT_LE(sampled / count, 0.8);
-}
-
-TEST(Reference, KdAndKsNeverAddUpToMoreThanOne) {
-    const Lobes lobes = make_lobes(glm::vec3(5, 0.2f, -1), material(1, 0.7f, 10, 0));
-    EXPECT_FLOAT_EQ(lobes.diffuse.x, 0.3f);
-    EXPECT_FLOAT_EQ(lobes.diffuse.y, 0.2f);
-    EXPECT_FLOAT_EQ(lobes.diffuse.z, 0.0f);
-    EXPECT_FLOAT_EQ(make_lobes(glm::vec3(1.0f), material(1, 0, 1, 0)).diffuse.x, 0.95f);
 }
 
 TEST(Reference, SamePicturesForAnyNumberOfThreads) {
