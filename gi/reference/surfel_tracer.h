@@ -12,10 +12,10 @@
 
 namespace lucarne::gi::reference {
 
-/// A ray starts this share of the surfel's radius above the surfel, along its normal. See
+/// A ray starts this many radii above its surfel, along the normal. See
 /// gi/reference/README.md for how it was chosen: what it loses in corners against what noise in the positions
 /// would shade wrongly.
-inline constexpr float kOriginOffset = 0.5f;
+inline constexpr float kOriginOffset = 1.0f;
 
 /// Ray queries against surfels as opaque discs with two equal sides (Embree's oriented discs). Surfels
 /// without a normal or with a radius that is not positive have no disc and are left out. Thread-safe once
