@@ -35,7 +35,9 @@ inline bool usable(double coordinate) {
     return coordinate <= 1e30 && coordinate >= -1e30;
 }
 
-/// `name` reduced to printable ASCII, and made different from every attribute of the schema.
+/// `name` in printable ASCII, at most 64 characters, never empty.
+std::string printable(std::string_view name);
+/// The same, made different from every attribute of the schema.
 std::string unique_name(const Schema& schema, std::string_view name);
 
 }  // namespace lucarne::io

@@ -8,6 +8,7 @@
 #include "io/formats/format.h"
 #include "io/formats/las_crs.h"
 #include "io/formats/las_layout.h"
+#include "io/formats/las_writer.h"
 #include "io/formats/stations.h"
 
 namespace lucarne::io {
@@ -114,7 +115,7 @@ Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> f
 
 const Format& las_format() {
     static constexpr Format kFormat{
-        "LAS", ".las", [](std::string_view head) { return head.starts_with("LASF"); }, open_las, nullptr};
+        "LAS", ".las", [](std::string_view head) { return head.starts_with("LASF"); }, open_las, las::create};
     return kFormat;
 }
 

@@ -47,9 +47,16 @@ Result<Header> read_header(const std::shared_ptr<const InputFile>& file);
 std::optional<ScalarType> type_of(std::string_view word);
 std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
 
-/// "comment lucarne station ID X Y Z" and "comment lucarne color_bits N" in `header.comments`.
-Result<std::vector<Station>> stations_of(const std::string& file, const Header& header);
-std::optional<uint32_t> color_bits_of(const Header& header);
+/// What our own comments say: "lucarne station ID X Y Z", "lucarne color_bits N", "lucarne metres_per_unit
+/// M".
+struct Remarks {
+    std::vector<Station> stations;
+    std::optional<uint32_t> color_bits;
+    std::optional<double> metres_per_unit;
+};
+Result<Remarks> remarks_of(const std::string& file, const Header& header);
+/// The lines "comment lucarne ..." that say the same of `info`.
+std::string remark_lines(const ScanInfo& info);
 
 /// `info.details`: the properties and comments, for a later export.
 nlohmann::json to_details(const Header& header);

@@ -15,11 +15,12 @@ constexpr std::array<Triple, 2> kNormalNames = {{{"nx", "ny", "nz"}, {"normal_x"
 
 class LayoutMaker {
  public:
-    explicit LayoutMaker(const Header& header) {
-        layout_.big_endian = header.encoding == Encoding::big_endian;
-        for (const Property& p : header.vertices().properties) {
+    LayoutMaker(const std::vector<Property>& properties, Encoding encoding) {
+        layout_.big_endian = encoding == Encoding::big_endian;
+        for (const Property& p : properties) {
             if (p.count) continue;
             properties_.push_back(p);
+            layout_.columns.push_back({p, "", 0});
             offsets_.push_back(layout_.packed_bytes);
             layout_.packed_bytes += static_cast<uint32_t>(scalar_bytes(p.type));
         }
@@ -36,6 +37,7 @@ class LayoutMaker {
                 if (name == reserved) name.insert(0, "ply_");
             layout_.schema.add(unique_name(layout_.schema, name), properties_[i].type);
             copy(i, layout_.schema.attributes.back().offset);
+            layout_.columns[i].attribute = layout_.schema.attributes.back().name;
         }
         return std::move(layout_);
     }
@@ -59,6 +61,7 @@ class LayoutMaker {
         for (uint32_t k = 0; k < 3; ++k) {
             const size_t axis = axes[k];
             if (axis == properties_.size()) continue;
+            layout_.columns[axis].component = k;
             if (floats || properties_[axis].type == ScalarType::f64) {
                 copy(axis, k * (floats ? 4 : 8));
             } else {
@@ -93,8 +96,11 @@ class LayoutMaker {
             if (!type) continue;
             layout_.schema.add(std::string(name), *type, 3);
             const auto at = layout_.schema.attributes.back().offset;
-            for (uint32_t k = 0; k < 3; ++k)
+            for (uint32_t k = 0; k < 3; ++k) {
                 copy(members[k], at + k * static_cast<uint32_t>(scalar_bytes(*type)));
+                layout_.columns[members[k]].attribute = name;
+                layout_.columns[members[k]].component = k;
+            }
             return true;
         }
         return false;
@@ -179,8 +185,8 @@ bool Layout::unpack(const std::byte* packed, std::byte* record) const {
     return usable(at.x) && usable(at.y) && usable(at.z);
 }
 
-Layout make_layout(const Header& header) {
-    return LayoutMaker(header).make();
+Layout make_layout(const std::vector<Property>& properties, Encoding encoding) {
+    return LayoutMaker(properties, encoding).make();
 }
 
 }  // namespace lucarne::io::ply

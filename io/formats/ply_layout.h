@@ -16,7 +16,14 @@ struct Layout {
         ScalarType type = ScalarType::u8;  ///< in the file
         uint32_t from = 0, to = 0, count = 1;
     };
+    /// A scalar property and the component it became. The attribute "" is the position.
+    struct Column {
+        Property property;
+        std::string attribute;
+        uint32_t component = 0;
+    };
     Schema schema;
+    std::vector<Column> columns;  ///< in the order of the file
     std::vector<Step> steps;
     uint32_t packed_bytes = 0;
     bool big_endian = false;
@@ -29,6 +36,6 @@ struct Layout {
 /// `x`, `y`, `z` become the position: f32 where all three are float, else f64, which holds every PLY type.
 /// red/green/blue (or diffuse_red..., r/g/b) become `color`, nx/ny/nz (or normal_x...) `normal`, where their
 /// types allow; everything else keeps its name and type.
-Layout make_layout(const Header& header);
+Layout make_layout(const std::vector<Property>& properties, Encoding encoding);
 
 }  // namespace lucarne::io::ply

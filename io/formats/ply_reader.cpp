@@ -9,6 +9,7 @@
 #include "io/formats/buffered_input.h"
 #include "io/formats/format.h"
 #include "io/formats/ply_layout.h"
+#include "io/formats/ply_writer.h"
 #include "io/formats/text.h"
 
 namespace lucarne::io {
@@ -196,7 +197,9 @@ class PlyReader final : public PointReader {
 class PlySource final : public PointSource {
  public:
     PlySource(std::shared_ptr<const InputFile> file, ply::Header header)
-        : file_(std::move(file)), header_(std::move(header)), layout_(ply::make_layout(header_)) {}
+        : file_(std::move(file)),
+          header_(std::move(header)),
+          layout_(ply::make_layout(header_.vertices().properties, header_.encoding)) {}
 
     Result<void> describe() {
         const std::string name = file_->path().string();
@@ -205,8 +208,10 @@ class PlySource final : public PointSource {
         info_.path = name;
         info_.format = fmt::format("PLY, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
         info_.declared_points = header_.vertices().count;
-        LUCARNE_ASSIGN(info_.stations, ply::stations_of(name, header_));
-        LUCARNE_ASSIGN(info_.color_bits, find_color_bits());
+        LUCARNE_ASSIGN(auto remarks, ply::remarks_of(name, header_));
+        info_.stations = std::move(remarks.stations);
+        info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
+        LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
         nlohmann::json details = ply::to_details(header_);
         details["color_bits"] = info_.color_bits;
@@ -244,10 +249,10 @@ class PlySource final : public PointSource {
 
     /// Full intensity is told by the largest component of a sample: spread over the file where vertices can
     /// be addressed, else from its beginning. Nothing is converted, so a wrong guess loses nothing.
-    Result<uint32_t> find_color_bits() const {
+    Result<uint32_t> find_color_bits(std::optional<uint32_t> stated) const {
         const Attribute* color = layout_.schema.find(names::color);
         if (!color || color->type == ScalarType::u8) return 8u;
-        if (const auto stated = ply::color_bits_of(header_)) return *stated;
+        if (stated) return *stated;
         constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
         const uint64_t count = header_.vertices().count;
         const uint64_t step =
@@ -292,7 +297,7 @@ bool is_ply(std::string_view head) {
 }  // namespace
 
 const Format& ply_format() {
-    static constexpr Format kFormat{"PLY", ".ply", is_ply, open_ply, nullptr};
+    static constexpr Format kFormat{"PLY", ".ply", is_ply, open_ply, ply::create};
     return kFormat;
 }
 

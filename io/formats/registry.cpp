@@ -48,17 +48,20 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     for (const Format* format : formats())
-        if (format->create && format->extension == extension)
-            return format->create(path, schema, info, options);
+        if (format->extension == extension) return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
                          "end the name in .las or .ply");
 }
 
-std::string unique_name(const Schema& schema, std::string_view name) {
+std::string printable(std::string_view name) {
     std::string clean;
-    for (const char c : name.substr(0, 64)) clean += c > ' ' && c < 0x7f ? c : '_';
-    if (clean.empty()) clean = "unnamed";
+    for (const char c : name.substr(0, 64)) clean += c >= ' ' && c < 0x7f ? c : '?';
+    return clean.empty() ? "unnamed" : clean;
+}
+
+std::string unique_name(const Schema& schema, std::string_view name) {
+    const std::string clean = printable(name);
     std::string unique = clean;
     for (int n = 2; schema.find(unique); ++n) unique = fmt::format("{}_{}", clean, n);
     return unique;

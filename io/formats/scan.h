@@ -1,7 +1,11 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
+
+#include <glm/vec3.hpp>
 
 #include "io/points.h"
 
@@ -14,6 +18,8 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
 struct WriteOptions {
     bool overwrite = false;
     uint64_t expected_points = 0;  ///< a hint; 0 where unknown
+    /// The box of the points, where known: lets a LAS writer pick the finest scale for float positions.
+    std::optional<std::array<glm::dvec3, 2>> bounds;
 };
 
 /// A writer for the format that `path`'s extension names (.las, .ply); the file appears when `finish`

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "io/formats/las_layout.h"
+#include "io/formats/scan.h"
+
+// Which LAS file can hold the records of a schema, and how they are brought into its layout.
+namespace lucarne::io::las {
+
+/// Turns records of any schema into records of make_schema(header).
+class Converter {
+ public:
+    Converter() = default;
+    Converter(const Schema& from, const Schema& to) : from_(from), to_(to) {}
+
+    /// Attribute `from` becomes `to`; `factor` scales colours to 16 bits.
+    void map(const Attribute& from, const Attribute& to, double factor = 1.0) {
+        fields_.push_back({from, to, factor});
+    }
+    /// False where a position does not fit 32-bit integers with the target's scale and offset.
+    bool convert(const std::byte* in, size_t count, std::byte* out) const;
+    /// Nothing to do: both schemas are the same.
+    bool identity() const { return from_ == to_; }
+
+ private:
+    struct Field {
+        Attribute from, to;
+        double factor;
+    };
+    bool convert_position(const std::byte* in, std::byte* out) const;
+
+    Schema from_, to_;
+    std::vector<Field> fields_;
+};
+
+struct Target {
+    Header header;
+    Schema schema;  ///< make_schema(header)
+    Converter converter;
+};
+
+/// The header kept in `info.details` where the source was LAS, else the smallest point format that has a
+/// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
+/// bytes (where it does not fit, the field gets the nearest value as well). Positions that are not integers
+/// yet get a scale; the loss is reported.
+Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
+                           const WriteOptions& options);
+
+}  // namespace lucarne::io::las
