@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -42,6 +43,24 @@ struct NodeKey {
     }
 };
 
+/// A point's place in the root cube, 32 bits of fixed point an axis: exact enough for sampling, the same for every
+/// chunk and level, and the one rule for which node's cube a point is in.
+struct Place {
+    uint32_t x = 0, y = 0, z = 0;
+
+    constexpr bool operator==(const Place&) const = default;
+    /// The Morton code of the place's finest cell.
+    constexpr uint64_t code() const {
+        constexpr uint32_t kUnused = 32 - kMaxLevel;
+        return morton(x >> kUnused, y >> kUnused, z >> kUnused);
+    }
+    /// The cell of `level` that holds the place.
+    constexpr NodeKey key(uint32_t level) const {
+        const auto cell = [level](uint32_t v) { return static_cast<uint32_t>(uint64_t{v} >> (32 - level)); };
+        return {level, cell(x), cell(y), cell(z)};
+    }
+};
+
 /// An axis-aligned cube in world coordinates (the file's own unit).
 struct Cube {
     glm::dvec3 min{0.0};
@@ -50,6 +69,14 @@ struct Cube {
     Cube of(const NodeKey& key) const {
         const double part = size / static_cast<double>(uint64_t{1} << key.level);
         return {min + part * glm::dvec3(key.x, key.y, key.z), part};
+    }
+    /// floor((p - min) * (2^32 / size)) in doubles, clamped to 32 bits (octree/FORMAT.md).
+    Place place(const glm::dvec3& p) const {
+        const double scale = 0x1p32 / size;
+        const auto axis = [scale](double v) {
+            return static_cast<uint32_t>(std::clamp(v * scale, 0.0, 0x1.fffffffep31));
+        };
+        return {axis(p.x - min.x), axis(p.y - min.y), axis(p.z - min.z)};
     }
 };
 

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "octree/build/subtree.h"
+#include "octree/cache_writer.h"
+
+namespace lucarne::octree {
+
+/// Puts subtrees together, in Morton order: writes their nodes, and as soon as all children of a node are
+/// there samples it from them. What waits for its parent lies in a scratch file, so that memory holds one
+/// family at a time. The file comes out the same wherever the chunks' borders were.
+class Assembler {
+ public:
+    static Result<Assembler> create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
+                                    const std::filesystem::path& temp_folder);
+
+    /// Takes the subtree of chunk number `index`; call in order.
+    Result<void> add(size_t index, Subtree&& tree);
+
+ private:
+    struct Waiting {
+        Pending node;
+        uint64_t first = 0;  ///< its sample's first record in the scratch file
+        uint32_t count = 0;
+        std::optional<size_t> overflow_chunk;
+        uint64_t overflow_first = 0;
+    };
+    Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits, ScratchFile samples);
+    Result<void> push(Pending node, std::span<const std::byte> sample, std::optional<size_t> chunk,
+                      uint64_t overflow_first);
+    Result<void> join(size_t children);
+    Result<void> finish_root();
+    Result<void> emit(size_t child, const Waiting& from, const std::vector<std::byte>& sample);
+    Result<void> append_overflow(const Waiting& from, std::span<const std::byte> payload,
+                                 format::Entry& entry);
+    Result<std::vector<std::byte>> sample_of(const Waiting& waiting) const;
+
+    CacheWriter& writer_;
+    const RecordLoader& loader_;
+    uint32_t stride_;
+    NodeSampler sampler_;
+    ScratchFile samples_;
+    std::vector<Waiting> stack_;
+    uint64_t end_ = 0;  ///< records in the scratch file; those behind the top of the stack are free again
+    std::vector<uint32_t> order_;
+};
+
+}  // namespace lucarne::octree

@@ -1,0 +1,184 @@
+#include "octree/build/build.h"
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/parallel_pipeline.h>
+
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "io/core/parallel.h"
+#include "io/core/progress.h"
+#include "octree/build/assembler.h"
+#include "octree/build/scan_stage.h"
+
+namespace lucarne::octree {
+namespace {
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Runs one stage and writes down what it took.
+template <class Stage>
+auto timed(BuildReport& report, const char* name, const Stage& stage) {
+    const auto wall = std::chrono::steady_clock::now();
+    const double cpu = cpu_seconds();
+    auto result = stage();
+    report.stages.push_back({name,
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
+                             cpu_seconds() - cpu});
+    return result;
+}
+
+/// Which normals to estimate: empty for no estimation at all, else whether normals are wanted besides areas.
+Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs) {
+    size_t without = inputs.inputs();
+    for (size_t i = inputs.inputs(); i-- > 0;)
+        if (!inputs.has_normals(i)) without = i;
+    const bool all = without == inputs.inputs();
+    switch (mode) {
+        case NormalsMode::none:
+            return std::optional<bool>();
+        case NormalsMode::automatic:
+            return std::optional(!all);
+        case NormalsMode::estimate:
+            return std::optional(true);
+        case NormalsMode::keep:
+            break;
+    }
+    if (!all)
+        return bad_arguments(inputs.source(without).info().path, "has no normals to keep",
+                             "use --normals estimate");
+    return std::optional(false);
+}
+
+Pass with_progress(const Pass& pass, Progress& progress, uint32_t stride) {
+    return [&pass, &progress, stride](const Visit& visit) {
+        return pass([&](std::span<const std::byte> records) -> Result<void> {
+            progress.add(records.size() / stride);
+            return visit(records);
+        });
+    };
+}
+
+struct Built {
+    size_t chunk = 0;
+    Subtree tree;
+};
+
+/// Chunks are built side by side and put together in order; no more than `workers` are in memory.
+Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
+                          const MemoryPlan& memory, Assembler& assembler) {
+    uint64_t points = 0;
+    for (const auto& chunk : store.chunks()) points += chunk.count;
+    Progress progress("building", points, "points");
+    FirstError error;
+    size_t next = 0;
+    const auto source = [&](tbb::flow_control& control) -> size_t {
+        if (next == store.chunks().size() || error.any()) control.stop();
+        return next++;
+    };
+    const auto build = [&](size_t chunk) {
+        auto built = std::make_shared<Built>(Built{chunk, {}});
+        if (error.any()) return built;
+        if (auto tree = build_subtree(loader, chunk, limits, memory.chunk_points))
+            built->tree = std::move(*tree);
+        else
+            error.report(chunk, std::move(tree).error());
+        return built;
+    };
+    const auto assemble = [&](const std::shared_ptr<Built>& built) {
+        if (error.any()) return;
+        progress.add(store.chunks()[built->chunk].count);
+        if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
+            error.report(built->chunk, std::move(done).error());
+        store.discard(built->chunk);
+    };
+    tbb::parallel_pipeline(
+        memory.workers,
+        tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, source) &
+            tbb::make_filter<size_t, std::shared_ptr<Built>>(tbb::filter_mode::parallel, build) &
+            tbb::make_filter<std::shared_ptr<Built>, void>(tbb::filter_mode::serial_in_order, assemble));
+    return error.result();
+}
+
+SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
+    SourceHeader header{
+        .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
+    header.metres_per_unit = inputs.source(0).info().metres_per_unit;
+    for (size_t i = 0; i < inputs.inputs(); ++i) header.scans.push_back(inputs.source(i).info());
+    return header;
+}
+
+Result<void> check_units(const Unifier& inputs) {
+    for (size_t i = 1; i < inputs.inputs(); ++i)
+        if (inputs.source(i).info().metres_per_unit != inputs.source(0).info().metres_per_unit)
+            return rejected(inputs.source(i).info().path, "is in another unit than the first input",
+                            "convert it on its own");
+    return {};
+}
+
+}  // namespace
+
+Result<BuildReport> build_cache(const BuildOptions& options) {
+    LUCARNE_TRY(check_output(options.output, options.overwrite));
+    const unsigned threads =
+        options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+    const ThreadLimit limit(threads);
+    const auto folder = !options.temp_folder.empty()       ? options.temp_folder
+                        : options.output.has_parent_path() ? options.output.parent_path()
+                                                           : std::filesystem::path(".");
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs));
+    LUCARNE_TRY(check_units(inputs));
+    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
+    const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
+    const NodeLimits limits(inputs.schema().stride + added);
+    LUCARNE_ASSIGN(const auto memory,
+                   MemoryPlan::create(options.memory, inputs.schema().stride + added, limits.leaf, threads));
+
+    BuildReport report;
+    LUCARNE_ASSIGN(const auto facts,
+                   timed(report, "scan", [&] { return scan_inputs(inputs, memory.batch_bytes); }));
+    if (facts.dropped)
+        log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
+
+    LUCARNE_ASSIGN(ChunkStore store, ChunkStore::create(folder, inputs.schema(), facts.root));
+    LUCARNE_TRY(timed(report, "chunk", [&] {
+        Progress progress("sorting into chunks", 2 * facts.points, "points");
+        const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
+        return store.fill(with_progress(pass, progress, inputs.schema().stride), facts.points, memory);
+    }));
+    const SourceHeader bare = header_of(inputs, facts, inputs.schema());
+    std::optional<SurfaceStore> surface;
+    if (normals)
+        LUCARNE_TRY(timed(report, "normals", [&]() -> Result<void> {
+            const SurfaceStore::Settings settings{*normals, options.neighbours, threads, options.memory};
+            LUCARNE_ASSIGN(surface, SurfaceStore::estimate(store, bare.scans, folder, settings));
+            return {};
+        }));
+    const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
+    LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
+    LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
+        LUCARNE_ASSIGN(Assembler assembler, Assembler::create(writer, loader, limits, folder));
+        return build_chunks(store, loader, limits, memory, assembler);
+    }));
+    LUCARNE_TRY(
+        timed(report, "write", [&] { return writer.finish(header_of(inputs, facts, loader.schema())); }));
+    report.points = facts.points;
+    report.dropped = facts.dropped;
+    report.chunks = store.chunks().size();
+    report.nodes = writer.nodes();
+    report.bytes = writer.bytes() + writer.nodes() * format::kEntryBytes;
+    return report;
+}
+
+}  // namespace lucarne::octree

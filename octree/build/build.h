@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/points.h"
+
+namespace lucarne::octree {
+
+enum class NormalsMode {
+    automatic,  ///< keep where every input has them, else estimate
+    keep,       ///< the inputs' own; areas are estimated
+    estimate,
+    none  ///< neither normals nor areas
+};
+
+struct BuildOptions {
+    std::vector<const io::PointSource*> inputs;
+    std::filesystem::path output;
+    NormalsMode normals = NormalsMode::automatic;
+    uint64_t memory = uint64_t{2} << 30;  ///< cap on what the build holds, bytes
+    unsigned threads = 0;                 ///< 0: all cores
+    std::filesystem::path temp_folder;    ///< for scratch files; empty: the output's folder
+    bool overwrite = false;
+    uint32_t neighbours = 16;  ///< for normals and areas
+};
+
+struct StageTime {
+    std::string name;
+    double wall_seconds = 0, cpu_seconds = 0;
+};
+
+struct BuildReport {
+    uint64_t points = 0;
+    uint64_t dropped = 0;  ///< points with a coordinate that is no number
+    uint64_t nodes = 0, chunks = 0, bytes = 0;
+    std::vector<StageTime> stages;
+};
+
+/// Builds a cache from scans: scan, chunk, normals, then build chunk by chunk while the levels above are put
+/// together. The file is the same for any number of threads and any memory cap. Errors: unreadable inputs, no
+/// points, an output that exists or cannot be written, a full disk; nothing is left behind.
+Result<BuildReport> build_cache(const BuildOptions& options);
+
+}  // namespace lucarne::octree

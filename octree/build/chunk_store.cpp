@@ -1,0 +1,126 @@
+#include "octree/build/chunk_store.h"
+
+#include <algorithm>
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint64_t kMinBuffer = 8 << 10, kMaxBuffer = 256 << 10;
+
+/// Collects the records of each chunk and writes them in large pieces.
+class Dealer {
+ public:
+    Dealer(ScratchFile& file, std::span<const Chunk> chunks, uint64_t first, uint32_t stride, uint64_t bytes)
+        : file_(file), stride_(stride) {
+        const uint64_t each = std::clamp<uint64_t>(bytes / chunks.size(), kMinBuffer, kMaxBuffer);
+        capacity_ = std::max<uint64_t>(1, each / stride) * stride;
+        for (const auto& chunk : chunks) lanes_.push_back({(first + chunk.first) * stride, {}});
+    }
+
+    Result<void> deal(size_t chunk, const std::byte* record) {
+        Lane& lane = lanes_[chunk];
+        if (lane.waiting.capacity() == 0) lane.waiting.reserve(capacity_);
+        lane.waiting.insert(lane.waiting.end(), record, record + stride_);
+        return lane.waiting.size() >= capacity_ ? flush(lane) : Result<void>{};
+    }
+
+    Result<void> finish() {
+        for (auto& lane : lanes_) LUCARNE_TRY(flush(lane));
+        return {};
+    }
+
+ private:
+    struct Lane {
+        uint64_t offset;
+        std::vector<std::byte> waiting;
+    };
+    Result<void> flush(Lane& lane) {
+        LUCARNE_TRY(file_.write_at(lane.offset, lane.waiting));
+        lane.offset += lane.waiting.size();
+        lane.waiting.clear();
+        return {};
+    }
+
+    ScratchFile& file_;
+    uint32_t stride_;
+    uint64_t capacity_;
+    std::vector<Lane> lanes_;
+};
+
+}  // namespace
+
+Result<ChunkStore> ChunkStore::create(const std::filesystem::path& folder, const io::Schema& schema,
+                                      const Cube& root) {
+    LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder));
+    return ChunkStore(std::move(file), schema, root);
+}
+
+Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory) {
+    LUCARNE_ASSIGN(auto coarse, split(pass, {}, points, memory));
+    return refine(std::move(coarse), memory);
+}
+
+/// One level of distribution: the points of `cube` become chunks at the end of the scratch file.
+Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cube, uint64_t points,
+                                             const MemoryPlan& memory) {
+    const uint32_t stride = schema_.stride;
+    const auto place = [&](const std::byte* record) { return root_.place(io::position_of(schema_, record)); };
+    CountGrid grid(cube, points, memory.grid_bytes);
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += stride) grid.count(place(&records[at]));
+        return {};
+    }));
+    std::vector<Chunk> chunks =
+        grid.plan(memory.chunk_points,
+                  std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride)));
+    Dealer dealer(file_, chunks, end_, stride, memory.buffer_bytes);
+    const auto deal = [&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += stride)
+            LUCARNE_TRY(dealer.deal(grid.chunk_of(place(&records[at])), &records[at]));
+        return {};
+    };
+    LUCARNE_TRY(pass(deal));
+    LUCARNE_TRY(dealer.finish());
+    for (auto& chunk : chunks) chunk.first += end_;
+    end_ += points;
+    return chunks;
+}
+
+/// Splits chunks that are still too large, as deep as the Morton code goes; the rest is kept in order.
+Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& memory) {
+    for (const Chunk& chunk : coarse) {
+        if (chunk.count <= memory.chunk_points || chunk.key.level == kMaxLevel) {
+            chunks_.push_back(chunk);
+            continue;
+        }
+        LUCARNE_ASSIGN(auto finer, split(pass_over(chunk, memory), chunk.key, chunk.count, memory));
+        file_.discard(chunk.first * schema_.stride, chunk.count * schema_.stride);
+        LUCARNE_TRY(refine(std::move(finer), memory));  // a level deeper each time, so 21 deep at most
+    }
+    return {};
+}
+
+Pass ChunkStore::pass_over(const Chunk& chunk, const MemoryPlan& memory) {
+    return [this, chunk, most = std::max<uint64_t>(1, memory.batch_bytes / schema_.stride)](
+               const Visit& visit) -> Result<void> {
+        std::vector<std::byte> records;
+        for (uint64_t done = 0; done < chunk.count; done += most) {
+            records.resize(std::min(most, chunk.count - done) * schema_.stride);
+            LUCARNE_TRY(file_.read_at((chunk.first + done) * schema_.stride, records));
+            LUCARNE_TRY(visit(records));
+        }
+        return {};
+    };
+}
+
+Result<std::vector<std::byte>> ChunkStore::load(size_t chunk, uint64_t first, uint64_t count) const {
+    std::vector<std::byte> records(count * schema_.stride);
+    LUCARNE_TRY(file_.read_at((chunks_[chunk].first + first) * schema_.stride, records));
+    return records;
+}
+
+void ChunkStore::discard(size_t chunk) {
+    file_.discard(chunks_[chunk].first * schema_.stride, chunks_[chunk].count * schema_.stride);
+}
+
+}  // namespace lucarne::octree

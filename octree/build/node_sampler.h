@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/build/sampler.h"
+#include "octree/cache_format.h"
+
+namespace lucarne::octree {
+
+/// How large nodes get. Depends on the record's size alone, so that the tree does not depend on --memory.
+struct NodeLimits {
+    explicit NodeLimits(uint32_t stride)
+        : leaf(std::clamp<size_t>((size_t{512} << 10) / stride, 8, 10'000)), sample(2 * leaf) {}
+    size_t leaf;    ///< a cube with more points is split
+    size_t sample;  ///< most points that an inner node shows, its ancestors' among them
+};
+
+/// A node that is whole but for what its parent will take: the points it shows are its sample.
+struct Pending {
+    NodeKey key;
+    uint8_t child_mask = 0;
+    uint64_t points = 0;  ///< in the cube in all, whichever node will hold them
+    double surface = 0;   ///< in the cube, file unit squared
+};
+
+/// Divides the samples of up to eight children between them and their parent.
+class NodeSampler {
+ public:
+    explicit NodeSampler(const NodeLimits& limits) : limits_(limits) {}
+
+    void start(const NodeKey& parent);
+    void add(const Place& place, float area);  ///< the samples of one child, in Morton order...
+    void end_child(const Pending& child);      ///< ...and then the child; children in octant order
+    void run();
+    /// For the root, as its own only child: nothing is taken from it, its points are only ordered.
+    void run_root();
+
+    size_t children() const { return children_.size(); }
+    /// Which of a child's sample the parent takes, ascending.
+    void taken(size_t child, std::vector<uint32_t>& indices) const;
+    /// Which of it stays, in prefix order, and the child's directory entry but for its payload.
+    format::Entry settle(size_t child, std::vector<uint32_t>& order);
+    /// The parent, with those of its children that kept any point.
+    Pending parent() const;
+
+ private:
+    struct Child {
+        Pending node;
+        size_t begin = 0, end = 0;  ///< its sample among the points
+        size_t taken = 0;
+    };
+    void count_taken();
+
+    NodeLimits limits_;
+    NodeKey parent_;
+    Sampler sampler_;
+    std::vector<float> areas_;
+    std::vector<Child> children_;
+    uint8_t first_own_pass_ = 1;
+    std::vector<float> inherited_, own_;
+};
+
+}  // namespace lucarne::octree

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "octree/build/surface_store.h"
+
+namespace lucarne::octree {
+
+/// Hands out the records of chunks as the cache will hold them: the input's, with what was estimated behind
+/// them.
+class RecordLoader {
+ public:
+    /// `surface` is null where neither normals nor areas were estimated; `normals`: whether its normals are
+    /// wanted.
+    RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals);
+
+    const io::Schema& schema() const { return schema_; }
+    const Cube& root() const { return chunks_.root(); }
+    std::span<const Chunk> chunks() const { return chunks_.chunks(); }
+    Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
+
+    Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
+    /// The point's surface share, 0 where unknown.
+    float area(const std::byte* record) const;
+
+ private:
+    const ChunkStore& chunks_;
+    const SurfaceStore* surface_;
+    io::Schema schema_;
+    const io::Attribute *normal_ = nullptr, *area_ = nullptr;
+};
+
+}  // namespace lucarne::octree

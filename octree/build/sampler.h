@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octree/key.h"
+
+namespace lucarne::octree {
+
+/// Thins the points of one cube by Poisson-disk sampling at a falling radius: pass 0 is an even subset in
+/// which no two points are nearer than the first radius, and every further pass fills the gaps at a smaller
+/// one. A point's pass is therefore how coarse a level of detail it belongs to. Based on: Corsini, Cignoni,
+/// Scopigno, "Efficient and flexible sampling with blue noise properties of triangular meshes", 2012 (dart
+/// throwing over a given set of points); the nested, bottom-up use is that of Schuetz, Ohrhallinger, Wimmer,
+/// "Fast out-of-core octree generation for massive point clouds", 2020. Deterministic: depends on the points
+/// and their order alone.
+class Sampler {
+ public:
+    /// Forgets the points; those added from now on lie in the cube of `node`.
+    void start(const NodeKey& node);
+    void add(
+        const Place& place);  ///< best in Morton order: neighbours are then met while they are in the cache
+    /// Gives every point its pass. `radius` is in cube sizes; it grows until pass 0 has at most `most`
+    /// points.
+    void run(float radius, size_t most);
+
+    size_t size() const { return points_.size(); }
+    std::span<const uint8_t> passes() const { return passes_; }
+
+ private:
+    struct Point {
+        float x, y, z;  ///< in cube sizes
+        uint32_t next;  ///< the next point of the same grid bucket
+    };
+    void reset_grid(float radius);
+    size_t bucket(int32_t x, int32_t y, int32_t z) const;
+    void insert(uint32_t point);
+    bool free_around(const Point& point) const;
+    /// Takes what fits from `from` in its order; the rest moves to the front of `rest`.
+    void take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uint8_t pass);
+
+    Place origin_;
+    float scale_ = 1;
+    std::vector<Point> points_;
+    std::vector<uint8_t> passes_;
+    std::vector<uint32_t> heads_, taken_, waiting_, thinned_;
+    float radius2_ = 0, cells_ = 0;  ///< squared radius; grid cells per cube size
+    size_t mask_ = 0;
+};
+
+/// Appends to `order` the points of [first, first + passes.size()) whose pass is at least `from`, pass by
+/// pass and inside a pass in bit-reversed rank (van der Corput along the points' Morton order), so that every
+/// prefix is even.
+void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vector<uint32_t>& order);
+
+}  // namespace lucarne::octree

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "octree/build/chunk_store.h"
+#include "octree/build/unify.h"
+
+namespace lucarne::octree {
+
+/// What one pass over all inputs tells.
+struct ScanFacts {
+    uint64_t points = 0, dropped = 0;
+    glm::dvec3 min{0.0}, max{0.0};
+    Cube root;  ///< the smallest cube at `min` that holds every point
+};
+
+/// A pass over the points of all inputs, in the unified schema, input after input.
+Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
+
+/// Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes);
+
+}  // namespace lucarne::octree

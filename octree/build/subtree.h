@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "octree/build/node_sampler.h"
+#include "octree/build/record_loader.h"
+
+namespace lucarne::octree {
+
+/// A chunk built: every node under its root is settled; the root waits for its parent.
+struct Subtree {
+    std::vector<std::byte> payload;
+    std::vector<format::Entry> entries;  ///< depth first, payload offsets from the start of `payload`
+    Pending root;
+    std::vector<std::byte> sample;  ///< the root's sample, whole records in Morton order
+    /// Points of the chunk, from this one on, that stand in the root behind its sample: only where the Morton
+    /// code is exhausted and the place holds more points than memory.
+    uint64_t overflow_first = 0;
+};
+
+/// Appends the settled child's records to `payload` and its entry to `entries`. `record(i)` is the i-th of
+/// its sample.
+template <class Record>
+void emit_child(NodeSampler& sampler, size_t child, uint32_t stride, std::vector<uint32_t>& order,
+                const Record& record, std::vector<std::byte>& payload, std::vector<format::Entry>& entries) {
+    format::Entry entry = sampler.settle(child, order);
+    if (entry.subtree_count == 0) return;  // its parent took everything
+    entry.payload_offset = payload.size();
+    entry.payload_bytes = entry.count * stride;
+    for (const uint32_t i : order) {
+        const std::byte* bytes = record(i);
+        payload.insert(payload.end(), bytes, bytes + stride);
+    }
+    entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
+    entries.push_back(entry);
+}
+
+/// Builds chunk number `index` in memory.
+Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits,
+                              uint64_t chunk_points);
+
+/// The surface in a cube: the sum of its points' shares, those unknown counted as the mean of the known.
+/// Where none is known it is estimated from the cells that the points (sorted `codes`) occupy: a surface of
+/// area A crosses about 1.5 A / c^2 cells of size c (Crofton: the mean of |nx|+|ny|+|nz|), seen where cells
+/// hold four points or more.
+double surface_of(std::span<const float> areas, std::span<const uint64_t> codes, uint32_t level,
+                  double root_size);
+
+}  // namespace lucarne::octree

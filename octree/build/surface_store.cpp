@@ -1,0 +1,105 @@
+#include "octree/build/surface_store.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+namespace lucarne::octree {
+namespace {
+
+/// The chunks and stations of a build as the estimator sees them.
+class Access final : public ChunkAccess {
+ public:
+    Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans)
+        : store_(store), by_id_(scans.size()) {
+        for (size_t scan = 0; scan < scans.size(); ++scan)
+            for (const auto& station : scans[scan].stations) {
+                by_id_[scan].try_emplace(station.id, static_cast<int32_t>(stations_.size()));
+                stations_.push_back(station.position);
+            }
+    }
+
+    const std::vector<glm::dvec3>& all_stations() const { return stations_; }
+
+    size_t chunk_count() const override { return store_.chunks().size(); }
+    uint64_t point_count(size_t chunk) const override { return store_.chunks()[chunk].count; }
+    Box bounds(size_t chunk) const override {
+        const Cube cube = store_.root().of(store_.chunks()[chunk].key);
+        return {cube.min, cube.min + glm::dvec3(cube.size)};
+    }
+
+    Result<std::vector<glm::dvec3>> positions(size_t chunk) const override {
+        LUCARNE_ASSIGN(const auto records, store_.load(chunk, 0, point_count(chunk)));
+        std::vector<glm::dvec3> positions;
+        positions.reserve(point_count(chunk));
+        for (size_t at = 0; at < records.size(); at += store_.schema().stride)
+            positions.push_back(io::position_of(store_.schema(), &records[at]));
+        return positions;
+    }
+
+    /// By point_source_id; the only station of an input saw all of its points.
+    Result<std::vector<int32_t>> stations(size_t chunk) const override {
+        std::vector<int32_t> result(point_count(chunk), -1);
+        if (stations_.empty()) return result;
+        LUCARNE_ASSIGN(const auto records, store_.load(chunk, 0, point_count(chunk)));
+        const auto& schema = store_.schema();
+        const auto* scan = by_id_.size() > 1 ? schema.find(io::names::scan) : nullptr;
+        const auto* source = schema.find(io::names::point_source_id);
+        for (size_t i = 0; i < result.size(); ++i) {
+            const std::byte* record = &records[i * schema.stride];
+            const auto& ids = by_id_[scan ? io::load<uint16_t>(record + scan->offset) : 0];
+            if (ids.size() == 1) result[i] = ids.begin()->second;
+            if (ids.size() < 2 || !source) continue;
+            const auto found =
+                ids.find(static_cast<uint32_t>(io::scalar_at(source->type, record + source->offset)));
+            if (found != ids.end()) result[i] = found->second;
+        }
+        return result;
+    }
+
+ private:
+    const ChunkStore& store_;
+    std::vector<std::map<uint32_t, int32_t>> by_id_;  ///< of each scan: station id to index
+    std::vector<glm::dvec3> stations_;
+};
+
+}  // namespace
+
+Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
+                                            const std::filesystem::path& folder, const Settings& settings) {
+    LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder));
+    SurfaceStore store(std::move(file), chunks);
+    const Access access(chunks, scans);
+    NormalOptions options;
+    options.neighbours = settings.neighbours;
+    options.stations = access.all_stations();
+    options.memory = settings.memory;
+    options.threads = settings.threads;
+    options.normals = settings.normals;
+    if (access.chunk_count()) return failed("normals", "cannot be estimated yet", "use --normals none");
+    return store;
+}
+
+Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals& found) {
+    std::vector<Point> points(count);
+    for (size_t i = 0; i < count; ++i) {
+        if (i < found.normals.size()) points[i].normal = found.normals[i];
+        if (i < found.areas.size()) points[i].area = found.areas[i];
+        if (i < found.components.size()) points[i].component = found.components[i];
+    }
+    return file_.write_at(first_[chunk] * sizeof(Point), std::as_bytes(std::span(points)));
+}
+
+Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64_t first,
+                                                            uint64_t count) const {
+    std::vector<Point> points(count);
+    LUCARNE_TRY(
+        file_.read_at((first_[chunk] + first) * sizeof(Point), std::as_writable_bytes(std::span(points))));
+    if (chunk >= signs_.size()) return points;
+    for (auto& point : points)
+        if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0)
+            point.normal = -point.normal;
+    return points;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "octree/build/chunk_store.h"
+#include "octree/normals/normals.h"
+
+namespace lucarne::octree {
+
+/// What the normals stage found out about each point, in a scratch file beside the chunks.
+class SurfaceStore {
+ public:
+    struct Point {
+        glm::vec3 normal{0.0f};  ///< as estimated, before its component's sign
+        float area = 0;          ///< 0: unknown
+        uint32_t component = 0;
+    };
+    struct Settings {
+        bool normals = true;  ///< false: the input's are kept, only areas are wanted
+        uint32_t neighbours = 16;
+        unsigned threads = 0;
+        uint64_t memory = 0;
+    };
+
+    /// Runs the estimator over all chunks. `scans` has the stations, one entry an input.
+    static Result<SurfaceStore> estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
+                                         const std::filesystem::path& folder, const Settings& settings);
+
+    /// Points [first, first + count) of a chunk, normals turned the way they shall point.
+    Result<std::vector<Point>> load(size_t chunk, uint64_t first, uint64_t count) const;
+
+ private:
+    SurfaceStore(ScratchFile file, const ChunkStore& chunks) : file_(std::move(file)) {
+        for (const auto& chunk : chunks.chunks()) first_.push_back(end_), end_ += chunk.count;
+    }
+    Result<void> keep(size_t chunk, uint64_t count, const ChunkNormals& found);
+
+    ScratchFile file_;
+    std::vector<uint64_t> first_;  ///< each chunk's first point
+    uint64_t end_ = 0;
+    OrientationSigns signs_;
+};
+
+}  // namespace lucarne::octree

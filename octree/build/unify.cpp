@@ -1,0 +1,175 @@
+#include "octree/build/unify.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "octree/cache_format.h"
+
+namespace lucarne::octree {
+namespace {
+
+using io::ScalarType;
+
+std::string unified_name(const io::Attribute& attribute) {
+    for (const auto ours : {io::names::normal_oct, io::names::area, io::names::scan})
+        if (attribute.name == ours) return attribute.name + std::string(kForeign);
+    return attribute.name;
+}
+
+bool is_float(ScalarType t) {
+    return t == ScalarType::f32 || t == ScalarType::f64;
+}
+bool is_signed(ScalarType t) {
+    return t == ScalarType::i8 || t == ScalarType::i16 || t == ScalarType::i32 || t == ScalarType::i64;
+}
+
+ScalarType integer_type(bool with_sign, size_t bytes) {
+    switch (bytes) {
+        case 1:
+            return with_sign ? ScalarType::i8 : ScalarType::u8;
+        case 2:
+            return with_sign ? ScalarType::i16 : ScalarType::u16;
+        case 4:
+            return with_sign ? ScalarType::i32 : ScalarType::u32;
+        default:
+            return with_sign ? ScalarType::i64 : ScalarType::u64;
+    }
+}
+
+/// The narrowest type that holds every value of both; empty where there is none.
+std::optional<ScalarType> common_type(ScalarType a, ScalarType b) {
+    if (a == b) return a;
+    if (is_float(a) || is_float(b)) {
+        // Integers of up to 4 bytes are exact in a double, of up to 2 in a float.
+        const auto need = [](ScalarType t) {
+            return is_float(t) ? io::scalar_bytes(t) : 2 * io::scalar_bytes(t);
+        };
+        const size_t bytes = std::max(need(a), need(b));
+        if (bytes > 8) return std::nullopt;
+        return bytes <= 4 ? ScalarType::f32 : ScalarType::f64;
+    }
+    if (is_signed(a) == is_signed(b))
+        return integer_type(is_signed(a), std::max(io::scalar_bytes(a), io::scalar_bytes(b)));
+    const size_t with = io::scalar_bytes(is_signed(a) ? a : b),
+                 without = io::scalar_bytes(is_signed(a) ? b : a);
+    const size_t bytes = std::max(with, 2 * without);
+    if (bytes > 8) return std::nullopt;
+    return integer_type(true, bytes);
+}
+
+}  // namespace
+
+Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources) {
+    if (sources.empty()) return bad_arguments("inputs", "there are none");
+    if (sources.size() > 0xffff)
+        return bad_arguments("inputs", fmt::format("{} are more than 65535", sources.size()));
+    Unifier unifier;
+    unifier.sources_ = std::move(sources);
+    unifier.unify_positions();
+    LUCARNE_TRY(unifier.unify_attributes());
+    if (unifier.schema_.stride > format::kMaxStride / 2)
+        return rejected(unifier.sources_[0]->info().path,
+                        fmt::format("{} bytes a point are more than 32 KiB", unifier.schema_.stride));
+    for (size_t i = 0; i < unifier.inputs(); ++i) unifier.plans_.push_back(unifier.plan_for(i));
+    return unifier;
+}
+
+bool Unifier::has_normals(size_t input) const {
+    const auto* normal = sources_[input]->schema().find(io::names::normal);
+    return normal && normal->type == ScalarType::f32 && normal->components == 3;
+}
+
+void Unifier::unify_positions() {
+    const auto& first = sources_[0]->schema();
+    schema_.position = first.position;
+    schema_.scale = first.scale;
+    schema_.offset = first.offset;
+    for (const auto* source : sources_) {
+        const auto& other = source->schema();
+        const bool same = other.position == schema_.position &&
+                          (other.position != io::PositionType::i32_scaled ||
+                           (other.scale == schema_.scale && other.offset == schema_.offset));
+        if (!same) schema_.position = io::PositionType::f64;
+    }
+    if (schema_.position != io::PositionType::i32_scaled)
+        schema_.scale = glm::dvec3(1.0), schema_.offset = glm::dvec3(0.0);
+    schema_.stride = static_cast<uint32_t>(io::position_bytes(schema_.position));
+}
+
+Result<void> Unifier::unify_attributes() {
+    std::vector<io::Attribute> all;
+    for (const auto* source : sources_)
+        for (const auto& attribute : source->schema().attributes) {
+            const std::string name = unified_name(attribute);
+            const auto known =
+                std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == name; });
+            if (known == all.end()) {
+                all.push_back({name, attribute.type, attribute.components, 0});
+                continue;
+            }
+            const auto type = common_type(known->type, attribute.type);
+            if (!type || known->components != attribute.components)
+                return rejected(
+                    source->info().path,
+                    fmt::format("its attribute '{}' does not fit that of the other inputs", attribute.name),
+                    "convert it on its own");
+            known->type = *type;
+        }
+    for (const auto& a : all) schema_.add(a.name, a.type, a.components);
+    if (inputs() > 1) schema_.add(std::string(io::names::scan), ScalarType::u16);
+    return {};
+}
+
+Unifier::Plan Unifier::plan_for(size_t input) const {
+    const auto& from = sources_[input]->schema();
+    Plan plan;
+    plan.convert_position = from.position != schema_.position;
+    if (!plan.convert_position)
+        plan.steps.push_back({.bytes = static_cast<uint32_t>(io::position_bytes(from.position))});
+    for (const auto& attribute : from.attributes) {
+        const auto* to = schema_.find(unified_name(attribute));
+        const auto bytes = static_cast<uint32_t>(attribute.bytes());
+        if (to->type == attribute.type) {
+            auto* last = plan.steps.empty() ? nullptr : &plan.steps.back();
+            if (last && last->components == 0 && last->from + last->bytes == attribute.offset &&
+                last->to + last->bytes == to->offset)
+                last->bytes += bytes;  // one copy for neighbours
+            else
+                plan.steps.push_back({.from = attribute.offset, .to = to->offset, .bytes = bytes});
+            continue;
+        }
+        const bool widened_colour = attribute.name == io::names::color && attribute.type == ScalarType::u8 &&
+                                    to->type == ScalarType::u16;
+        plan.steps.push_back({attribute.offset, to->offset, bytes, attribute.components, attribute.type,
+                              to->type, widened_colour ? 257.0 : 1.0});
+    }
+    plan.identical = inputs() == 1 && plan.steps.size() == 1 && plan.steps[0].bytes == from.stride;
+    return plan;
+}
+
+std::span<const std::byte> Unifier::convert(size_t input, const io::PointBatch& batch,
+                                            std::vector<std::byte>& storage) const {
+    const Plan& plan = plans_[input];
+    const auto& from = sources_[input]->schema();
+    if (plan.identical) return std::span(batch.bytes).first(batch.count * from.stride);
+    storage.assign(batch.count * schema_.stride, std::byte{0});
+    const auto* scan = inputs() > 1 ? schema_.find(io::names::scan) : nullptr;
+    for (size_t i = 0; i < batch.count; ++i) {
+        const std::byte* in = &batch.bytes[i * from.stride];
+        std::byte* out = &storage[i * schema_.stride];
+        if (plan.convert_position) io::store(out, io::position_of(from, in));
+        for (const Step& step : plan.steps) {
+            if (step.components == 0) std::memcpy(out + step.to, in + step.from, step.bytes);
+            for (size_t c = 0; c < step.components; ++c)
+                io::store_scalar(
+                    step.to_type, out + step.to + c * io::scalar_bytes(step.to_type),
+                    step.factor *
+                        io::scalar_at(step.from_type, in + step.from + c * io::scalar_bytes(step.from_type)));
+        }
+        if (scan) io::store(out + scan->offset, static_cast<uint16_t>(input));
+    }
+    return storage;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/points.h"
+
+namespace lucarne::octree {
+
+/// One schema for the points of several inputs, and the conversion of their records into it. Nothing is lost:
+/// integer positions stay so where all inputs share scale and offset and become doubles otherwise; an
+/// attribute takes the narrowest type that holds those of all inputs (8-bit colour becomes 16-bit colour) and
+/// is zero for points of inputs without it. With several inputs, `scan` says which one a point came from.
+/// Attributes of the inputs that are called like one of ours get the suffix kForeign.
+class Unifier {
+ public:
+    /// `sources` must outlive the unifier. Errors: attributes that no common type can hold, too many inputs.
+    static Result<Unifier> create(std::vector<const io::PointSource*> sources);
+
+    const io::Schema& schema() const { return schema_; }
+    size_t inputs() const { return sources_.size(); }
+    const io::PointSource& source(size_t input) const { return *sources_[input]; }
+    /// Whether the input's points come with normals of their own.
+    bool has_normals(size_t input) const;
+    /// The records of `batch` in the unified schema: either its own bytes or `storage`, refilled.
+    std::span<const std::byte> convert(size_t input, const io::PointBatch& batch,
+                                       std::vector<std::byte>& storage) const;
+
+ private:
+    struct Step {
+        uint32_t from = 0, to = 0, bytes = 0;  ///< copied as they are...
+        uint32_t components = 0;               ///< ...or, where not 0, converted one by one
+        io::ScalarType from_type{}, to_type{};
+        double factor = 1;
+    };
+    struct Plan {
+        bool identical = false, convert_position = false;
+        std::vector<Step> steps;
+    };
+    Result<void> unify_attributes();
+    void unify_positions();
+    Plan plan_for(size_t input) const;
+
+    std::vector<const io::PointSource*> sources_;
+    io::Schema schema_;
+    std::vector<Plan> plans_;
+};
+
+/// What is appended to the name of an input's attribute that is called `normal_oct`, `area` or `scan`; export
+/// takes it off again.
+inline constexpr std::string_view kForeign = "_in_file";
+
+}  // namespace lucarne::octree

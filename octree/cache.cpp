@@ -1,0 +1,174 @@
+#include "octree/cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "octree/cache_file.h"
+
+namespace lucarne::octree {
+
+using format::Entry;
+using format::Superblock;
+
+namespace {
+
+constexpr const char* kAgain = "convert the scan again";
+
+auto damaged(const InputFile& file, std::string why) {
+    return rejected(file.path().string(), std::move(why), kAgain);
+}
+
+/// Whether [offset, offset + bytes) lies behind the superblocks and before `end`.
+bool inside(uint64_t offset, uint64_t bytes, uint64_t end) {
+    return offset >= format::kFirstPayload && offset <= end && bytes <= end - offset;
+}
+
+Result<Superblock> newest_superblock(const InputFile& file) {
+    LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
+    const auto& [a, b] = blocks;
+    if (!a && !b)
+        return damaged(file, "is not a cache of this version, or both of its superblocks are damaged");
+    const Superblock block = !b || (a && a->generation >= b->generation) ? *a : *b;
+    if (block.file_bytes > file.size())
+        return damaged(file, fmt::format("ends early: {} bytes of {}", file.size(), block.file_bytes));
+    if (!inside(block.directory_offset, block.directory_bytes, block.file_bytes) ||
+        !inside(block.metadata_offset, block.metadata_bytes, block.file_bytes) ||
+        block.metadata_bytes > format::kMaxMetadata || block.directory_bytes % format::kEntryBytes != 0 ||
+        block.directory_bytes / format::kEntryBytes >= kNoNode)
+        return damaged(file, "its superblock points outside the file");
+    return block;
+}
+
+/// Reads a checksummed range. Its size was checked against the file before.
+Result<std::vector<std::byte>> read_checked(const InputFile& file, uint64_t offset, uint64_t bytes,
+                                            uint64_t sum, const std::string& what) {
+    std::vector<std::byte> data(bytes);
+    LUCARNE_TRY(file.read_at(offset, data));
+    if (format::checksum(data) != sum) return damaged(file, what + " does not match its checksum");
+    return data;
+}
+
+}  // namespace
+
+Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const InputFile& file) {
+    if (file.size() < format::kFirstPayload) return damaged(file, "is too short for a cache");
+    std::array<std::byte, format::kFirstPayload> bytes;
+    LUCARNE_TRY(file.read_at(0, bytes));
+    const std::span all(bytes);
+    return std::array{format::decode(all.first<format::kSuperblockBytes>()),
+                      format::decode(all.last<format::kSuperblockBytes>())};
+}
+
+Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(InputFile file, InputFile::open(path));
+    LUCARNE_ASSIGN(const Superblock block, newest_superblock(file));
+    std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));
+    LUCARNE_TRY(cache->read_directory());
+    LUCARNE_TRY(cache->check_structure());
+    LUCARNE_TRY(cache->check_payloads());
+    return cache;
+}
+
+Result<void> CacheFile::read_directory() {
+    LUCARNE_ASSIGN(const auto metadata, read_checked(file_, block_.metadata_offset, block_.metadata_bytes,
+                                                     block_.metadata_checksum, "its metadata"));
+    LUCARNE_ASSIGN(header_,
+                   parse_metadata(file_.path().string(),
+                                  {reinterpret_cast<const char*>(metadata.data()), metadata.size()}));
+    LUCARNE_ASSIGN(const auto bytes, read_checked(file_, block_.directory_offset, block_.directory_bytes,
+                                                  block_.directory_checksum, "its directory"));
+    const size_t count = bytes.size() / format::kEntryBytes;
+    nodes_.reserve(count);
+    payloads_.reserve(count);
+    for (size_t i = 0; i < count; ++i) {
+        const Entry entry = format::load_entry(&bytes[i * format::kEntryBytes]);
+        if (entry.key.level > kMaxLevel ||
+            ((entry.key.x | entry.key.y | entry.key.z) >> entry.key.level) != 0)
+            return damaged(file_, fmt::format("node {} lies outside the root cube", i));
+        if (entry.codec != format::kCodecRaw)
+            return damaged(file_, fmt::format("node {} uses the unknown codec {}", i, entry.codec));
+        if (!std::all_of(entry.area_floor.begin(), entry.area_floor.end(),
+                         [](float v) { return std::isfinite(v) && v >= 0; }))
+            return damaged(file_, fmt::format("node {} has an impossible area floor", i));
+        nodes_.push_back({.key = entry.key,
+                          .child_mask = entry.child_mask,
+                          .count = entry.count,
+                          .subtree_count = entry.subtree_count,
+                          .payload_bytes = entry.payload_bytes,
+                          .area_floor = entry.area_floor});
+        payloads_.push_back({entry.payload_offset, entry.checksum});
+    }
+    return {};
+}
+
+/// Breadth first and Morton sorted means: walking the nodes in order, their children follow each other
+/// without a gap. That makes parents exist, keys consistent and unique, and the order right, all at once.
+Result<void> CacheFile::check_structure() {
+    if (nodes_.empty() || nodes_[0].key != NodeKey{}) return damaged(file_, "it has no root node");
+    size_t next = 1;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        auto& node = nodes_[i];
+        if (node.child_mask == 0) continue;
+        node.first_child = static_cast<uint32_t>(next);
+        for (uint32_t octant = 0; octant < 8; ++octant) {
+            if (!(node.child_mask >> octant & 1)) continue;
+            if (next >= nodes_.size() || next <= i || nodes_[next].key != node.key.child(octant))
+                return damaged(file_, fmt::format("the children of node {} are not where they belong", i));
+            nodes_[next++].parent = static_cast<uint32_t>(i);
+        }
+    }
+    if (next != nodes_.size()) return damaged(file_, fmt::format("node {} has no parent", next));
+    std::vector<uint64_t> below(nodes_.size(), 0);
+    for (size_t i = nodes_.size(); i-- > 0;) {
+        const auto& node = nodes_[i];
+        if (node.subtree_count < node.count || node.subtree_count - node.count != below[i])
+            return damaged(file_, fmt::format("the counts below node {} do not add up", i));
+        if (i > 0 && __builtin_add_overflow(below[node.parent], node.subtree_count, &below[node.parent]))
+            return damaged(file_, "its counts overflow");
+    }
+    if (nodes_[0].subtree_count != header_.points)
+        return damaged(file_, "metadata and directory disagree about the number of points");
+    return {};
+}
+
+Result<void> CacheFile::check_payloads() {
+    std::vector<std::pair<uint64_t, uint64_t>> ranges;  // begin, end
+    ranges.reserve(nodes_.size() + 2);
+    ranges.emplace_back(block_.directory_offset, block_.directory_offset + block_.directory_bytes);
+    ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+        const uint64_t bytes = nodes_[i].payload_bytes;
+        if (bytes != uint64_t{nodes_[i].count} * header_.schema.stride ||
+            !inside(payloads_[i].offset, bytes, block_.file_bytes))
+            return damaged(file_, fmt::format("the points of node {} lie outside the file", i));
+        if (bytes) ranges.emplace_back(payloads_[i].offset, payloads_[i].offset + bytes);
+    }
+    std::sort(ranges.begin(), ranges.end());
+    for (size_t i = 1; i < ranges.size(); ++i)
+        if (ranges[i].first < ranges[i - 1].second) return damaged(file_, "parts of it overlap");
+    return {};
+}
+
+Result<NodeData> CacheFile::load(uint32_t node) const {
+    const NodeInfo& info = nodes_[node];
+    LUCARNE_ASSIGN(auto records, read_checked(file_, payloads_[node].offset, info.payload_bytes,
+                                              payloads_[node].checksum, fmt::format("node {}", node)));
+    return NodeData{info.count, std::move(records)};
+}
+
+bool is_cache(const std::filesystem::path& path) {
+    const auto file = InputFile::open(path);
+    if (!file) return false;
+    std::array<std::byte, 8> start;
+    return file->size() >= start.size() && file->read_at(0, start) &&
+           std::memcmp(start.data(), format::kMagic.data(), start.size()) == 0;
+}
+
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path) {
+    return CacheFile::open(path);
+}
+
+}  // namespace lucarne::octree

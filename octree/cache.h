@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "io/core/file.h"
+#include "octree/source.h"
+
+namespace lucarne::octree {
+
+/// Whether the file starts like a cache; false for anything else, unreadable files included.
+bool is_cache(const std::filesystem::path& path);
+
+/// Opens a cache: reads superblock, metadata and directory and checks everything that can be checked without
+/// the points (sizes against the file, keys, counts, offsets, overlaps). Errors: ErrorKind::input_rejected.
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path);
+
+struct VerifyReport {
+    uint64_t nodes = 0, points = 0, bytes = 0;
+    uint32_t depth = 0;  ///< the deepest level
+};
+
+/// Reads the whole cache and checks every checksum and invariant: both superblocks, every point inside its
+/// node's cube, the bounds, the counts, nothing behind the end. `progress` is told the bytes of each node
+/// checked.
+Result<VerifyReport> verify_cache(const std::filesystem::path& path,
+                                  const std::function<void(uint64_t)>& progress);
+
+}  // namespace lucarne::octree

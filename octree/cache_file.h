@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "io/core/file.h"
+#include "octree/cache_format.h"
+#include "octree/metadata.h"
+
+namespace lucarne::octree {
+
+/// Both superblocks of a file; empty where damaged.
+Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const InputFile& file);
+
+/// A cache on disk: directory in memory, points by pread.
+class CacheFile final : public NodeSource {
+ public:
+    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path);
+
+    const SourceHeader& header() const override { return header_; }
+    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    Result<NodeData> load(uint32_t node) const override;
+
+    const InputFile& file() const { return file_; }
+    const format::Superblock& superblock() const { return block_; }
+
+ private:
+    struct Payload {
+        uint64_t offset = 0, checksum = 0;
+    };
+
+    CacheFile(InputFile file, const format::Superblock& block) : file_(std::move(file)), block_(block) {}
+    Result<void> read_directory();
+    Result<void> check_structure();
+    Result<void> check_payloads();
+
+    InputFile file_;
+    format::Superblock block_;
+    SourceHeader header_;
+    std::vector<NodeInfo> nodes_;
+    std::vector<Payload> payloads_;
+};
+
+}  // namespace lucarne::octree

@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "octree/cache.h"
+#include "octree/cache_file.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// A fresh cache has two equal superblocks; after an append the older state stays valid in the other one.
+Result<void> check_superblocks(const CacheFile& cache) {
+    const auto& file = cache.file();
+    LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
+    for (size_t i = 0; i < blocks.size(); ++i)
+        if (!blocks[i]) return rejected(file.path().string(), fmt::format("superblock {} is damaged", i));
+    if (const uint64_t end = cache.superblock().file_bytes; file.size() != end)
+        return rejected(file.path().string(),
+                        fmt::format("{} bytes stand behind its end", file.size() - end));
+    return {};
+}
+
+/// Checks a node's points against its cube and grows the bounds by them.
+Result<void> check_points(const CacheFile& cache, uint32_t index, glm::dvec3& least, glm::dvec3& most) {
+    LUCARNE_ASSIGN(const NodeData data, cache.load(index));
+    const auto& header = cache.header();
+    const NodeKey key = cache.nodes()[index].key;
+    for (size_t i = 0; i < data.count; ++i) {
+        const auto p = io::position_of(header.schema, &data.records[i * header.schema.stride]);
+        // Written so that a NaN fails as well.
+        const bool bounded =
+            glm::all(glm::greaterThanEqual(p, header.min)) && glm::all(glm::lessThanEqual(p, header.max));
+        if (!bounded || header.root.place(p).key(key.level) != key)
+            return rejected(cache.file().path().string(),
+                            fmt::format("point {} of node {} lies outside its cube", i, index));
+        least = glm::min(least, p);
+        most = glm::max(most, p);
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<VerifyReport> verify_cache(const std::filesystem::path& path,
+                                  const std::function<void(uint64_t)>& progress) {
+    LUCARNE_ASSIGN(const auto cache, CacheFile::open(path));
+    LUCARNE_TRY(check_superblocks(*cache));
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    glm::dvec3 least(kInfinity), most(-kInfinity);
+    VerifyReport report;
+    const auto nodes = cache->nodes();
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        LUCARNE_TRY(check_points(*cache, i, least, most));
+        report.points += nodes[i].count;
+        report.depth = std::max(report.depth, nodes[i].key.level);
+        progress(nodes[i].payload_bytes);
+    }
+    if (report.points && (least != cache->header().min || most != cache->header().max))
+        return rejected(path.string(), "its bounds are not those of its points");
+    report.nodes = nodes.size();
+    report.bytes = cache->file().size();
+    return report;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,108 @@
+#include "octree/cache_writer.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "octree/metadata.h"
+
+namespace lucarne::octree {
+namespace {
+
+using format::kEntryBytes;
+
+constexpr size_t kBufferedEntries = 1024;  // 64 KiB
+constexpr size_t kLevelEntries = 64;       // 4 KiB a level while the directory is written
+
+}  // namespace
+
+Result<CacheWriter> CacheWriter::create(const std::filesystem::path& path, bool overwrite,
+                                        const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(OutputFile output, OutputFile::create(path, overwrite));
+    LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
+    // Room for the superblocks: zeros until finish, so that an unfinished file is no cache.
+    LUCARNE_TRY(output.append(std::vector<std::byte>(format::kFirstPayload)));
+    return CacheWriter(std::move(output), std::move(entries));
+}
+
+Result<uint64_t> CacheWriter::append(std::span<const std::byte> payload) {
+    const uint64_t at = output_.position();
+    LUCARNE_TRY(output_.append(payload));
+    return at;
+}
+
+Result<void> CacheWriter::add(const format::Entry& entry) {
+    buffer_.resize(buffer_.size() + kEntryBytes);
+    format::store_entry(entry, &buffer_[buffer_.size() - kEntryBytes]);
+    ++nodes_;
+    ++per_level_[entry.key.level];
+    if (buffer_.size() >= kBufferedEntries * kEntryBytes) return flush_entries();
+    return {};
+}
+
+Result<void> CacheWriter::flush_entries() {
+    LUCARNE_TRY(entries_.write_at(entries_written_, buffer_));
+    entries_written_ += buffer_.size();
+    buffer_.clear();
+    return {};
+}
+
+/// Deals the entries out to their levels' places at the end of the file; returns the directory's checksum.
+Result<uint64_t> CacheWriter::write_directory() {
+    LUCARNE_TRY(flush_entries());
+    const uint64_t begin = output_.position(), bytes = nodes_ * kEntryBytes;
+    std::array<uint64_t, kMaxLevel + 1> cursor{begin};
+    for (uint32_t level = 1; level <= kMaxLevel; ++level)
+        cursor[level] = cursor[level - 1] + per_level_[level - 1] * kEntryBytes;
+    std::array<std::vector<std::byte>, kMaxLevel + 1> waiting;
+    const auto flush = [&](uint32_t level) -> Result<void> {
+        LUCARNE_TRY(output_.write_at(cursor[level], waiting[level]));
+        cursor[level] += waiting[level].size();
+        waiting[level].clear();
+        return {};
+    };
+    std::vector<std::byte> block(kBufferedEntries * kEntryBytes);
+    for (uint64_t at = 0; at < bytes; at += block.size()) {
+        const std::span part(block.data(), std::min<uint64_t>(block.size(), bytes - at));
+        LUCARNE_TRY(entries_.read_at(at, part));
+        for (size_t i = 0; i < part.size(); i += kEntryBytes) {
+            const uint32_t level = format::load_entry(&part[i]).key.level;
+            waiting[level].insert(waiting[level].end(), &part[i], &part[i] + kEntryBytes);
+            if (waiting[level].size() >= kLevelEntries * kEntryBytes) LUCARNE_TRY(flush(level));
+        }
+    }
+    for (uint32_t level = 0; level <= kMaxLevel; ++level) LUCARNE_TRY(flush(level));
+
+    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
+    XXH3_64bits_reset(state.get());
+    for (uint64_t at = 0; at < bytes; at += block.size()) {
+        const std::span part(block.data(), std::min<uint64_t>(block.size(), bytes - at));
+        LUCARNE_TRY(output_.read_at(begin + at, part));
+        XXH3_64bits_update(state.get(), part.data(), part.size());
+    }
+    return XXH3_64bits_digest(state.get());
+}
+
+Result<void> CacheWriter::finish(const SourceHeader& header) {
+    format::Superblock block;
+    block.generation = 1;
+    const std::string metadata = metadata_text(header);
+    if (metadata.size() > format::kMaxMetadata)
+        return failed("metadata", fmt::format("{} bytes are more than a cache holds", metadata.size()));
+    block.metadata_offset = output_.position();
+    block.metadata_bytes = metadata.size();
+    block.metadata_checksum = format::checksum(std::as_bytes(std::span(metadata)));
+    LUCARNE_TRY(output_.append(metadata));
+    block.directory_offset = output_.position();
+    block.directory_bytes = nodes_ * kEntryBytes;
+    LUCARNE_ASSIGN(block.directory_checksum, write_directory());
+    block.file_bytes = block.directory_offset + block.directory_bytes;
+    const auto bytes = format::encode(block);
+    LUCARNE_TRY(output_.write_at(0, bytes));
+    LUCARNE_TRY(output_.write_at(format::kSuperblockBytes, bytes));
+    return output_.commit();
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,70 @@
+#include "octree/export/export.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "octree/attributes.h"
+#include "octree/build/unify.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr size_t kBatchPoints = 1 << 16;  // an overfull node is not copied as a whole
+
+}  // namespace
+
+Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : source_(source) {
+    const auto& header = source.header();
+    schema_.position = header.schema.position;
+    schema_.scale = header.schema.scale;
+    schema_.offset = header.schema.offset;
+    schema_.stride = static_cast<uint32_t>(io::position_bytes(schema_.position));
+    copies_.push_back({0, 0, schema_.stride});
+    for (const auto& attribute : header.schema.attributes) {
+        if (attribute.name == io::names::normal_oct || attribute.name == io::names::area) continue;
+        std::string name = attribute.name;
+        if (name.ends_with(kForeign)) {
+            const auto original = name.substr(0, name.size() - kForeign.size());
+            if (!header.schema.find(original) || original != io::names::scan) name = original;
+        }
+        schema_.add(std::move(name), attribute.type, attribute.components);
+        copies_.push_back(
+            {attribute.offset, schema_.attributes.back().offset, static_cast<uint32_t>(attribute.bytes())});
+    }
+    if (options.normals) estimated_ = header.schema.find(io::names::normal_oct);
+    if (estimated_) schema_.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+
+    if (!header.scans.empty()) info_ = header.scans[0];
+    const auto same = [&](const io::ScanInfo& scan) { return scan.format == info_.format; };
+    if (!std::all_of(header.scans.begin(), header.scans.end(), same)) info_.details = "{}";
+    info_.stations.clear();
+    for (const auto& scan : header.scans)
+        info_.stations.insert(info_.stations.end(), scan.stations.begin(), scan.stations.end());
+    info_.declared_points = header.points;
+    info_.metres_per_unit = header.metres_per_unit;
+}
+
+Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
+    const uint32_t from = source_.header().schema.stride;
+    std::vector<std::byte> records;
+    for (uint32_t node = 0; node < source_.nodes().size(); ++node) {
+        LUCARNE_ASSIGN(const NodeData data, source_.load(node));
+        for (size_t first = 0; first < data.count; first += kBatchPoints) {
+            const size_t count = std::min(kBatchPoints, data.count - first);
+            records.resize(count * schema_.stride);
+            for (size_t i = 0; i < count; ++i) {
+                const std::byte* in = &data.records[(first + i) * from];
+                std::byte* out = &records[i * schema_.stride];
+                for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
+                if (!estimated_) continue;
+                const auto normal = decode_normal(io::load<NormalCode>(in + estimated_->offset));
+                io::store(out + schema_.attributes.back().offset, normal.value_or(glm::vec3(0.0f)));
+            }
+            LUCARNE_TRY(writer.write(records));
+        }
+        progress(data.count);
+    }
+    return writer.finish();
+}
+
+}  // namespace lucarne::octree

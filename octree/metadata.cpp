@@ -1,0 +1,155 @@
+#include "octree/metadata.h"
+
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "octree/cache_format.h"
+
+namespace lucarne::octree {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxNesting = 32;
+
+/// Thrown and caught in this file only: nlohmann's accessors throw as well, so one handler serves both.
+struct Mistake : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+void require(bool condition, const char* text) {
+    if (!condition) throw Mistake(text);
+}
+
+json vector_json(const glm::dvec3& v) {
+    return json::array({v.x, v.y, v.z});
+}
+
+double number(const json& value) {
+    require(value.is_number() && std::isfinite(value.get<double>()), "a finite number is expected");
+    return value.get<double>();
+}
+
+glm::dvec3 vector_of(const json& value) {
+    require(value.is_array() && value.size() == 3, "three numbers are expected");
+    return {number(value[0]), number(value[1]), number(value[2])};
+}
+
+std::string_view position_name(io::PositionType type) {
+    switch (type) {
+        case io::PositionType::i32_scaled:
+            return "i32_scaled";
+        case io::PositionType::f32:
+            return "f32";
+        case io::PositionType::f64:
+            break;
+    }
+    return "f64";
+}
+
+json schema_json(const io::Schema& schema) {
+    json attributes = json::array();
+    for (const auto& a : schema.attributes)
+        attributes.push_back(
+            {{"name", a.name}, {"type", io::scalar_name(a.type)}, {"components", a.components}});
+    json result{{"position", position_name(schema.position)}, {"attributes", std::move(attributes)}};
+    if (schema.position == io::PositionType::i32_scaled) {
+        result["scale"] = vector_json(schema.scale);
+        result["offset"] = vector_json(schema.offset);
+    }
+    return result;
+}
+
+io::Schema schema_of(const json& value) {
+    io::Schema schema;
+    const auto position = value.at("position").get<std::string>();
+    if (position == "i32_scaled") {
+        schema.position = io::PositionType::i32_scaled;
+        schema.scale = vector_of(value.at("scale"));
+        schema.offset = vector_of(value.at("offset"));
+    } else {
+        require(position == "f32" || position == "f64", "an unknown position type");
+        schema.position = position == "f32" ? io::PositionType::f32 : io::PositionType::f64;
+    }
+    schema.stride = static_cast<uint32_t>(io::position_bytes(schema.position));
+    std::set<std::string> seen;
+    for (const auto& item : value.at("attributes")) {
+        const auto type = io::scalar_type(item.at("type").get<std::string>());
+        const auto& components = item.at("components");
+        require(type.has_value(), "an unknown attribute type");
+        require(components.is_number_unsigned() && components >= 1 && components <= format::kMaxStride,
+                "an attribute with an impossible number of components");
+        const auto name = item.at("name").get<std::string>();
+        require(seen.insert(name).second, "two attributes of one name");
+        schema.add(name, *type, components.get<uint32_t>());
+        require(schema.stride <= format::kMaxStride, "records of more than 64 KiB");
+    }
+    return schema;
+}
+
+json scan_json(const io::ScanInfo& scan) {
+    json stations = json::array();
+    for (const auto& s : scan.stations)
+        stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
+    return {{"path", scan.path},
+            {"format", scan.format},
+            {"declared_points", scan.declared_points},
+            {"metres_per_unit", scan.metres_per_unit},
+            {"stations", std::move(stations)},
+            {"details", scan.details}};
+}
+
+io::ScanInfo scan_of(const json& value) {
+    io::ScanInfo scan;
+    scan.path = value.at("path").get<std::string>();
+    scan.format = value.at("format").get<std::string>();
+    scan.declared_points = value.at("declared_points").get<uint64_t>();
+    scan.metres_per_unit = number(value.at("metres_per_unit"));
+    for (const auto& s : value.at("stations"))
+        scan.stations.push_back({s.at("id").get<uint32_t>(), vector_of(s.at("position"))});
+    scan.details = value.at("details").get<std::string>();
+    return scan;
+}
+
+}  // namespace
+
+std::string metadata_text(const SourceHeader& header) {
+    json scans = json::array();
+    for (const auto& scan : header.scans) scans.push_back(scan_json(scan));
+    const json root{{"schema", schema_json(header.schema)},
+                    {"root", {{"min", vector_json(header.root.min)}, {"size", header.root.size}}},
+                    {"bounds", {{"min", vector_json(header.min)}, {"max", vector_json(header.max)}}},
+                    {"points", header.points},
+                    {"metres_per_unit", header.metres_per_unit},
+                    {"scans", std::move(scans)}};
+    // File names are bytes, not always UTF-8: what is not becomes U+FFFD instead of an exception.
+    return root.dump(1, ' ', false, json::error_handler_t::replace);
+}
+
+Result<SourceHeader> parse_metadata(const std::string& file, std::string_view text) {
+    try {
+        const auto shallow = [](int depth, json::parse_event_t, json&) {
+            require(depth <= kMaxNesting, "nested too deep");
+            return true;
+        };
+        const json root = json::parse(text.begin(), text.end(), shallow);
+        SourceHeader header;
+        header.schema = schema_of(root.at("schema"));
+        header.root = {vector_of(root.at("root").at("min")), number(root.at("root").at("size"))};
+        require(header.root.size > 0, "a root cube without size");
+        header.min = vector_of(root.at("bounds").at("min"));
+        header.max = vector_of(root.at("bounds").at("max"));
+        header.points = root.at("points").get<uint64_t>();
+        header.metres_per_unit = number(root.at("metres_per_unit"));
+        require(header.metres_per_unit > 0, "a unit without length");
+        for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
+        return header;
+    } catch (const std::exception& error) {
+        return rejected(file, fmt::format("its metadata is damaged ({})", error.what()),
+                        "convert the scan again");
+    }
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "octree/source.h"
+
+namespace lucarne::octree {
+
+/// The cache's metadata as JSON (octree/FORMAT.md) and back. Doubles survive bit by bit.
+std::string metadata_text(const SourceHeader& header);
+/// Everything is checked: types, ranges, nesting, the schema's layout. `file` names the cache in errors.
+Result<SourceHeader> parse_metadata(const std::string& file, std::string_view text);
+
+}  // namespace lucarne::octree

@@ -1,0 +1,106 @@
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/file.h"
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "io/formats/scan.h"
+#include "octree/build/build.h"
+#include "viewer/commands/commands.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct ConvertOptions {
+    octree::BuildOptions build;
+    std::vector<std::string> inputs;
+    std::string memory = "2G", json;
+};
+
+Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report) {
+    nlohmann::json stages = nlohmann::json::array();
+    for (const auto& stage : report.stages)
+        stages.push_back(
+            {{"name", stage.name}, {"wall_seconds", stage.wall_seconds}, {"cpu_seconds", stage.cpu_seconds}});
+    const nlohmann::json root{{"points", report.points}, {"dropped", report.dropped},
+                              {"nodes", report.nodes},   {"chunks", report.chunks},
+                              {"bytes", report.bytes},   {"stages", std::move(stages)}};
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(root.dump(2) + "\n"));
+    return file.commit();
+}
+
+Result<void> convert(ConvertOptions options) {
+    auto& build = options.build;
+    LUCARNE_ASSIGN(build.memory, parse_bytes("--memory", options.memory));
+    LUCARNE_TRY(check_output(build.output, build.overwrite));
+    if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
+    std::vector<std::unique_ptr<io::PointSource>> sources;
+    for (const auto& input : options.inputs) {
+        LUCARNE_ASSIGN(auto source, io::open_scan(input));
+        build.inputs.push_back(source.get());
+        sources.push_back(std::move(source));
+    }
+    LUCARNE_ASSIGN(const auto report, octree::build_cache(build));
+    double cpu = 0, wall = 0;
+    for (const auto& stage : report.stages) {
+        log::info("{:<8}{:8.2f} s, {:8.2f} CPU-s", stage.name, stage.wall_seconds, stage.cpu_seconds);
+        cpu += stage.cpu_seconds;
+        wall += stage.wall_seconds;
+    }
+    log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s)", build.output.string(),
+              report.points, report.nodes, bytes_text(report.bytes), wall, cpu);
+    if (!options.json.empty()) return write_report(options.json, build.overwrite, report);
+    return {};
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Command& chosen) {
+    using octree::NormalsMode;
+    static const std::map<std::string, NormalsMode> kModes = {{"auto", NormalsMode::automatic},
+                                                              {"keep", NormalsMode::keep},
+                                                              {"estimate", NormalsMode::estimate},
+                                                              {"none", NormalsMode::none}};
+    auto options = std::make_shared<ConvertOptions>();
+    auto* command = app.add_subcommand("convert", "Build an octree cache from scans");
+    command->add_option("inputs", options->inputs, "Scan files; several become one cache")
+        ->required()
+        ->type_name("INPUT");
+    command->add_option("-o,--output", options->build.output, "The cache to write")
+        ->required()
+        ->type_name("CACHE.luc");
+    command
+        ->add_option("--normals", options->build.normals,
+                     "auto keeps what the inputs have and estimates the rest")
+        ->transform(CLI::CheckedTransformer(kModes))
+        ->type_name("auto|keep|estimate|none")
+        ->default_str("auto");
+    command
+        ->add_option("--memory", options->memory, "Cap on memory, however large the input is (16M or more)")
+        ->capture_default_str()
+        ->type_name("BYTES");
+    command->add_option("--threads", options->build.threads, "0: all cores")
+        ->capture_default_str()
+        ->type_name("N");
+    command
+        ->add_option("--temp", options->build.temp_folder,
+                     "Folder for temporary files (default: the cache's)")
+        ->type_name("DIR");
+    command->add_option("--neighbours", options->build.neighbours, "Nearest points that make a normal")
+        ->capture_default_str()
+        ->check(CLI::Range(3, 256))
+        ->type_name("K");
+    command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
+    command->add_option("--json", options->json, "Write what was done and how long it took")
+        ->type_name("FILE");
+    command->callback([options, &chosen] { chosen = [options] { return convert(*options); }; });
+}
+
+}  // namespace lucarne::viewer

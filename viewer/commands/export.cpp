@@ -1,0 +1,50 @@
+#include "octree/export/export.h"
+
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "io/core/log.h"
+#include "io/core/progress.h"
+#include "io/formats/scan.h"
+#include "octree/cache.h"
+#include "viewer/commands/commands.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct Options {
+    std::filesystem::path cache, output;
+    octree::ExportOptions content;
+    bool overwrite = false;
+};
+
+Result<void> export_cache(const Options& options) {
+    LUCARNE_ASSIGN(const auto source, octree::open_cache(options.cache));
+    const octree::Exporter exporter(*source, options.content);
+    const uint64_t points = source->header().points;
+    LUCARNE_ASSIGN(const auto writer,
+                   io::create_scan(options.output, exporter.schema(), exporter.info(),
+                                   {.overwrite = options.overwrite, .expected_points = points}));
+    Progress progress("exporting", points, "points");
+    LUCARNE_TRY(exporter.write(*writer, [&](uint64_t done) { progress.add(done); }));
+    log::info("{}: {} points", options.output.string(), points);
+    return {};
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<Options>();
+    auto* command = app.add_subcommand("export", "Write a cache back to a scan file, losing nothing");
+    command->add_option("cache", options->cache, "The cache to read")->required()->type_name("CACHE");
+    command->add_option("-o,--output", options->output, "The scan to write: .las or .ply")
+        ->required()
+        ->type_name("FILE");
+    command->add_flag("--normals", options->content.normals, "Write the estimated normals as well");
+    command->add_flag("--overwrite", options->overwrite, "Replace the output if it exists");
+    command->callback([options, &chosen] { chosen = [options] { return export_cache(*options); }; });
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,34 @@
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "io/core/progress.h"
+#include "octree/cache.h"
+#include "viewer/commands/commands.h"
+
+namespace lucarne::viewer {
+namespace {
+
+Result<void> verify(const std::filesystem::path& path) {
+    std::error_code ignored;
+    const uint64_t bytes = std::filesystem::file_size(path, ignored);
+    Progress progress("verifying", ignored ? 0 : bytes, "bytes");
+    LUCARNE_ASSIGN(const auto report, octree::verify_cache(path, [&](uint64_t done) { progress.add(done); }));
+    log::info("{}: sound; {} points in {} nodes on {} levels, {}", path.string(), report.points, report.nodes,
+              report.depth + 1, bytes_text(report.bytes));
+    return {};
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Command& chosen) {
+    auto path = std::make_shared<std::filesystem::path>();
+    auto* command = app.add_subcommand("verify", "Check every checksum and invariant of a cache");
+    command->add_option("cache", *path, "The cache to read")->required()->type_name("CACHE");
+    command->callback([path, &chosen] { chosen = [path] { return verify(*path); }; });
+}
+
+}  // namespace lucarne::viewer
