@@ -1,12 +1,19 @@
 #include "viewer/commands/commands.h"
 
-#include <vector>
+#include <array>
 
 namespace lucarne::viewer {
 
+void add_convert(CLI::App& app, Command& chosen);
+void add_export(CLI::App& app, Command& chosen);
+void add_generate(CLI::App& app, Command& chosen);
+void add_info(CLI::App& app, Command& chosen);
+void add_verify(CLI::App& app, Command& chosen);
+
 std::span<const AddCommand> commands() {
-    static const std::vector<AddCommand> all = {};
-    return all;
+    static constexpr std::array<AddCommand, 5> kAll = {add_generate, add_convert, add_info, add_verify,
+                                                       add_export};
+    return kAll;
 }
 
 }  // namespace lucarne::viewer
