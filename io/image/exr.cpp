@@ -1,0 +1,140 @@
+// OpenEXR pictures, from and to memory or our own files, so that errors and names stay ours.
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <fmt/format.h>
+
+#include "io/core/file.h"
+#include "io/image/image.h"
+
+namespace lucarne::io {
+namespace {
+
+/// A growing buffer as OpenEXR's output.
+class MemoryOutput final : public Imf::OStream {
+ public:
+    MemoryOutput() : Imf::OStream("") {}
+    void write(const char* data, int bytes) override {
+        const auto count = static_cast<size_t>(bytes);
+        if (at_ + count > data_.size()) data_.resize(at_ + count);
+        std::memcpy(data_.data() + at_, data, count);
+        at_ += count;
+    }
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t at) override { at_ = static_cast<size_t>(at); }
+    std::string_view data() const { return data_; }
+
+ private:
+    std::string data_;
+    size_t at_ = 0;
+};
+
+class FileInput final : public Imf::IStream {
+ public:
+    explicit FileInput(const InputFile& file) : Imf::IStream(""), file_(file) {}
+    bool read(char* out, int bytes) override {
+        const auto wanted = std::as_writable_bytes(std::span(out, static_cast<size_t>(std::max(bytes, 0))));
+        if (!file_.read_at(at_, wanted)) throw std::runtime_error("it ends early");
+        at_ += wanted.size();
+        return at_ < file_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t at) override { at_ = at; }
+
+ private:
+    const InputFile& file_;
+    uint64_t at_ = 0;
+};
+
+constexpr const char* kChannels[] = {"R", "G", "B", "A"};
+
+Image decode(const InputFile& file) {
+    // The library allocates by the header's size: it must know the limit before it reads the header. The
+    // setting is the library's own and the same every time.
+    Imf::Header::setMaxImageSize(kLargestSide, kLargestSide);
+    FileInput stream(file);
+    Imf::InputFile exr(stream, 0);
+    const auto window = exr.header().dataWindow();
+    const int64_t width = int64_t{window.max.x} - window.min.x + 1,
+                  height = int64_t{window.max.y} - window.min.y + 1;
+    if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide ||
+        static_cast<uint64_t>(width * height) > kMostPixels)
+        throw std::runtime_error(fmt::format("it has {}x{} pixels", width, height));
+
+    const Imf::ChannelList& channels = exr.header().channels();
+    const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;
+    Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+    image.pixels.assign(static_cast<size_t>(width * height), glm::vec4(0, 0, 0, 1));
+    Imf::FrameBuffer target;
+    constexpr size_t kPixel = sizeof(glm::vec4);
+    char* first = reinterpret_cast<char*>(image.pixels.data()) - window.min.x * static_cast<int64_t>(kPixel) -
+                  window.min.y * width * static_cast<int64_t>(kPixel);
+    for (size_t c = 0; c < 4; ++c) {
+        if (gray && (c == 1 || c == 2)) continue;
+        const char* name = gray && c == 0 ? "Y" : kChannels[c];
+        const Imf::Channel* channel = channels.findChannel(name);
+        if (!channel && c < 3) throw std::runtime_error("it lacks a channel R, G or B");
+        if (!channel) continue;
+        if (channel->xSampling != 1 || channel->ySampling != 1)
+            throw std::runtime_error("its channels are subsampled");
+        target.insert(name, Imf::Slice(Imf::FLOAT, first + c * sizeof(float), kPixel,
+                                       kPixel * static_cast<size_t>(width)));
+    }
+    exr.setFrameBuffer(target);
+    exr.readPixels(window.min.y, window.max.y);
+    if (gray)
+        for (glm::vec4& p : image.pixels) p.y = p.z = p.x;
+    return image;
+}
+
+void encode(const Image& image, bool alpha, MemoryOutput& out) {
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer source;
+    char* first = reinterpret_cast<char*>(const_cast<glm::vec4*>(image.pixels.data()));  // only read
+    for (size_t c = 0; c < (alpha ? 4u : 3u); ++c) {
+        header.channels().insert(kChannels[c], Imf::Channel(Imf::FLOAT));
+        source.insert(kChannels[c], Imf::Slice(Imf::FLOAT, first + c * sizeof(float), sizeof(glm::vec4),
+                                               sizeof(glm::vec4) * image.width));
+    }
+    Imf::OutputFile exr(out, header, 0);
+    exr.setFrameBuffer(source);
+    exr.writePixels(static_cast<int>(image.height));
+}
+
+}  // namespace
+
+Result<void> write_exr(const std::filesystem::path& path, const Image& image, bool overwrite, bool alpha) {
+    const std::string name = path.string();
+    if (image.width == 0 || image.height == 0 || image.width > kLargestSide || image.height > kLargestSide ||
+        image.pixels.size() != size_t{image.width} * image.height)
+        return failed(name, fmt::format("no picture of {}x{} can be written", image.width, image.height));
+    MemoryOutput encoded;
+    try {
+        encode(image, alpha, encoded);
+    } catch (const std::exception& error) {
+        return failed(name, fmt::format("cannot be encoded as EXR ({})", error.what()));
+    }
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(encoded.data()));
+    return file.commit();
+}
+
+Result<Image> read_exr(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const auto file, InputFile::open(path));
+    try {
+        return decode(file);
+    } catch (const std::exception& error) {
+        return rejected(path.string(), fmt::format("is no usable EXR picture ({})", error.what()));
+    }
+}
+
+}  // namespace lucarne::io

@@ -1,0 +1,63 @@
+// PNG through libpng's simplified interface, which reports errors without longjmp.
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include "io/core/file.h"
+#include "io/image/image.h"
+
+namespace lucarne::io {
+namespace {
+
+constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+
+struct PngFree {
+    void operator()(png_image* image) const { png_image_free(image); }
+};
+
+}  // namespace
+
+Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite) {
+    const std::string name = path.string();
+    if (image.width == 0 || image.height == 0 || image.bytes.size() != size_t{3} * image.width * image.height)
+        return failed(name, fmt::format("no picture of {}x{} can be written", image.width, image.height));
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = image.width;
+    png.height = image.height;
+    png.format = PNG_FORMAT_RGB;
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
+    std::vector<std::byte> encoded(bytes);
+    if (!png_image_write_to_memory(&png, encoded.data(), &bytes, 0, image.bytes.data(), 0, nullptr))
+        return failed(name, fmt::format("cannot be encoded as PNG ({})", png.message));
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(std::span<const std::byte>(encoded).first(bytes)));
+    return file.commit();
+}
+
+Result<Image8> read_png(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    LUCARNE_ASSIGN(const auto file, InputFile::open(path));
+    if (file.size() > kLargestFile) return rejected(name, "is too large for a PNG picture");
+    std::vector<std::byte> encoded(static_cast<size_t>(file.size()));
+    LUCARNE_TRY(file.read_at(0, encoded));
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    const std::unique_ptr<png_image, PngFree> owner(&png);
+    if (!png_image_begin_read_from_memory(&png, encoded.data(), encoded.size()))
+        return rejected(name, fmt::format("is no usable PNG picture ({})", png.message));
+    if (png.width > kLargestSide || png.height > kLargestSide ||
+        uint64_t{png.width} * png.height > kMostPixels)
+        return rejected(name, fmt::format("is too large: {}x{} pixels", png.width, png.height));
+    png.format = PNG_FORMAT_RGB;
+    Image8 image{png.width, png.height, std::vector<uint8_t>(size_t{3} * png.width * png.height)};
+    const png_color black{};
+    if (!png_image_finish_read(&png, &black, image.bytes.data(), 0, nullptr))
+        return rejected(name, fmt::format("is no usable PNG picture ({})", png.message));
+    return image;
+}
+
+}  // namespace lucarne::io

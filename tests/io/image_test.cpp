@@ -1,0 +1,169 @@
+// Pictures come back as they were written, and hostile ones do no harm.
+#include "io/image/image.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/core/random.h"
+#include "tests/io/io_testing.h"
+
+namespace lucarne::io {
+namespace {
+
+using testing::read_bytes;
+using testing::TemporaryFolder;
+using testing::write_bytes;
+
+Image noise(uint32_t width, uint32_t height) {
+    Image image{width, height, {}};
+    Random random(7);
+    for (size_t i = 0; i < size_t{width} * height; ++i) {
+        const auto value = [&] { return static_cast<float>(std::exp(20 * random.uniform() - 10)); };
+        image.pixels.emplace_back(value(), value(), value(), static_cast<float>(random.uniform()));
+    }
+    return image;
+}
+
+Image8 noise8(uint32_t width, uint32_t height) {
+    Image8 image{width, height, {}};
+    Random random(8);
+    for (size_t i = 0; i < size_t{3} * width * height; ++i) image.bytes.push_back(static_cast<uint8_t>(random.next()));
+    return image;
+}
+
+TEST(Exr, FloatsComeBackBitForBit) {
+    const TemporaryFolder folder;
+    const Image image = noise(37, 21);
+    ASSERT_TRUE(write_exr(folder / "a.exr", image, false, true));
+    const auto back = read_exr(folder / "a.exr");
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(back->width, 37u);
+    EXPECT_EQ(back->height, 21u);
+    EXPECT_TRUE(back->pixels == image.pixels);
+}
+
+TEST(Exr, WithoutAlphaOpacityIsOne) {
+    const TemporaryFolder folder;
+    const Image image = noise(3, 2);
+    ASSERT_TRUE(write_exr(folder / "a.exr", image, false));
+    const auto back = read_exr(folder / "a.exr");
+    ASSERT_TRUE(back) << back.error().line();
+    for (size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(back->pixels[i].y, image.pixels[i].y);
+        EXPECT_EQ(back->pixels[i].w, 1.0f);
+    }
+}
+
+TEST(Exr, NonFiniteRadianceIsNotHidden) {
+    const TemporaryFolder folder;
+    Image image = noise(2, 1);
+    image.pixels[0].x = std::numeric_limits<float>::infinity();
+    image.pixels[1].z = std::numeric_limits<float>::quiet_NaN();
+    ASSERT_TRUE(write_exr(folder / "a.exr", image, false));
+    const auto back = read_exr(folder / "a.exr");
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(std::isinf(back->pixels[0].x));
+    EXPECT_TRUE(std::isnan(back->pixels[1].z));
+}
+
+TEST(Png, BytesComeBackAsTheyWere) {
+    const TemporaryFolder folder;
+    const Image8 image = noise8(41, 13);
+    ASSERT_TRUE(write_png(folder / "a.png", image, false));
+    const auto back = read_png(folder / "a.png");
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(back->width, 41u);
+    EXPECT_TRUE(back->bytes == image.bytes);
+}
+
+TEST(Pictures, AnExistingFileIsKeptUnlessOverwritten) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "a.png", "mine");
+    write_bytes(folder / "a.exr", "mine");
+    EXPECT_FALSE(write_png(folder / "a.png", noise8(2, 2), false));
+    EXPECT_FALSE(write_exr(folder / "a.exr", noise(2, 2), false));
+    EXPECT_EQ(read_bytes(folder / "a.png"), "mine");
+    EXPECT_EQ(read_bytes(folder / "a.exr"), "mine");
+    EXPECT_TRUE(write_png(folder / "a.png", noise8(2, 2), true));
+    EXPECT_TRUE(write_exr(folder / "a.exr", noise(2, 2), true));
+    EXPECT_TRUE(read_png(folder / "a.png"));
+    EXPECT_TRUE(read_exr(folder / "a.exr"));
+}
+
+TEST(Pictures, APictureWhoseSizeIsALieIsNotWritten) {
+    const TemporaryFolder folder;
+    Image image = noise(2, 2);
+    image.height = 3;
+    EXPECT_FALSE(write_exr(folder / "a.exr", image, false));
+    EXPECT_FALSE(write_png(folder / "a.png", Image8{5, 5, {1, 2, 3}}, false));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+/// Big-endian, as PNG has it.
+void put_u32(std::string& bytes, size_t at, uint32_t value) {
+    for (size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24 - 8 * i));
+}
+
+TEST(Pictures, HugeSizesInAHeaderAreRejectedBeforeAllocation) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_png(folder / "a.png", noise8(4, 4), false));
+    ASSERT_TRUE(write_exr(folder / "a.exr", noise(4, 4), false));
+    std::string png = read_bytes(folder / "a.png");
+    put_u32(png, 16, 900'000);
+    put_u32(png, 20, 900'000);  // the checksum is wrong then: either way it is a clean error
+    write_bytes(folder / "b.png", png);
+    EXPECT_EQ(read_png(folder / "b.png").error().kind, ErrorKind::input_rejected);
+
+    std::string exr = read_bytes(folder / "a.exr");
+    const size_t window = exr.find("dataWindow") + 11 + 6 + 4;  // name, type "box2i", size
+    const int32_t huge[] = {0, 0, 0x7ffffff0, 0x7ffffff0};
+    std::memcpy(&exr[window], huge, sizeof huge);
+    write_bytes(folder / "b.exr", exr);
+    EXPECT_EQ(read_exr(folder / "b.exr").error().kind, ErrorKind::input_rejected);
+}
+
+TEST(Pictures, TruncatedAndChangedFilesNeverCrash) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_png(folder / "a.png", noise8(9, 9), false));
+    ASSERT_TRUE(write_exr(folder / "a.exr", noise(9, 9), false));
+    const std::string png = read_bytes(folder / "a.png"), exr = read_bytes(folder / "a.exr");
+    for (size_t length = 0; length < png.size(); length += 7) {
+        write_bytes(folder / "b.png", png.substr(0, length));
+        (void)read_png(folder / "b.png");
+    }
+    for (size_t length = 0; length + 1 < exr.size(); length += 7) {
+        write_bytes(folder / "b.exr", exr.substr(0, length));
+        EXPECT_FALSE(read_exr(folder / "b.exr")) << length;
+    }
+    Random random(3);
+    for (int round = 0; round < 500; ++round) {
+        std::string p = png, e = exr;
+        p[random.next() % p.size()] = static_cast<char>(random.next());
+        e[random.next() % std::min<size_t>(400, e.size())] = static_cast<char>(random.next());
+        write_bytes(folder / "b.png", p);
+        write_bytes(folder / "b.exr", e);
+        (void)read_png(folder / "b.png");
+        (void)read_exr(folder / "b.exr");
+    }
+}
+
+TEST(Pictures, WhatIsNoPictureIsRejectedWithItsName) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "text", "not a picture");
+    write_bytes(folder / "empty", "");
+    for (const char* name : {"text", "empty", "missing"}) {
+        const auto png = read_png(folder / name);
+        const auto exr = read_exr(folder / name);
+        ASSERT_FALSE(png);
+        ASSERT_FALSE(exr);
+        EXPECT_EQ(png.error().kind, ErrorKind::input_rejected);
+        EXPECT_EQ(exr.error().kind, ErrorKind::input_rejected);
+        EXPECT_THAT(png.error().line(), ::testing::HasSubstr(name));
+        EXPECT_THAT(exr.error().line(), ::testing::HasSubstr(name));
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::io
