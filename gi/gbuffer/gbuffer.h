@@ -11,16 +11,15 @@ namespace lucarne::gi {
 /// What a camera or a light sees of a cut: one GBufferTexel a pixel and the id of the surfel behind it.
 struct GBuffer {
     uint32_t width = 0, height = 0;
-    Buffer texels;  ///< GBufferTexel[width * height]
-    Buffer ids;     ///< uint[width * height], kNoSurfel where empty
+    Buffer texels;       ///< GBufferTexel[width * height]
+    Buffer ids;          ///< uint[width * height], kNoSurfel where empty
     Buffer keys, large;  ///< scratch of rasterize()
 };
 
-/// Draws the discs of a cut by compute: per pixel the nearest intersection of its ray with a surfel's disc wins,
-/// where discs that overlap within half a radius of depth are told apart by whose centre is nearer; equal orders go to
-/// the smaller id. A disc takes at least the pixel of its centre. The depths written are the exact plane depths;
-/// nothing is smeared in the picture.
-/// Errors: out of device memory.
+/// Draws the discs of a cut by compute: per pixel the nearest intersection of its ray with a surfel's disc
+/// wins, where discs that overlap within half a radius of depth are told apart by whose centre is nearer;
+/// equal orders go to the smaller id. A disc takes at least the pixel of its centre. The depths written are
+/// the exact plane depths; nothing is smeared in the picture. Errors: out of device memory.
 Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target);
 
 /// The square view of a spot (apex at the light, field the full cone) for light G-buffer and shadow map.

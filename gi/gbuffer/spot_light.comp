@@ -1,0 +1,29 @@
+// Adds to the picture what its surfaces reflect of one spot's light.
+layout(local_size_x = 8, local_size_y = 8) in;
+#include "gi/gbuffer/shadow.glsl"
+#include "gi/shared/brdf.h"
+#include "gi/shared/spot.h"
+
+layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]; };
+layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
+uniform CameraView camera;
+uniform SpotLight spot;
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= camera.width || pixel.y >= camera.height) return;
+    uint at = pixel.y * camera.width + pixel.x;
+    GBufferTexel texel = texels[at];
+    if (texel.depth <= 0.0) return;
+    vec3 position = texel_position(camera, pixel, texel);
+    vec3 normal = texel_normal(texel);
+    vec3 to_light;
+    vec3 irradiance = spot_irradiance(spot, position, normal, to_light);
+    if (irradiance == vec3(0.0)) return;
+    float visible = spot_visibility(position, normal, texel_radius(texel));
+    uint material = min(texel_material(texel), uint(materials.length()) - 1u);
+    Reflectance reflectance = make_reflectance(materials[material], texel_albedo(texel));
+    vec3 to_eye = normalize(camera.origin.xyz - position);
+    radiance[at].rgb += visible * irradiance * brdf(reflectance, normal, to_light, to_eye);
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gi/device/device.h"
+#include "gi/scene/scene.h"
+
+namespace lucarne::gi {
+
+/// The exposure, in stops, that brings the log-average luminance of what is lit in a picture to the key .18
+/// (Reinhard et al. 2002, eqs 1 and 2). 0 for a picture that is black. `radiance` is vec4 a pixel.
+/// Errors: the shader's, no device memory.
+Result<double> automatic_exposure(Device& device, const Buffer& radiance, uint32_t pixels);
+
+/// Linear radiance times 2^ev through the curve to RGBA8 (sRGB-coded), one 32-bit word a pixel, red in the
+/// lowest byte. What is no number becomes black. Errors: the shader's, no device memory.
+Result<void> tone_map(Device& device, const Buffer& radiance, uint32_t pixels, ToneMap curve, double ev,
+                      Buffer& picture);
+
+}  // namespace lucarne::gi

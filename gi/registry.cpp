@@ -1,0 +1,28 @@
+#include "gi/registry.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "gi/direct/direct.h"
+
+namespace lucarne::gi {
+
+std::span<const EngineEntry> engines() {
+    static const std::array<EngineEntry, 1> all = {{
+        {{"direct", "direct light with shadow maps"}, make_direct_engine},
+    }};
+    return all;
+}
+
+Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {
+    std::string known;
+    for (const EngineEntry& entry : engines()) {
+        if (entry.info.name == name) return entry.make();
+        known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
+    }
+    return bad_arguments("engine " + std::string(name), "there is none of this name",
+                         "the engines are " + known);
+}
+
+}  // namespace lucarne::gi

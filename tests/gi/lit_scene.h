@@ -1,0 +1,90 @@
+// A cloud of surfels lit by an engine, for tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "gi/engine.h"
+#include "tests/gi/surfel_cloud.h"
+
+namespace lucarne::gi {
+
+inline SpotLight make_spot(const glm::vec3& from, const glm::vec3& to, float half_angle, float intensity,
+                           float softness = 0.0f) {
+    const glm::vec3 d = glm::normalize(to - from);
+    return {{from.x, from.y, from.z, std::cos(half_angle)},
+            {d.x, d.y, d.z, std::cos(half_angle * (1 - softness))},
+            {intensity, intensity, intensity, 0}};
+}
+
+inline Material make_material(float diffuse = 1, float specular = 0, float exponent = 1, float emission = 0) {
+    return {glm::vec4(diffuse, diffuse, diffuse, specular),
+            glm::vec4(emission, emission, emission, exponent)};
+}
+
+/// The picture of an engine and what is needed to judge it.
+struct Lit {
+    CameraView camera;
+    std::vector<glm::vec4> radiance;
+    std::vector<GBufferTexel> texels;
+
+    glm::vec3 at(uint32_t x, uint32_t y) const {
+        const glm::vec4 v = radiance[y * camera.width + x];
+        return {v.x, v.y, v.z};
+    }
+    glm::vec3 position(uint32_t x, uint32_t y) const {
+        const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(camera.width) - 1;
+        const float v = 2 * (static_cast<float>(y) + .5f) / static_cast<float>(camera.height) - 1;
+        const glm::vec4 ray = camera.forward + u * camera.right - v * camera.up;
+        const glm::vec4 p = camera.origin + texels[y * camera.width + x].depth * ray;
+        return {p.x, p.y, p.z};
+    }
+};
+
+struct LitOptions {
+    std::vector<SpotLight> lights;
+    std::vector<Material> materials = {make_material()};
+    glm::vec3 background{0.0f};
+    EngineSettings settings;
+};
+
+/// One cut, the whole cloud, serves as view cut, light-view cuts and light cut.
+inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, const CameraView& camera,
+                    const LitOptions& options) {
+    Lit lit{camera, {}, {}};
+    auto loaded = load_cloud(device, cloud);
+    if (!loaded) {
+        ADD_FAILURE() << loaded.error().line();
+        return lit;
+    }
+    const DeviceCut& cut = (*loaded)->cut;
+    GBuffer gbuffer;
+    auto drawn = rasterize(device, cut, camera, gbuffer);
+    EXPECT_TRUE(drawn) << drawn.error().line();
+    const size_t pixels = size_t{camera.width} * camera.height;
+    auto radiance = device.buffer(pixels * sizeof(glm::vec4), "radiance");
+    EXPECT_TRUE(radiance);
+    radiance->clear(0x7fc00000u);  // no number: the engine has to write every pixel
+    PassTimes times(device);
+    Frame frame{device,
+                (*loaded)->pool,
+                {&cut, {}, &cut},
+                camera,
+                gbuffer,
+                options.lights,
+                options.materials,
+                options.background,
+                options.settings,
+                0,
+                *radiance,
+                times};
+    frame.cuts.light_views.assign(options.lights.size(), &cut);
+    const auto prepared = engine.prepare(frame);
+    EXPECT_TRUE(prepared) << prepared.error().line();
+    const auto rendered = engine.render(frame);
+    EXPECT_TRUE(rendered) << rendered.error().line();
+    lit.radiance = radiance->download_all<glm::vec4>(pixels);
+    lit.texels = gbuffer.texels.download_all<GBufferTexel>(pixels);
+    return lit;
+}
+
+}  // namespace lucarne::gi
