@@ -25,6 +25,8 @@ struct EngineSettings {
     uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
     uint32_t samples = 64;         ///< reference: paths a pixel
     uint64_t seed = 1;
+
+    bool operator==(const EngineSettings&) const = default;
 };
 
 /// The cuts of a frame. They may be the same object's content or differ: the view cut is what the camera sees, the

@@ -17,6 +17,8 @@ struct CutBudgets {
 
     /// No cut takes more than `points` (--points).
     void cap(uint64_t points);
+
+    bool operator==(const CutBudgets&) const = default;
 };
 
 /// What a user picks by one word. Figures are always quoted with a preset.

@@ -39,13 +39,13 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
     }
 }
 
-Result<nlohmann::json> load_json(const std::filesystem::path& path) {
+Result<std::string> load_text(const std::filesystem::path& path) {
     LUCARNE_ASSIGN(const InputFile file, InputFile::open(path));
     if (file.size() > kLargestFile)
         return rejected(path.string(), "is larger than 16 MiB", "give a JSON file written for Lucarne");
     std::string text(file.size(), '\0');
     LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(text))));
-    return parse_json(text, path.string());
+    return text;
 }
 
 Result<JsonObject> JsonObject::of(const nlohmann::json& value, std::string name, std::string pointer) {

@@ -16,8 +16,8 @@ namespace lucarne {
 
 /// Reads a JSON text written by a person (a scene, a camera path). Errors name the line and column.
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name);
-/// The same for a file of at most 16 MiB.
-Result<nlohmann::json> load_json(const std::filesystem::path& path);
+/// The text of such a file, of at most 16 MiB.
+Result<std::string> load_text(const std::filesystem::path& path);
 
 struct JsonRange {
     double least = -1e300, most = 1e300;

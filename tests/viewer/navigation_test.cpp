@@ -1,0 +1,105 @@
+#include "viewer/navigation.h"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace lucarne::viewer {
+namespace {
+
+CameraRig rig_at(const glm::dvec3& position, const glm::dvec3& target) {
+    gi::SceneCamera camera;
+    camera.position = position;
+    camera.target = target;
+    return CameraRig(camera);
+}
+
+/// Where a world point stands in the picture: tangents to the right and up.
+glm::dvec2 seen(const CameraRig& rig, const glm::dvec3& point) {
+    const glm::dvec3 offset = point - rig.position();
+    const double depth = glm::dot(offset, rig.forward());
+    return {glm::dot(offset, rig.right()) / depth, glm::dot(offset, rig.up()) / depth};
+}
+
+TEST(CameraRig, LooksAtTheTargetItWasMadeWith) {
+    const CameraRig rig = rig_at({1, 2, 3}, {-4, 8, 1});
+    EXPECT_LT(glm::distance(rig.forward(), glm::normalize(glm::dvec3(-5, 6, -2))), 1e-12);
+    EXPECT_LT(glm::distance(rig.camera().target, {-4, 8, 1}), 1e-9);
+    EXPECT_NEAR(glm::dot(rig.right(), rig.up()), 0, 1e-12);
+    EXPECT_EQ(rig.right().z, 0) << "the horizon is level";
+}
+
+TEST(CameraRig, OrbitingLeavesThePivotWhereItIsInThePicture) {
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    rig.set_pivot({1, 2, -1});  // beside the middle
+    const glm::dvec2 before = seen(rig, rig.pivot());
+    const double distance = glm::distance(rig.position(), rig.pivot());
+    for (int i = 0; i < 20; ++i) {
+        rig.orbit(0.3, i < 10 ? 0.2 : -0.35);
+        EXPECT_LT(glm::distance(seen(rig, rig.pivot()), before), 1e-9);
+        EXPECT_NEAR(glm::distance(rig.position(), rig.pivot()), distance, 1e-9);
+        EXPECT_GT(rig.up().z, 0) << "never upside down";
+    }
+}
+
+TEST(CameraRig, PanningMovesThePivotsSurroundingsWithThePointer) {
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const glm::dvec3 point = rig.pivot();
+    const glm::dvec2 before = seen(rig, point);
+    rig.pan({0.1, 0.2});
+    const double height = 2 * std::tan(rig.camera().vertical_fov / 2);  // of the picture, as tangents
+    EXPECT_NEAR(seen(rig, point).x - before.x, 0.1 * height, 1e-9);
+    EXPECT_NEAR(seen(rig, point).y - before.y, 0.2 * height, 1e-9);
+}
+
+TEST(CameraRig, ZoomingKeepsThePointInPlaceAndNeverPassesIt) {
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const glm::dvec3 point(1, 3, 0);
+    const glm::dvec2 before = seen(rig, point);
+    for (int i = 0; i < 50; ++i) rig.zoom(0.85, point);
+    EXPECT_LT(glm::distance(seen(rig, point), before), 1e-6);
+    EXPECT_GT(glm::dot(point - rig.position(), rig.forward()), 0);
+}
+
+TEST(CameraRig, RaysGoThroughThePicture) {
+    const CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const glm::dvec3 direction = rig.ray({0.5, -0.25}, 1.5);
+    EXPECT_NEAR(glm::dot(direction, rig.forward()), 1, 1e-12);
+    const glm::dvec2 place = seen(rig, rig.position() + 7.0 * direction);
+    const double tangent = std::tan(rig.camera().vertical_fov / 2);
+    EXPECT_NEAR(place.x, 0.5 * 1.5 * tangent, 1e-12);
+    EXPECT_NEAR(place.y, -0.25 * tangent, 1e-12);
+}
+
+TEST(Navigation, OrbitDragsTurnScrollGoesNearerAndKeysDoNothing) {
+    Navigation navigation(20);
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    EXPECT_FALSE(navigation.apply({.keys = {1, 0, 1}, .seconds = 0.1}, rig));
+    EXPECT_FALSE(navigation.apply({.drag = {0.1, 0.1}}, rig)) << "no button";
+    const double distance = glm::distance(rig.position(), rig.pivot());
+    EXPECT_TRUE(navigation.apply({.drag = {0.1, 0.05}, .rotate = true}, rig));
+    EXPECT_NEAR(glm::distance(rig.position(), rig.pivot()), distance, 1e-9);
+    EXPECT_TRUE(navigation.apply({.scroll = 2}, rig));
+    EXPECT_LT(glm::distance(rig.position(), rig.pivot()), distance * 0.8);
+    EXPECT_TRUE(navigation.apply({.drag = {0.1, 0.0}, .shift = true}, rig));
+    EXPECT_EQ(glm::dvec3(rig.camera().up), glm::dvec3(0, 0, 1));
+}
+
+TEST(Navigation, FlyingMovesWithTheKeysAndScrollSetsTheSpeed) {
+    Navigation navigation(20);
+    navigation.set_mode(NavigationMode::fly);
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 5});
+    EXPECT_TRUE(navigation.apply({.keys = {0, 0, 1}, .seconds = 0.1}, rig));
+    EXPECT_NEAR(rig.position().x, 10 - 0.1 * navigation.speed(), 1e-12);
+    const double slow = navigation.speed();
+    EXPECT_FALSE(navigation.apply({.scroll = 3}, rig));
+    EXPECT_GT(navigation.speed(), slow);
+    const glm::dvec3 before = rig.position();
+    EXPECT_TRUE(navigation.apply({.drag = {0.2, 0.1}, .rotate = true}, rig));
+    EXPECT_EQ(rig.position(), before) << "looking around stays in place";
+    EXPECT_TRUE(navigation.apply({.keys = {0, 0, 1}, .seconds = 60}, rig));
+    EXPECT_LE(glm::distance(rig.position(), before), navigation.speed() * 0.25 + 1e-9)
+        << "a stalled frame is no leap";
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

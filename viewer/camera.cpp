@@ -1,0 +1,79 @@
+#include "viewer/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kSteepest = std::numbers::pi / 2 - 0.002;
+constexpr double kNearestDepth = 1e-6;  ///< of the pivot, share of its distance: a pivot behind still pans
+
+}  // namespace
+
+CameraRig::CameraRig(const gi::SceneCamera& camera)
+    : position_(camera.position), pivot_(camera.target), vertical_fov_(camera.vertical_fov) {
+    const glm::dvec3 ahead = camera.target - camera.position;
+    yaw_ = ahead.x == 0 && ahead.y == 0 ? std::numbers::pi / 2 : std::atan2(ahead.y, ahead.x);
+    pitch_ = std::clamp(std::atan2(ahead.z, std::hypot(ahead.x, ahead.y)), -kSteepest, kSteepest);
+}
+
+gi::SceneCamera CameraRig::camera() const {
+    gi::SceneCamera camera;
+    camera.position = position_;
+    camera.target = position_ + forward() * std::max(glm::distance(pivot_, position_), 1e-3);
+    camera.vertical_fov = vertical_fov_;
+    return camera;
+}
+
+glm::dvec3 CameraRig::forward() const {
+    return {std::cos(pitch_) * std::cos(yaw_), std::cos(pitch_) * std::sin(yaw_), std::sin(pitch_)};
+}
+glm::dvec3 CameraRig::right() const {
+    return {std::sin(yaw_), -std::cos(yaw_), 0};
+}
+glm::dvec3 CameraRig::up() const {
+    return glm::cross(right(), forward());
+}
+
+glm::dvec3 CameraRig::ray(const glm::dvec2& place, double aspect) const {
+    const double tangent = std::tan(vertical_fov_ / 2);
+    return forward() + right() * (place.x * tangent * aspect) + up() * (place.y * tangent);
+}
+
+void CameraRig::orbit(double yaw, double pitch) {
+    const glm::dvec3 offset = pivot_ - position_;
+    const glm::dvec3 seen(glm::dot(offset, right()), glm::dot(offset, up()), glm::dot(offset, forward()));
+    look(yaw, pitch);
+    position_ = pivot_ - right() * seen.x - up() * seen.y - forward() * seen.z;
+}
+
+void CameraRig::look(double yaw, double pitch) {
+    yaw_ = std::remainder(yaw_ + yaw, 2 * std::numbers::pi);
+    pitch_ = std::clamp(pitch_ + pitch, -kSteepest, kSteepest);
+}
+
+void CameraRig::pan(const glm::dvec2& shift) {
+    const glm::dvec3 offset = pivot_ - position_;
+    const double depth = std::max(glm::dot(offset, forward()), kNearestDepth * glm::length(offset));
+    const double height = 2 * std::tan(vertical_fov_ / 2) * depth;
+    const glm::dvec3 step = -(right() * shift.x + up() * shift.y) * height;
+    position_ += step;
+    pivot_ += step;
+}
+
+void CameraRig::zoom(double factor, const glm::dvec3& point) {
+    pivot_ = point;
+    position_ = point + (position_ - point) * factor;
+}
+
+void CameraRig::fly(const glm::dvec3& step) {
+    const glm::dvec3 move = right() * step.x + glm::dvec3(0, 0, step.y) + forward() * step.z;
+    position_ += move;
+    pivot_ += move;
+}
+
+}  // namespace lucarne::viewer

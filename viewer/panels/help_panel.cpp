@@ -1,0 +1,45 @@
+#include <imgui.h>
+
+#include "viewer/actions.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+void row(const char* key, const char* what) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(key);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(what);
+}
+
+}  // namespace
+
+void draw_help(ViewModel& model) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
+    if (ImGui::Begin("Keys and mouse", &model.show_help, flags) &&
+        ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const Gesture& gesture : gestures()) row(gesture.gesture, gesture.what);
+        for (const Action& action : actions()) row(action.key_name, action.what);
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void draw_message(const ViewModel& model, bool busy) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
+    ImGui::SetNextWindowBgAlpha(0.6f);
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                   ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                                   ImGuiWindowFlags_NoNav;
+    if (model.message.empty() && !busy) return;
+    if (ImGui::Begin("##message", nullptr, flags))
+        ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer

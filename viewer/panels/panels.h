@@ -1,0 +1,14 @@
+#pragma once
+
+#include "viewer/view_model.h"
+
+namespace lucarne::viewer {
+
+// Each draws one ImGui window and writes the user's changes into the model.
+void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure
+void draw_light_panel(ViewModel& model);               ///< the selected spot
+void draw_statistics_panel(ViewModel& model);          ///< the last picture's figures
+void draw_help(ViewModel& model);                      ///< every action and gesture
+void draw_message(const ViewModel& model, bool busy);  ///< one line at the bottom
+
+}  // namespace lucarne::viewer

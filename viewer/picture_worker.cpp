@@ -1,0 +1,222 @@
+#include "viewer/picture_worker.h"
+
+#include <condition_variable>
+#include <exception>
+#include <future>
+#include <mutex>
+#include <thread>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr uint32_t kMostAccumulated = 256;  ///< pictures averaged at rest before the worker rests too
+constexpr int kPickRadius = 4;              ///< pixels
+
+}  // namespace
+
+struct PictureWorker::State {
+    std::mutex mutex;
+    std::condition_variable changed;
+    PictureRequest wanted;
+    uint64_t wanted_number = 0;
+    std::shared_ptr<const Picture> latest;
+    Result<void> error;
+    gi::DeviceInfo device;
+    bool stop = false;
+    std::function<void()> published;
+    std::thread thread;
+
+    void work(const WorkerDevice& device_of, const std::shared_ptr<const octree::NodeSource>& source,
+              const PipelineOptions& options, std::promise<Result<void>> started);
+    void make_pictures(gi::Device& gl, Pipeline& pipeline);
+    void publish(Result<std::shared_ptr<Picture>> made, uint64_t request);
+};
+
+namespace {
+
+/// What the pipeline was last told, so that only changes are handed on: each starts its average again.
+struct Told {
+    uint64_t request = 0;
+    std::string engine;
+    uint64_t scene_version = UINT64_MAX;
+};
+
+Result<void> tell(Pipeline& pipeline, const PictureRequest& request, uint64_t number, Told& told) {
+    if (told.request == number) return {};
+    if (told.scene_version != request.scene_version) pipeline.set_scene(request.scene);
+    told.scene_version = request.scene_version;
+    if (told.engine != request.engine) LUCARNE_TRY(pipeline.set_engine(request.engine));
+    told.engine = request.engine;
+    pipeline.set_settings(request.settings);
+    pipeline.set_budgets(request.budgets);
+    told.request = number;
+    return {};
+}
+
+Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipeline,
+                                              const PictureRequest& request) {
+    auto picture = std::make_shared<Picture>();
+    LUCARNE_ASSIGN(picture->stats, pipeline.render(request.frame));
+    const gi::GBuffer& gbuffer = pipeline.gbuffer();
+    const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
+    picture->moving = request.moving;
+    picture->size = {gbuffer.width, gbuffer.height};
+    picture->rgba = pipeline.picture().download_all<std::byte>(pixels * 4);
+    picture->depth.reserve(pixels);
+    for (const gi::GBufferTexel& texel : gbuffer.texels.download_all<gi::GBufferTexel>(pixels))
+        picture->depth.push_back(texel.depth);
+    picture->camera = pipeline.camera();
+    picture->local_origin = pipeline.local_origin();
+    picture->metres_per_unit = pipeline.source().header().metres_per_unit;
+    picture->exposure_ev = pipeline.exposure_ev();
+    picture->device_memory = device.memory_used();
+    return picture;
+}
+
+bool worth_another(const PictureRequest& request, const FrameStats& stats) {
+    if (stats.nodes_pending > 0) return true;
+    return !request.moving && request.frame.accumulate && stats.accumulated < kMostAccumulated;
+}
+
+}  // namespace
+
+std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
+    const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
+    const int x = static_cast<int>(place.x * width), y = static_cast<int>(place.y * height);
+    std::optional<glm::ivec2> best;
+    int nearest = kPickRadius * kPickRadius + 1;
+    for (int dy = -kPickRadius; dy <= kPickRadius; ++dy)
+        for (int dx = -kPickRadius; dx <= kPickRadius; ++dx) {
+            const glm::ivec2 at(x + dx, y + dy);
+            if (at.x < 0 || at.y < 0 || at.x >= width || at.y >= height) continue;
+            if (dx * dx + dy * dy >= nearest || !(depth[static_cast<size_t>(at.y) * size.width + at.x] > 0))
+                continue;
+            nearest = dx * dx + dy * dy;
+            best = at;
+        }
+    if (!best) return std::nullopt;
+    const double u = 2 * (best->x + 0.5) / width - 1, v = 2 * (best->y + 0.5) / height - 1;
+    const auto wide = [](const glm::vec4& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
+    const glm::dvec3 direction = wide(camera.forward) + wide(camera.right) * u - wide(camera.up) * v;
+    const double along = depth[static_cast<size_t>(best->y) * size.width + best->x];
+    return local_origin + (wide(camera.origin) + direction * along) / metres_per_unit;
+}
+
+void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64_t request) {
+    {
+        const std::lock_guard lock(mutex);
+        if (made) {
+            latest = std::move(*made);
+            error = {};
+        } else if (request == wanted_number) {
+            error = tl::make_unexpected(std::move(made).error());
+        }
+    }
+    published();
+}
+
+void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline) {
+    Told told;
+    uint64_t made_of = 0, number = 0;
+    bool again = false;
+    for (;;) {
+        PictureRequest request;
+        uint64_t request_number = 0;
+        {
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return stop || again || wanted_number != made_of; });
+            if (stop) return;
+            request = wanted;
+            request_number = wanted_number;
+        }
+        made_of = request_number;
+        Result<std::shared_ptr<Picture>> made = [&]() -> Result<std::shared_ptr<Picture>> {
+            try {
+                LUCARNE_TRY(tell(pipeline, request, request_number, told));
+                return make_picture(gl, pipeline, request);
+            } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
+                return failed("picture", problem.what());
+            }
+        }();
+        again = made && worth_another(request, (*made)->stats);
+        if (made) {
+            (*made)->number = ++number;
+            (*made)->request = request_number;
+        }
+        publish(std::move(made), request_number);
+    }
+}
+
+void PictureWorker::State::work(const WorkerDevice& device_of,
+                                const std::shared_ptr<const octree::NodeSource>& source,
+                                const PipelineOptions& options, std::promise<Result<void>> started) {
+    {
+        auto gl = device_of.make();
+        auto pipeline =
+            gl ? Pipeline::open(**gl, source, options) : tl::make_unexpected(std::move(gl).error());
+        if (!pipeline) {
+            started.set_value(tl::make_unexpected(std::move(pipeline).error()));
+        } else {
+            device = (*gl)->info();
+            started.set_value({});
+            make_pictures(**gl, **pipeline);
+        }
+    }
+    device_of.release();
+}
+
+PictureWorker::PictureWorker() : state_(std::make_unique<State>()) {}
+
+Result<std::unique_ptr<PictureWorker>> PictureWorker::start(WorkerDevice device,
+                                                            std::shared_ptr<const octree::NodeSource> source,
+                                                            const PipelineOptions& options,
+                                                            std::function<void()> published) {
+    std::unique_ptr<PictureWorker> worker(new PictureWorker);
+    std::promise<Result<void>> promise;
+    auto started = promise.get_future();
+    worker->state_->published = std::move(published);
+    worker->state_->thread =
+        std::thread([state = worker->state_.get(), device = std::move(device), source = std::move(source),
+                     options, promise = std::move(promise)]() mutable {
+            state->work(device, source, options, std::move(promise));
+        });
+    LUCARNE_TRY(started.get());
+    return worker;
+}
+
+PictureWorker::~PictureWorker() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+    }
+    state_->changed.notify_all();
+    if (state_->thread.joinable()) state_->thread.join();
+}
+
+uint64_t PictureWorker::request(PictureRequest request) {
+    uint64_t number = 0;
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->wanted = std::move(request);
+        number = ++state_->wanted_number;
+        state_->error = {};
+    }
+    state_->changed.notify_all();
+    return number;
+}
+
+std::shared_ptr<const Picture> PictureWorker::latest() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->latest;
+}
+
+Result<void> PictureWorker::error() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->error;
+}
+
+const gi::DeviceInfo& PictureWorker::device() const {
+    return state_->device;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "viewer/pipeline.h"
+
+namespace lucarne::viewer {
+
+/// What a picture is wanted of.
+struct PictureRequest {
+    FrameRequest frame;
+    std::string engine;
+    gi::EngineSettings settings;
+    CutBudgets budgets;
+    gi::Scene scene;
+    uint64_t scene_version = 0;  ///< another number: the scene is another
+    bool moving = false;         ///< one picture does: the next request is on its way
+};
+
+/// A finished picture, on the host.
+struct Picture {
+    uint64_t number = 0;   ///< 1 for the first that the worker made
+    uint64_t request = 0;  ///< the request it is of
+    bool moving = false;
+    ImageSize size;
+    std::vector<std::byte> rgba;  ///< row 0 on top
+    std::vector<float> depth;     ///< m along the camera's forward axis; 0: nothing
+    gi::CameraView camera{};
+    glm::dvec3 local_origin{0.0};
+    double metres_per_unit = 1, exposure_ev = 0;
+    FrameStats stats;
+    uint64_t device_memory = 0;  ///< bytes of the device's buffers
+
+    /// The world point seen at a place, shares of the width and height from the top left; the nearest within
+    /// a few pixels where the place itself is empty.
+    std::optional<glm::dvec3> pick(const glm::dvec2& place) const;
+};
+
+/// The device a worker draws with; both are called on its thread.
+struct WorkerDevice {
+    std::function<Result<std::unique_ptr<gi::Device>>()> make;
+    std::function<void()> release;
+};
+
+/// A thread that owns device and pipeline and makes pictures of the newest request, so that the window
+/// answers at once however long a picture takes. It goes on making pictures of the same request while nodes
+/// are on their way or samples are being averaged, and then rests.
+class PictureWorker {
+ public:
+    /// `published` is called on the worker's thread after each picture and each error.
+    static Result<std::unique_ptr<PictureWorker>> start(WorkerDevice device,
+                                                        std::shared_ptr<const octree::NodeSource> source,
+                                                        const PipelineOptions& options,
+                                                        std::function<void()> published);
+    ~PictureWorker();  ///< after the picture being made
+    PictureWorker(const PictureWorker&) = delete;
+    PictureWorker& operator=(const PictureWorker&) = delete;
+
+    /// Replaces the request before; returns its number.
+    uint64_t request(PictureRequest request);
+    std::shared_ptr<const Picture> latest() const;  ///< null before the first
+    /// The newest request's error, if making its picture failed; it is not tried again.
+    Result<void> error() const;
+    const gi::DeviceInfo& device() const;
+
+ private:
+    PictureWorker();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace lucarne::viewer

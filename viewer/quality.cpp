@@ -1,0 +1,46 @@
+#include "viewer/quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kTooSlow = 0.15, kWanted = 0.1, kFast = 0.05;  ///< s a picture
+constexpr double kLeastScale = 0.25;
+
+}  // namespace
+
+void MovingQuality::observe(double frame_seconds) {
+    if (frame_seconds > kTooSlow) {
+        if (scale_ <= kLeastScale) reduced_ = true;
+        // As if all of the time were spent on pixels; by halves at most, for one slow picture proves little.
+        scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(kWanted / frame_seconds)));
+    } else if (frame_seconds < kFast) {
+        if (scale_ >= 1) reduced_ = false;
+        scale_ = std::min(1.0, scale_ * 1.25);
+    }
+}
+
+ImageSize MovingQuality::size(ImageSize full) const {
+    const auto side = [&](uint32_t pixels) {
+        return std::max(16u, static_cast<uint32_t>(std::lround(pixels * scale_)));
+    };
+    return {side(full.width), side(full.height)};
+}
+
+void MovingQuality::reduce(gi::EngineSettings& settings, CutBudgets& budgets) const {
+    if (!reduced_) return;
+    const Preset& cheap = presets().front();
+    settings.vpls = std::min(settings.vpls, cheap.engine.vpls);
+    settings.interleave = std::max(settings.interleave, cheap.engine.interleave);
+    settings.atlas = std::min(settings.atlas, cheap.engine.atlas);
+    settings.light_resolution = std::min(settings.light_resolution, cheap.engine.light_resolution);
+    settings.samples = std::min(settings.samples, cheap.engine.samples);
+    budgets.view = std::min(budgets.view, cheap.budgets.view);
+    budgets.light_view = std::min(budgets.light_view, cheap.budgets.light_view);
+    budgets.light = std::min(budgets.light, cheap.budgets.light);
+    budgets.pixel_spacing = std::max(budgets.pixel_spacing, cheap.budgets.pixel_spacing);
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "viewer/camera.h"
+#include "viewer/navigation.h"
+#include "viewer/picture_worker.h"
+#include "viewer/presets.h"
+
+namespace lucarne::viewer {
+
+/// All that the user can change in the viewer, and what the panels show. Actions and panels write it; the
+/// session turns it into requests.
+struct ViewModel {
+    explicit ViewModel(double its_scene_size) : scene_size(its_scene_size), navigation(its_scene_size) {}
+
+    double scene_size;  ///< diagonal, world units
+    CameraRig rig;
+    gi::SceneCamera home;  ///< where the view starts
+    Navigation navigation;
+
+    gi::Scene scene;
+    uint64_t scene_version = 1;
+    size_t light = 0;  ///< the selected one
+    std::string engine, preset;
+    gi::EngineSettings settings;
+    CutBudgets budgets;
+
+    bool show_panels = true, show_help = false;
+    bool close = false, save_picture = false;
+    std::string message;                   ///< of the last action, or why there is no new picture
+    std::filesystem::path pictures = ".";  ///< the folder for saved ones
+
+    // What is on the screen.
+    std::shared_ptr<const Picture> picture;
+    gi::DeviceInfo device;
+    double scale = 1;  ///< of the picture while moving
+
+    /// Must follow every change of `scene`.
+    void scene_changed() { ++scene_version; }
+    gi::SceneSpot* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
+    Result<void> choose_preset(std::string_view name);
+};
+
+}  // namespace lucarne::viewer

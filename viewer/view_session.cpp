@@ -1,0 +1,185 @@
+#include "viewer/view_session.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "io/core/log.h"
+#include "viewer/actions.h"
+#include "viewer/panels/panels.h"
+#include "viewer/rgba.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kRest = 0.25;      ///< s without a move until the picture is made in full
+constexpr double kStep = 1.0 / 60;  ///< s between frames of the window while something moves
+constexpr int kMostSavedPictures = 10000;
+
+bool same_request(const PictureRequest& a, const PictureRequest& b) {
+    return a.frame.camera.position == b.frame.camera.position &&
+           a.frame.camera.target == b.frame.camera.target &&
+           a.frame.camera.vertical_fov == b.frame.camera.vertical_fov &&
+           a.frame.size.width == b.frame.size.width && a.frame.size.height == b.frame.size.height &&
+           a.engine == b.engine && a.settings == b.settings && a.budgets == b.budgets &&
+           a.scene_version == b.scene_version && a.moving == b.moving;
+}
+
+/// The cursor as shares of the window's width and height.
+glm::dvec2 cursor() {
+    const ImGuiIO& io = ImGui::GetIO();
+    return {io.MousePos.x / io.DisplaySize.x, io.MousePos.y / io.DisplaySize.y};
+}
+
+/// The cursor's move, shares of the window's height.
+glm::dvec2 cursor_move() {
+    const ImGuiIO& io = ImGui::GetIO();
+    return glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / static_cast<double>(io.DisplaySize.y);
+}
+
+double axis(int less, int more) {
+    return (ImGui::IsKeyDown(more) ? 1.0 : 0.0) - (ImGui::IsKeyDown(less) ? 1.0 : 0.0);
+}
+
+/// The first name of the kind lucarne-0001.png that is free.
+std::filesystem::path free_name(const std::filesystem::path& folder) {
+    for (int number = 1; number < kMostSavedPictures; ++number) {
+        auto path = folder / fmt::format("lucarne-{:04}.png", number);
+        std::error_code ignored;
+        if (!std::filesystem::exists(path, ignored)) return path;
+    }
+    return folder / "lucarne.png";
+}
+
+}  // namespace
+
+double ViewSession::seconds_at_rest() const {
+    return std::chrono::duration<double>(Clock::now() - moved_).count();
+}
+
+void ViewSession::take_picture() {
+    const auto latest = worker_.latest();
+    if (!latest || (model_.picture && latest->number == model_.picture->number)) return;
+    model_.picture = latest;
+    if (latest->moving) quality_.observe(latest->stats.seconds);
+    model_.scale = quality_.scale();
+    if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0)
+        ++whole_pictures_;
+}
+
+/// Shift and the mouse are the light's.
+void ViewSession::take_light_gesture() {
+    const glm::dvec2 move = cursor_move();
+    if (move == glm::dvec2(0.0)) return;
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && model_.picture) {
+        if (const auto point = model_.picture->pick(cursor())) aim_light(model_, *point);
+    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+        shift_light(model_, {move.x, -move.y});
+    }
+}
+
+bool ViewSession::take_navigation() {
+    const ImGuiIO& io = ImGui::GetIO();
+    NavigationInput input;
+    input.seconds = io.DeltaTime;
+    input.fast = io.KeyShift;
+    if (!io.WantCaptureKeyboard)
+        input.keys = {axis(GLFW_KEY_A, GLFW_KEY_D), axis(GLFW_KEY_Q, GLFW_KEY_E),
+                      axis(GLFW_KEY_S, GLFW_KEY_W)};
+    if (!io.WantCaptureMouse) {
+        const bool orbiting = model_.navigation.mode() == NavigationMode::orbit;
+        const bool starts = ImGui::IsMouseClicked(ImGuiMouseButton_Left) ||
+                            ImGui::IsMouseClicked(ImGuiMouseButton_Right) ||
+                            ImGui::IsMouseClicked(ImGuiMouseButton_Middle);
+        if (orbiting && (starts || io.MouseWheel != 0) && model_.picture)
+            if (const auto point = model_.picture->pick(cursor())) model_.rig.set_pivot(*point);
+        input.rotate = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+        input.shift =
+            ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+        if (!starts) input.drag = cursor_move();
+        input.scroll = io.MouseWheel;
+    }
+    return model_.navigation.apply(input, model_.rig);
+}
+
+void ViewSession::take_input() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.WantCaptureKeyboard) run_actions(model_);
+    const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
+                                          ImGui::IsMouseDown(ImGuiMouseButton_Right));
+    if (at_light && !io.WantCaptureMouse) {
+        take_light_gesture();
+    } else if (take_navigation()) {
+        moved_ = Clock::now();
+    }
+}
+
+void ViewSession::draw_panels() {
+    if (model_.show_panels) {
+        draw_settings_panel(model_);
+        draw_light_panel(model_);
+        draw_statistics_panel(model_);
+    }
+    if (model_.show_help) draw_help(model_);
+    if (const auto error = worker_.error(); !error) model_.message = error.error().line();
+    draw_message(model_, !model_.picture || model_.picture->request != sent_number_);
+}
+
+void ViewSession::send_request() {
+    if (scene_seen_ != model_.scene_version && scene_seen_ != 0) moved_ = Clock::now();  // lights move too
+    scene_seen_ = model_.scene_version;
+    PictureRequest request;
+    request.moving = seconds_at_rest() < kRest;
+    request.engine = model_.engine;
+    request.settings = model_.settings;
+    request.budgets = model_.budgets;
+    request.frame.camera = model_.rig.camera();
+    request.frame.size = window_.framebuffer();
+    request.frame.accumulate = !request.moving;
+    if (request.moving) {
+        request.frame.size = quality_.size(request.frame.size);
+        quality_.reduce(request.settings, request.budgets);
+    }
+    request.scene_version = model_.scene_version;
+    if (sent_number_ != 0 && same_request(request, sent_)) return;
+    request.scene = model_.scene;
+    sent_ = request;
+    sent_number_ = worker_.request(std::move(request));
+    whole_pictures_ = 0;
+}
+
+Result<void> ViewSession::save() {
+    if (model_.save_picture && model_.picture) {
+        model_.save_picture = false;
+        const auto path = free_name(model_.pictures);
+        const auto saved =
+            io::write_png(path, without_alpha(model_.picture->rgba, model_.picture->size), false);
+        model_.message = saved ? "saved " + path.string() : saved.error().line();
+        log::info(model_.message);
+    }
+    if (!shot_ || whole_pictures_ < shot_->pictures) return {};
+    model_.close = true;
+    return io::write_png(shot_->file, without_alpha(window_.capture(), window_.framebuffer()),
+                         shot_->overwrite);
+}
+
+Result<void> ViewSession::run() {
+    while (!window_.closing() && !model_.close) {
+        const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
+        window_.wait(lively ? kStep : kRest);
+        take_picture();
+        window_.begin_frame();
+        if (model_.picture) window_.show(*model_.picture);
+        take_input();
+        draw_panels();
+        window_.draw();
+        LUCARNE_TRY(save());
+        window_.swap();
+        send_request();
+        if (shot_) LUCARNE_TRY(worker_.error());
+    }
+    return {};
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,162 @@
+#include "viewer/window.h"
+
+// epoxy before GLFW, which otherwise brings the system's GL header.
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <algorithm>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace lucarne::viewer {
+namespace {
+
+/// GLFW's last complaint, without its habit of several sentences.
+std::string glfw_reason() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text ? text : "GLFW gives no reason";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Window>> Window::open(ImageSize size, const std::string& title) {
+    std::unique_ptr<Window> window(new Window);
+    LUCARNE_TRY(window->create(size, title));
+    return window;
+}
+
+Result<void> Window::create(ImageSize size, const std::string& title) {
+    const std::string todo =
+        "start it on a desktop with OpenGL 4.5, or use lucarne render, which needs no display";
+    if (!glfwInit()) return failed("window", glfw_reason(), todo);
+    initialised_ = true;
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
+                               nullptr, nullptr);
+    if (!window_) return failed("window", glfw_reason(), todo);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    hidden_ = glfwCreateWindow(1, 1, "lucarne worker", nullptr, nullptr);
+    if (!hidden_) return failed("window", "a second context: " + glfw_reason(), todo);
+
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    ImGui::CreateContext();
+    imgui_ = true;
+    ImGui::GetIO().IniFilename = nullptr;  // no files left in the user's folder
+    ImGui::StyleColorsDark();
+    float scale = 1;
+    glfwGetWindowContentScale(window_, &scale, nullptr);
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImGui::GetIO().FontGlobalScale = scale;
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+    glGenTextures(1, &texture_);
+    return {};
+}
+
+Window::~Window() {
+    if (imgui_) {
+        glDeleteTextures(1, &texture_);
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    if (hidden_) glfwDestroyWindow(hidden_);
+    if (window_) glfwDestroyWindow(window_);
+    if (initialised_) glfwTerminate();
+}
+
+WorkerDevice Window::worker_device() {
+    return {[hidden = hidden_] {
+                glfwMakeContextCurrent(hidden);
+                return gi::Device::current();
+            },
+            [] { glfwMakeContextCurrent(nullptr); }};
+}
+
+void Window::wake() {
+    glfwPostEmptyEvent();
+}
+
+bool Window::closing() const {
+    return glfwWindowShouldClose(window_);
+}
+
+void Window::wait(double seconds) {
+    glfwWaitEventsTimeout(std::max(seconds, 1e-4));
+}
+
+ImageSize Window::framebuffer() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    return {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))};
+}
+
+void Window::begin_frame() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Window::draw() {
+    ImGui::Render();
+    const ImageSize size = framebuffer();
+    glViewport(0, 0, static_cast<int>(size.width), static_cast<int>(size.height));
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::swap() {
+    glfwSwapBuffers(window_);
+}
+
+void Window::show(const Picture& picture) {
+    const int width = static_cast<int>(picture.size.width), height = static_cast<int>(picture.size.height);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    if (picture.number != shown_) {
+        if (picture.size.width != texture_size_.width || picture.size.height != texture_size_.height) {
+            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+            glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+            glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+            glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+            glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+            texture_size_ = picture.size;
+        }
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
+                        picture.rgba.data());
+        shown_ = picture.number;
+    }
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    // A picture made before the window changed its shape keeps its own until the next one is there.
+    const float scale = std::max(size.x / static_cast<float>(width), size.y / static_cast<float>(height));
+    const ImVec2 half(static_cast<float>(width) * scale / 2, static_cast<float>(height) * scale / 2);
+    const ImVec2 middle(size.x / 2, size.y / 2);
+    ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(texture_)),
+                                             ImVec2(middle.x - half.x, middle.y - half.y),
+                                             ImVec2(middle.x + half.x, middle.y + half.y));
+}
+
+std::vector<std::byte> Window::capture() const {
+    const ImageSize size = framebuffer();
+    const size_t row = size_t{size.width} * 4;
+    std::vector<std::byte> pixels(row * size.height);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadBuffer(GL_BACK);
+    glReadPixels(0, 0, static_cast<int>(size.width), static_cast<int>(size.height), GL_RGBA, GL_UNSIGNED_BYTE,
+                 pixels.data());
+    for (uint32_t y = 0; y < size.height / 2; ++y)  // OpenGL's row 0 is at the bottom
+        std::swap_ranges(pixels.begin() + static_cast<ptrdiff_t>(y * row),
+                         pixels.begin() + static_cast<ptrdiff_t>((y + 1) * row),
+                         pixels.begin() + static_cast<ptrdiff_t>((size.height - 1 - y) * row));
+    return pixels;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/core/options.h"
+#include "viewer/picture_worker.h"
+
+struct GLFWwindow;
+
+namespace lucarne::viewer {
+
+/// The program's window with Dear ImGui in it, and a second, hidden context of the same driver for the
+/// worker. Main thread only, but for wake().
+class Window {
+ public:
+    /// Errors: no display, no OpenGL 4.5.
+    static Result<std::unique_ptr<Window>> open(ImageSize size, const std::string& title);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// Makes the hidden context current on the calling thread; `release` lets go of it there. The window
+    /// outlives the device.
+    WorkerDevice worker_device();
+    /// Ends wait() early; any thread.
+    static void wake();
+
+    bool closing() const;
+    /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
+    void wait(double seconds);
+    ImageSize framebuffer() const;  ///< pixels; 1x1 at least
+    GLFWwindow* handle() const { return window_; }
+
+    /// From here ImGui and show() may be used, until draw().
+    void begin_frame();
+    /// Fills the window with a picture, scaled without changing its shape. Uploads it when its number is new.
+    void show(const Picture& picture);
+    void draw();
+    /// What was drawn, RGBA8 of framebuffer()'s size, row 0 on top. Between draw() and swap().
+    std::vector<std::byte> capture() const;
+    void swap();
+
+ private:
+    Window() = default;
+    Result<void> create(ImageSize size, const std::string& title);
+
+    GLFWwindow* window_ = nullptr;
+    GLFWwindow* hidden_ = nullptr;
+    bool initialised_ = false, imgui_ = false;
+    unsigned texture_ = 0;
+    ImageSize texture_size_;
+    uint64_t shown_ = 0;
+};
+
+}  // namespace lucarne::viewer
