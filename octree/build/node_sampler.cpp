@@ -31,7 +31,7 @@ void NodeSampler::end_child(const Pending& child) {
 }
 
 void NodeSampler::run() {
-    sampler_.run(kSpacing, limits_.sample);
+    sampler_.run(kSpacing, std::min(limits_.sample, std::max<size_t>(1, sampler_.size() * 3 / 8)));
     first_own_pass_ = 1;
     count_taken();
 }

@@ -94,7 +94,7 @@ void Sampler::run(float radius, size_t most) {
     take(waiting_, waiting_, 0);
     while (taken_.size() > most) {  // a volume instead of a surface, or many layers: a wider radius
         const auto excess = static_cast<float>(taken_.size()) / static_cast<float>(most);
-        radius *= std::max(1.1f, std::cbrt(excess));
+        radius *= std::max(1.1f, std::min(std::sqrt(excess), 1.15f * std::cbrt(excess)));
         thinned_.swap(taken_);
         taken_.clear();
         reset_grid(radius);
