@@ -166,7 +166,7 @@ TEST_P(Prefix, LeavesLittleMoreUncoveredThanBlueNoise) {
         uint32_t share;
         double at_2, at_4;
     };
-    for (const Bound& bound : {Bound{2, 0.07, 0.005}, Bound{4, 0.045, 0.0015}, Bound{8, 0.035, 0.001}})
+    for (const Bound& bound : {Bound{2, 0.055, 0.003}, Bound{4, 0.03, 0.0006}, Bound{8, 0.022, 0.0003}})
         for (const double coverage : {2.0, 4.0}) {
             const Measured found = measure(**cache, surface, bound.share, coverage);
             std::printf(
