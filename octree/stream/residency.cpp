@@ -319,7 +319,8 @@ ResidencyStats Residency::stats() const {
     const std::lock_guard lock(state_->mutex);
     ResidencyStats stats = state_->stats;
     stats.pending = state_->queue.size();
-    for (const auto& [node, entry] : state_->entries) stats.pending += entry.in_flight && entry.admitted;
+    for (const auto& [node, entry] : state_->entries)
+        stats.pending += (entry.in_flight && entry.admitted) || entry.unpolled;
     return stats;
 }
 

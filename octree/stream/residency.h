@@ -30,7 +30,7 @@ struct ResidencyEvent {
 struct ResidencyStats {
     uint64_t bytes_held = 0, bytes_loaded = 0;  ///< now; since the start
     uint64_t nodes_held = 0, loads = 0, evictions = 0, failures = 0;
-    uint64_t pending = 0;     ///< wanted and not there yet
+    uint64_t pending = 0;     ///< wanted and not there yet, or there and not polled
     uint64_t refused = 0;     ///< wanted, and the cap has no room for them
     uint64_t bytes_peak = 0;  ///< the most ever held or on their way
 };

@@ -214,6 +214,8 @@ TEST(Residency, ReportsAFailedLoadOnceAndDoesNotTryItAgain) {
         residency.wait();
     }
     EXPECT_EQ(residency.stats().failures, 3u);
+    EXPECT_EQ(residency.stats().pending, residency.stats().nodes_held) << "not polled yet";
+    residency.poll();
     EXPECT_EQ(residency.stats().pending, 0u);
     EXPECT_EQ(residency.stats().refused, 0u) << "what failed is not short of memory";
     EXPECT_FALSE(residency.take_error());
