@@ -154,6 +154,8 @@ Result<void> check_points(const InputFile& file, const Header& h) {
             file.path().string(),
             fmt::format("is truncated: its header promises {} points, {} are there, {} are missing", h.points,
                         there, h.points - there));
+    if (h.points == 0 && there > 0)  // a writer that was interrupted leaves such files
+        log::warn("{}: its header promises no points, but there is room for {}", file.path().string(), there);
     return {};
 }
 

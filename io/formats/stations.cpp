@@ -18,6 +18,7 @@ Result<std::vector<Station>> stations_from_json(const std::string& file, std::st
     const auto wrong = [&](std::string_view why) {
         return rejected(file, fmt::format("its station poses {}", why));
     };
+    if (text.size() > 256 * kMostStations) return wrong("are too many");
     const auto json = nlohmann::json::parse(text, nullptr, false);
     if (!json.is_object() || !json.contains("stations") || !json["stations"].is_array())
         return wrong("are no JSON object with a list of stations");

@@ -1,10 +1,10 @@
 // Pictures come back as they were written, and hostile ones do no harm.
 #include "io/image/image.h"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gmock/gmock.h>
 
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
@@ -12,6 +12,7 @@
 namespace lucarne::io {
 namespace {
 
+using testing::MemoryFile;
 using testing::read_bytes;
 using testing::TemporaryFolder;
 using testing::write_bytes;
@@ -29,7 +30,8 @@ Image noise(uint32_t width, uint32_t height) {
 Image8 noise8(uint32_t width, uint32_t height) {
     Image8 image{width, height, {}};
     Random random(8);
-    for (size_t i = 0; i < size_t{3} * width * height; ++i) image.bytes.push_back(static_cast<uint8_t>(random.next()));
+    for (size_t i = 0; i < size_t{3} * width * height; ++i)
+        image.bytes.push_back(static_cast<uint8_t>(random.next()));
     return image;
 }
 
@@ -128,24 +130,25 @@ TEST(Pictures, TruncatedAndChangedFilesNeverCrash) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_png(folder / "a.png", noise8(9, 9), false));
     ASSERT_TRUE(write_exr(folder / "a.exr", noise(9, 9), false));
+    const MemoryFile file;
     const std::string png = read_bytes(folder / "a.png"), exr = read_bytes(folder / "a.exr");
     for (size_t length = 0; length < png.size(); length += 7) {
-        write_bytes(folder / "b.png", png.substr(0, length));
-        (void)read_png(folder / "b.png");
+        file.set(png.substr(0, length));
+        (void)read_png(file.path());
     }
     for (size_t length = 0; length + 1 < exr.size(); length += 7) {
-        write_bytes(folder / "b.exr", exr.substr(0, length));
-        EXPECT_FALSE(read_exr(folder / "b.exr")) << length;
+        file.set(exr.substr(0, length));
+        EXPECT_FALSE(read_exr(file.path())) << length;
     }
     Random random(3);
     for (int round = 0; round < 500; ++round) {
         std::string p = png, e = exr;
         p[random.next() % p.size()] = static_cast<char>(random.next());
         e[random.next() % std::min<size_t>(400, e.size())] = static_cast<char>(random.next());
-        write_bytes(folder / "b.png", p);
-        write_bytes(folder / "b.exr", e);
-        (void)read_png(folder / "b.png");
-        (void)read_exr(folder / "b.exr");
+        file.set(p);
+        (void)read_png(file.path());
+        file.set(e);
+        (void)read_exr(file.path());
     }
 }
 

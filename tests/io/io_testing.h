@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "io/formats/scan.h"
@@ -45,6 +46,22 @@ inline std::string read_bytes(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }
+
+/// A file in memory, for tests that change one thousands of times.
+class MemoryFile {
+ public:
+    MemoryFile() : fd_(memfd_create("lucarne-test", MFD_CLOEXEC)) {}
+    ~MemoryFile() { close(fd_); }
+    MemoryFile(const MemoryFile&) = delete;
+    void set(std::string_view bytes) const {
+        ASSERT_EQ(ftruncate(fd_, 0), 0);
+        ASSERT_EQ(pwrite(fd_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+    }
+    std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+
+ private:
+    int fd_;
+};
 
 /// Every record of one pass.
 struct Records {
