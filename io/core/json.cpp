@@ -48,6 +48,11 @@ Result<std::string> load_text(const std::filesystem::path& path) {
     return text;
 }
 
+Result<nlohmann::json> load_json(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const std::string text, load_text(path));
+    return parse_json(text, path.string());
+}
+
 Result<JsonObject> JsonObject::of(const nlohmann::json& value, std::string name, std::string pointer) {
     JsonObject object(value, std::move(name), std::move(pointer));
     if (!value.is_object()) return object.wrong(fmt::format("must be an object, not {}", value.type_name()));

@@ -18,6 +18,7 @@ namespace lucarne {
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name);
 /// The text of such a file, of at most 16 MiB.
 Result<std::string> load_text(const std::filesystem::path& path);
+Result<nlohmann::json> load_json(const std::filesystem::path& path);
 
 struct JsonRange {
     double least = -1e300, most = 1e300;
