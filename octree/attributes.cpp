@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
@@ -14,7 +15,8 @@ glm::vec2 fold(const glm::vec3& n) {
     const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
     glm::vec2 p(n.x / sum, n.y / sum);
     if (n.z < 0)
-        p = {(1 - std::abs(p.y)) * (p.x >= 0 ? 1.0f : -1.0f), (1 - std::abs(p.x)) * (p.y >= 0 ? 1.0f : -1.0f)};
+        p = {(1 - std::abs(p.y)) * (p.x >= 0 ? 1.0f : -1.0f),
+             (1 - std::abs(p.x)) * (p.y >= 0 ? 1.0f : -1.0f)};
     return p;
 }
 
@@ -41,8 +43,11 @@ NormalCode encode_normal(const glm::vec3& n) {
 
 std::optional<glm::vec3> decode_normal(NormalCode code) {
     if (code == kNoNormal) return std::nullopt;
-    const uint32_t word = code[0] | static_cast<uint32_t>(code[1]) << 8 | static_cast<uint32_t>(code[2]) << 16;
-    const auto coordinate = [](uint32_t q) { return std::min(static_cast<float>(q) / kLargest, 1.0f) * 2 - 1; };
+    const uint32_t word =
+        code[0] | static_cast<uint32_t>(code[1]) << 8 | static_cast<uint32_t>(code[2]) << 16;
+    const auto coordinate = [](uint32_t q) {
+        return std::min(static_cast<float>(q) / kLargest, 1.0f) * 2 - 1;
+    };
     return unfold({coordinate(word & 0xfff), coordinate(word >> 12)});
 }
 

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxNesting = 32;
+constexpr double kFarthest = 1e31;  // readers drop coordinates over 1e30: nothing overflows when squared
 
 /// Thrown and caught in this file only: nlohmann's accessors throw as well, so one handler serves both.
 struct Mistake : std::runtime_error {
@@ -138,9 +139,13 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         SourceHeader header;
         header.schema = schema_of(root.at("schema"));
         header.root = {vector_of(root.at("root").at("min")), number(root.at("root").at("size"))};
-        require(header.root.size > 0, "a root cube without size");
+        require(header.root.size > 0 && header.root.size <= kFarthest,
+                "a root cube without or beyond any size");
         header.min = vector_of(root.at("bounds").at("min"));
         header.max = vector_of(root.at("bounds").at("max"));
+        for (int axis = 0; axis < 3; ++axis)
+            require(header.min[axis] <= header.max[axis] && std::abs(header.root.min[axis]) <= kFarthest,
+                    "impossible bounds");
         header.points = root.at("points").get<uint64_t>();
         header.metres_per_unit = number(root.at("metres_per_unit"));
         require(header.metres_per_unit > 0, "a unit without length");

@@ -1,0 +1,247 @@
+// The cache reader against every kind of damage, lies with correct checksums among them.
+#include "octree/cache.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "octree/build/build.h"
+#include "octree/cache_file.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+using format::kEntryBytes;
+using format::kSuperblockBytes;
+
+class Cache : public testing::Test {
+ protected:
+    void SetUp() override {
+        io::Schema schema;
+        schema.position = io::PositionType::f32;
+        schema.stride = 12;
+        schema.add("color", io::ScalarType::u8, 3);
+        const test::ComputedSource source(schema, 60'000, [](uint64_t index, std::byte* record) {
+            Random random(2, index);
+            for (int axis = 0; axis < 3; ++axis)
+                io::store(record + 4 * axis, static_cast<float>(axis == 2 ? 0.0 : 10 * random.uniform()));
+            io::store(record + 12, static_cast<uint8_t>(index));
+        });
+        BuildOptions options;
+        options.inputs = {&source};
+        options.output = path();
+        options.normals = NormalsMode::none;
+        ASSERT_TRUE(build_cache(options));
+        std::ifstream in(path(), std::ios::binary);
+        bytes_.assign(std::istreambuf_iterator<char>(in), {});
+        block_ = *format::decode(std::as_bytes(std::span(bytes_)).first<kSuperblockBytes>());
+    }
+
+    std::filesystem::path path() const { return folder_ / "cache.luc"; }
+    std::filesystem::path write(const std::string& bytes) const {
+        const auto name = folder_ / "damaged.luc";
+        std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        return name;
+    }
+    size_t nodes() const { return block_.directory_bytes / kEntryBytes; }
+
+    /// The file with one directory entry changed and every checksum right again: a lie, not an accident.
+    template <class Change>
+    std::string with_entry(size_t node, const Change& change) const {
+        std::string bytes = bytes_;
+        auto* at = reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset + node * kEntryBytes;
+        format::Entry entry = format::load_entry(at);
+        change(entry);
+        format::store_entry(entry, at);
+        return resealed(bytes, block_);
+    }
+    /// The file with another metadata text of the same length.
+    std::string with_metadata(const std::string& from, const std::string& to) const {
+        std::string bytes = bytes_;
+        const auto at = bytes.find(from, block_.metadata_offset);
+        EXPECT_NE(at, std::string::npos) << from;
+        EXPECT_EQ(from.size(), to.size());
+        bytes.replace(at, to.size(), to);
+        return resealed(bytes, block_);
+    }
+    static std::string resealed(std::string bytes, format::Superblock block) {
+        const auto all = std::as_bytes(std::span(bytes));
+        block.directory_checksum =
+            format::checksum(all.subspan(block.directory_offset, block.directory_bytes));
+        block.metadata_checksum = format::checksum(all.subspan(block.metadata_offset, block.metadata_bytes));
+        return with_superblock(std::move(bytes), block);
+    }
+    static std::string with_superblock(std::string bytes, const format::Superblock& block) {
+        const auto encoded = format::encode(block);
+        std::memcpy(bytes.data(), encoded.data(), kSuperblockBytes);
+        std::memcpy(bytes.data() + kSuperblockBytes, encoded.data(), kSuperblockBytes);
+        return bytes;
+    }
+    void expect_rejected(const std::string& bytes, const std::string& why) {
+        const auto opened = open_cache(write(bytes));
+        ASSERT_FALSE(opened) << why;
+        EXPECT_EQ(opened.error().kind, ErrorKind::input_rejected) << why;
+        EXPECT_NE(opened.error().line().find(why), std::string::npos)
+            << opened.error().line() << " should say: " << why;
+    }
+
+    const test::TempFolder folder_;
+    std::string bytes_;
+    format::Superblock block_;
+};
+
+TEST_F(Cache, OpensFromEitherSuperblockAndVerifyMissesTheOther) {
+    for (const size_t broken : {size_t{0}, kSuperblockBytes}) {
+        std::string bytes = bytes_;
+        bytes[broken + 30] ^= 1;
+        const auto name = write(bytes);
+        EXPECT_TRUE(open_cache(name));
+        const auto verified = verify_cache(name, [](uint64_t) {});
+        ASSERT_FALSE(verified);
+        EXPECT_NE(verified.error().line().find("superblock"), std::string::npos);
+    }
+    std::string bytes = bytes_;
+    bytes[30] ^= 1;
+    bytes[kSuperblockBytes + 30] ^= 1;
+    expect_rejected(bytes, "superblocks are damaged");
+}
+
+TEST_F(Cache, TakesTheSuperblockOfTheHigherGeneration) {
+    format::Superblock next = block_;
+    next.generation = 2;
+    next.directory_offset = 1;  // if this one is taken, the cache does not open
+    std::string bytes = bytes_;
+    const auto encoded = format::encode(next);
+    std::memcpy(bytes.data() + kSuperblockBytes, encoded.data(), kSuperblockBytes);
+    expect_rejected(bytes, "points outside the file");
+    next.generation = 0;
+    const auto older = format::encode(next);
+    std::memcpy(bytes.data() + kSuperblockBytes, older.data(), kSuperblockBytes);
+    EXPECT_TRUE(open_cache(write(bytes)));
+}
+
+TEST_F(Cache, RejectsEveryTruncation) {
+    for (size_t length = 0; length < bytes_.size(); length += 1 + bytes_.size() / 97)
+        EXPECT_FALSE(open_cache(write(bytes_.substr(0, length)))) << length << " bytes";
+    EXPECT_FALSE(open_cache(write(bytes_.substr(0, bytes_.size() - 1))));
+}
+
+TEST_F(Cache, VerifyFindsAFlippedBitAnywhere) {
+    // All but the zeros behind the superblocks' fields, which mean nothing.
+    const auto meaningless = [](size_t at) {
+        return at < 2 * kSuperblockBytes && at % kSuperblockBytes >= 88;
+    };
+    Random random(9);
+    for (int i = 0; i < 300; ++i) {
+        const size_t at = i < 176 ? static_cast<size_t>(i % 88) + (i < 88 ? 0 : kSuperblockBytes)
+                                  : random.next() % bytes_.size();
+        if (meaningless(at)) continue;
+        std::string bytes = bytes_;
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.next() % 8));
+        EXPECT_FALSE(verify_cache(write(bytes), [](uint64_t) {})) << "byte " << at;
+    }
+}
+
+TEST_F(Cache, VerifyFindsBytesBehindTheEnd) {
+    const auto name = write(bytes_ + "x");
+    EXPECT_TRUE(open_cache(name)) << "an interrupted append must not lose the old state";
+    const auto verified = verify_cache(name, [](uint64_t) {});
+    ASSERT_FALSE(verified);
+    EXPECT_NE(verified.error().line().find("1 bytes stand behind its end"), std::string::npos);
+}
+
+TEST_F(Cache, RejectsLyingSuperblocks) {
+    const auto lie = [&](auto member, uint64_t value) {
+        format::Superblock block = block_;
+        block.*member = value;
+        return with_superblock(bytes_, block);
+    };
+    for (const uint64_t value :
+         {uint64_t{0}, uint64_t{8191}, block_.file_bytes, UINT64_MAX - 63, UINT64_MAX}) {
+        EXPECT_FALSE(open_cache(write(lie(&format::Superblock::directory_offset, value)))) << value;
+        EXPECT_FALSE(open_cache(write(lie(&format::Superblock::metadata_offset, value)))) << value;
+        EXPECT_FALSE(open_cache(write(lie(&format::Superblock::directory_bytes, value & ~uint64_t{63}))))
+            << value;
+        EXPECT_FALSE(open_cache(write(lie(&format::Superblock::metadata_bytes, value)))) << value;
+    }
+    expect_rejected(lie(&format::Superblock::file_bytes, UINT64_MAX), "ends early");
+}
+
+TEST_F(Cache, RejectsLyingDirectories) {
+    using format::Entry;
+    const size_t last = nodes() - 1;
+    ASSERT_GT(last, 4u);
+    expect_rejected(with_entry(last, [](Entry& e) { e.count += 1; }), "do not add up");
+    expect_rejected(with_entry(last, [](Entry& e) { e.count += 1, e.subtree_count += 1; }), "do not add up");
+    expect_rejected(with_entry(0, [](Entry& e) { e.subtree_count = UINT64_MAX; }), "do not add up");
+    expect_rejected(with_entry(last, [](Entry& e) { e.key.level = 22; }), "outside the root cube");
+    expect_rejected(with_entry(last, [](Entry& e) { e.key.x = 1u << 31; }), "outside the root cube");
+    expect_rejected(with_entry(last, [](Entry& e) { e.key.x ^= 1; }), "not where they belong");
+    expect_rejected(with_entry(last, [](Entry& e) { e.child_mask = 255; }), "not where they belong");
+    const auto cache = CacheFile::open(path());
+    const size_t parent = (*cache)->nodes()[last].parent;
+    expect_rejected(with_entry(parent,
+                               [](Entry& e) {
+                                   e.child_mask &=
+                                       static_cast<uint8_t>(0xff >> (__builtin_clz(e.child_mask) - 23));
+                               }),
+                    "has no parent");
+    expect_rejected(with_entry(0, [](Entry& e) { e.child_mask = 0; }), "not where they belong");
+    expect_rejected(with_entry(0, [](Entry& e) { e.key.level = 1; }), "no root node");
+    expect_rejected(with_entry(last, [](Entry& e) { e.codec = 1; }), "unknown codec 1");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = UINT64_MAX; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = 0; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset += 15; }), "overlap");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes += 1; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.area_floor[2] = NAN; }), "area floor");
+    expect_rejected(with_entry(last, [](Entry& e) { e.area_floor[0] = -1; }), "area floor");
+}
+
+TEST_F(Cache, RejectsLyingMetadata) {
+    expect_rejected(with_metadata("\"f32\"", "\"f16\""), "unknown position type");
+    expect_rejected(with_metadata("\"components\": 3", "\"components\": 0"), "components");
+    expect_rejected(with_metadata("\"points\": 60000", "\"points\": 60001"), "disagree");
+    expect_rejected(with_metadata("\"scans\"", "\"scanz\""), "scans");
+    expect_rejected(with_metadata("\"metres_per_unit\": 1", "\"metres_per_unit\": 0"), "unit");
+    std::string nested = bytes_;
+    nested.replace(block_.metadata_offset, block_.metadata_bytes, std::string(block_.metadata_bytes, '['));
+    expect_rejected(resealed(nested, block_), "nested too deep");
+}
+
+TEST_F(Cache, VerifyFindsPointsOutsideTheirCube) {
+    // Every checksum and count is right, one point is not.
+    std::vector<size_t> leaves;
+    const auto cache = CacheFile::open(path());
+    for (size_t i = 0; i < nodes(); ++i)
+        if ((*cache)->nodes()[i].child_mask == 0) leaves.push_back(i);
+    ASSERT_FALSE(leaves.empty());
+    std::string bytes = bytes_;
+    auto* directory = reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset;
+    format::Entry a = format::load_entry(directory + leaves[0] * kEntryBytes);
+    std::byte* record = reinterpret_cast<std::byte*>(bytes.data()) + a.payload_offset;
+    io::store(record, io::load<float>(record) < 5 ? 9.0f : 1.0f);
+    a.checksum = format::checksum({record, a.payload_bytes});
+    format::store_entry(a, directory + leaves[0] * kEntryBytes);
+    const auto name = write(resealed(bytes, block_));
+    EXPECT_TRUE(open_cache(name));
+    const auto verified = verify_cache(name, [](uint64_t) {});
+    ASSERT_FALSE(verified);
+    EXPECT_NE(verified.error().line().find("lies outside its cube"), std::string::npos)
+        << verified.error().line();
+}
+
+TEST_F(Cache, IsToldFromOtherFilesByItsContent) {
+    EXPECT_TRUE(is_cache(path()));
+    EXPECT_FALSE(is_cache(write("ply\n")));
+    EXPECT_FALSE(is_cache(write("")));
+    EXPECT_FALSE(is_cache(folder_.path()));
+    EXPECT_FALSE(is_cache(folder_ / "absent"));
+}
+
+}  // namespace
+}  // namespace lucarne::octree
