@@ -2,8 +2,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <glm/vec3.hpp>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "io/points.h"
 
@@ -13,13 +14,13 @@ struct Box {
     glm::dvec3 min{0.0}, max{0.0};
 };
 
-/// The chunks of an out-of-core build, as the normal estimator sees them. Chunks are disjoint boxes that together
-/// hold every point; all calls are thread-safe.
+/// The chunks of an out-of-core build, as the normal estimator sees them. Chunks are disjoint boxes that
+/// together hold every point; all calls are thread-safe.
 class ChunkAccess {
  public:
     virtual ~ChunkAccess() = default;
     virtual size_t chunk_count() const = 0;
-    virtual Box bounds(size_t chunk) const = 0;          ///< half-open cell of the chunk
+    virtual Box bounds(size_t chunk) const = 0;  ///< half-open cell of the chunk
     virtual uint64_t point_count(size_t chunk) const = 0;
     /// Positions of a chunk's points in their stored order.
     virtual Result<std::vector<glm::dvec3>> positions(size_t chunk) const = 0;
@@ -27,12 +28,17 @@ class ChunkAccess {
     virtual Result<std::vector<int32_t>> stations(size_t chunk) const = 0;
 };
 
+/// What a chunk takes while it is worked on, bytes a point: chunks should be small enough that a few fit in
+/// NormalOptions::memory at a time (one is worked on even if it does not).
+inline constexpr uint64_t kNormalBytesPerPoint = 250;
+inline constexpr uint32_t kMostNormalNeighbours = 127;
+
 struct NormalOptions {
-    uint32_t neighbours = 16;
+    uint32_t neighbours = 16;  ///< besides the point itself; 3 to kMostNormalNeighbours
     std::vector<glm::dvec3> stations;
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may hold in all
     unsigned threads = 0;
-    bool normals = true;                  ///< false: only areas (the input has its own normals)
+    bool normals = true;  ///< false: only areas (the input has its own normals)
 };
 
 /// Of one chunk, in the order of its positions.
@@ -45,10 +51,12 @@ struct ChunkNormals {
 /// signs[chunk][component]: +1 keep, -1 flip the normals of that component.
 using OrientationSigns = std::vector<std::vector<int8_t>>;
 
-/// Estimates normals and areas of all chunks; neighbours are found across chunk borders. `sink` takes each chunk
-/// as it is done (any order, any thread, one call a chunk); the signs returned make the orientation whole: toward
-/// the station where it is known, else consistent along the surface. Results do not depend on the thread count.
-Result<OrientationSigns> estimate_normals(const ChunkAccess& chunks, const NormalOptions& options,
-                                          const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink);
+/// Estimates normals and areas of all chunks; neighbours are found across chunk borders. `sink` takes each
+/// chunk as it is done (any order, any thread, one call a chunk); the signs returned make the orientation
+/// whole: toward the station where it is known, else consistent along the surface. Results do not depend on
+/// the thread count.
+Result<OrientationSigns> estimate_normals(
+    const ChunkAccess& chunks, const NormalOptions& options,
+    const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink);
 
 }  // namespace lucarne::octree

@@ -1,0 +1,131 @@
+#include "octree/normals/normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+#include "io/core/parallel.h"
+#include "octree/normals/chunk_surface.h"
+#include "octree/normals/orientation.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// A normal seen at a flatter angle than this (sine) does not tell which side the station saw.
+constexpr double kGrazing = 0.05;
+
+/// What is known of one chunk before the components of all are joined.
+struct ChunkEstimate {
+    ChunkNeighbours neighbours;
+    ChunkSurface surface;
+    ChunkOrientation orientation;
+};
+
+/// Which way the stations want each site's normal turned: the first point at the site with a station decides.
+Result<std::vector<int8_t>> toward_stations(const ChunkAccess& chunks, size_t chunk,
+                                            const NormalOptions& options, const ChunkNeighbours& neighbours,
+                                            const ChunkSurface& surface) {
+    std::vector<int8_t> toward(neighbours.site_count(), 0);
+    if (options.stations.empty()) return toward;
+    LUCARNE_ASSIGN(const auto stations, chunks.stations(chunk));
+    for (uint32_t site = 0; site < toward.size(); ++site)
+        for (const uint32_t point : neighbours.members(site)) {
+            const int32_t station = point < stations.size() ? stations[point] : -1;
+            if (station < 0 || static_cast<size_t>(station) >= options.stations.size()) continue;
+            const glm::dvec3 ray = options.stations[static_cast<size_t>(station)] - neighbours.position(site);
+            const double facing = glm::dot(glm::dvec3(surface.normals[site]), ray);
+            if (std::abs(facing) > kGrazing * glm::length(ray)) toward[site] = facing > 0 ? 1 : -1;
+            break;
+        }
+    return toward;
+}
+
+Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const NormalOptions& options) {
+    LUCARNE_ASSIGN(auto neighbours, ChunkNeighbours::load(cache, chunk));
+    LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
+    neighbours.drop_indices();
+    ChunkOrientation orientation;
+    if (options.normals) {
+        LUCARNE_ASSIGN(const auto toward,
+                       toward_stations(cache.chunks(), chunk, options, neighbours, surface));
+        orientation = orient_chunk(neighbours, surface, toward);
+    } else {
+        std::fill(surface.normals.begin(), surface.normals.end(), glm::vec3(0.0f));
+        orientation.components.assign(neighbours.site_count(), 0);
+    }
+    return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
+}
+
+/// From sites to points, in their stored order; the points of a site share its area.
+ChunkNormals points_of(const ChunkEstimate& estimate) {
+    const auto sites = static_cast<uint32_t>(estimate.neighbours.site_count());
+    const size_t points = estimate.neighbours.point_count();
+    ChunkNormals normals;
+    normals.normals.resize(points);
+    normals.areas.resize(points);
+    normals.components.resize(points);
+    for (uint32_t site = 0; site < sites; ++site) {
+        const auto members = estimate.neighbours.members(site);
+        for (const uint32_t point : members) {
+            normals.normals[point] = estimate.surface.normals[site];
+            normals.areas[point] = estimate.surface.areas[site] / static_cast<float>(members.size());
+            normals.components[point] = estimate.orientation.components[site];
+        }
+    }
+    return normals;
+}
+
+/// The chunks from `first` on that are worked on side by side within the memory; at least one.
+size_t wave_end(const ChunkAccess& chunks, size_t first, uint64_t memory) {
+    uint64_t bytes = 0;
+    size_t end = first;
+    for (; end < chunks.chunk_count(); ++end) {
+        bytes += chunks.point_count(end) * kNormalBytesPerPoint;
+        if (end > first && bytes > memory) break;
+    }
+    return end;
+}
+
+}  // namespace
+
+Result<OrientationSigns> estimate_normals(
+    const ChunkAccess& chunks, const NormalOptions& options,
+    const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink) {
+    if (options.neighbours < 3 || options.neighbours > kMostNormalNeighbours)
+        return bad_arguments("normals", fmt::format("{} neighbours; must be 3 to {}", options.neighbours,
+                                                    kMostNormalNeighbours));
+    const ThreadLimit threads(options.threads);
+    ChunkCache cache(chunks, options.memory / 4);
+    OrientationMerger merger(chunks.chunk_count());
+    for (size_t first = 0, last; first < chunks.chunk_count(); first = last) {
+        last = wave_end(chunks, first, options.memory - options.memory / 4);
+        std::vector<std::optional<ChunkEstimate>> wave(last - first);
+        FirstError error;
+        tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+            if (chunks.point_count(first + i) == 0) return;
+            auto estimate = estimate_chunk(cache, first + i, options);
+            if (estimate)
+                wave[i] = std::move(*estimate);
+            else
+                error.report(i, std::move(estimate).error());
+        });
+        LUCARNE_TRY(error.result());
+        for (const auto& estimate : wave)
+            if (estimate)
+                merger.add(estimate->neighbours, estimate->surface, estimate->orientation);
+            else
+                merger.add_empty();
+        tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+            auto done = sink(first + i, wave[i] ? points_of(*wave[i]) : ChunkNormals{});
+            if (!done) error.report(i, std::move(done).error());
+        });
+        LUCARNE_TRY(error.result());
+    }
+    return merger.signs();
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "octree/normals/chunk_surface.h"
+
+namespace lucarne::octree {
+
+/// How two normals at the ends of an edge agree (Hoppe et al. 1992, section 3.3).
+struct Agreement {
+    bool opposite = false;  ///< one of them must be turned
+    float doubt = 1.0f;     ///< 1 - |agreement|: the cost of the edge in the spanning tree, 0 to 1
+};
+/// Nearly parallel normals are compared as they are. Where the surface turns between the two points, one
+/// normal is first mirrored in the plane half-way between them, so that going round a sharp edge costs
+/// nothing and keeps the outside outside (Xie, Wang, Hua, Qin, Kaufman 2003: the symmetric propagation).
+Agreement agreement(const glm::vec3& normal, const glm::vec3& other, const glm::vec3& offset);
+
+/// The orientation of one chunk's sites among themselves.
+struct ChunkOrientation {
+    std::vector<uint32_t> components;  ///< of each site; sites without a normal are in 0
+    uint32_t count = 1;                ///< components
+    bool anchored = false;             ///< component 0 is turned toward the stations already
+};
+
+/// Hands orientation on along a minimum spanning forest of the neighbourhood graph and turns
+/// `surface.normals` accordingly: consistent within each component. `toward[site]` is +1 where the normal is
+/// known to point toward its station as it is, -1 where it must be turned, 0 where nothing is known.
+ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& surface,
+                              std::span<const int8_t> toward);
+
+/// Joins the components of all chunks: a signed graph whose edges are votes of point pairs across chunk
+/// borders, and its maximum spanning forest. Takes the chunks in ascending order; holds what unfinished
+/// chunks must still hear from finished ones (kVotesPerPair edges a pair of component and chunk at most), and
+/// a few words a component.
+class OrientationMerger {
+ public:
+    explicit OrientationMerger(size_t chunks) : inboxes_(chunks), first_component_(1, 0) {}
+
+    /// `site_of` gives the site of each point of the chunk. Chunks without points are added, too.
+    void add(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+             const ChunkOrientation& orientation);
+    void add_empty();
+
+    /// +1 keep or -1 turn, for every chunk and component. Components that no station anchors are turned as a
+    /// whole, so that the normal at the topmost point of each connected surface points up: true of whatever
+    /// was scanned from outside or above.
+    std::vector<std::vector<int8_t>> signs() const;
+
+ private:
+    struct Message {  ///< an edge seen from the finished chunk
+        uint32_t component, index;
+        glm::vec3 normal, offset;
+    };
+    struct Component {
+        double top = 0;        ///< height of its topmost point
+        float top_normal = 0;  ///< the normal's z there
+        float normal_sum = 0;  ///< of all normals' z, weighted by area
+        bool anchored = false;
+    };
+    void hear(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
+              const ChunkOrientation& orientation);
+    void tell(const ChunkSurface& surface, const ChunkOrientation& orientation);
+
+    std::vector<std::vector<Message>> inboxes_;
+    std::vector<uint32_t> first_component_;  ///< of each chunk added so far, and one more
+    std::vector<Component> components_;
+    std::unordered_map<uint64_t, double> votes_;  ///< by pair of components: positive: the same way
+};
+
+}  // namespace lucarne::octree

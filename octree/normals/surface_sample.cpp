@@ -1,0 +1,115 @@
+#include "octree/normals/surface_sample.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::octree {
+namespace {
+
+constexpr size_t kLeastLayer = 6;  ///< fewer points say nothing about a layer of their own
+/// Layers are apart by this share of the neighbourhood's thickness (Gaussian noise leaves such a gap among 17
+/// points once in 2^16), and by this share of the spacing: closer ones are the noise, rounding or
+/// registration of one.
+constexpr float kLayerGap = 0.4f, kLayerSpacing = 0.5f;
+/// Neighbours near the poles of the ball have next to no disc; this share of d^2 bounds their weight.
+constexpr double kLeastDisc = 0.1;
+constexpr double kThick = 0.4;  ///< deviation of the heights over d, from which noise fills the ball
+/// The nearest of 16 neighbours in a plane is at this share of the farthest once in 2^18 (Poisson); a point
+/// out in the air sees all of a surface from afar and has no share of it.
+constexpr float kIsolated = 0.75f;
+/// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
+/// trusted.
+constexpr double kVarianceFloor = 1e-6;
+
+float deviation_of(const Plane& plane, size_t points) {
+    const double n = static_cast<double>(points);
+    const double widest = plane.variances[2];
+    if (!(widest > 0) || points < 4) return 10.0f;
+    // The plane has taken three degrees of freedom from the residuals.
+    const double noise = plane.variances[0] * n / (n - 3) + kVarianceFloor * widest;
+    double variance = 0;
+    for (const size_t axis : {1, 2}) {
+        const double gap = plane.variances[axis] - noise;
+        if (!(gap > 0)) return 10.0f;
+        variance += noise * plane.variances[axis] / (n * gap * gap);
+    }
+    return static_cast<float>(std::min(10.0, std::sqrt(variance)));
+}
+
+/// The range of heights of the layer that holds the point itself, which is at 0.
+struct Layer {
+    float low, high;
+    bool holds(float height) const { return height >= low && height <= high; }
+};
+/// A gap of nearly half the range or more is looked for at the middle of it.
+Layer own_layer(std::span<const float> heights, float spacing) {
+    const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+    const float low = *lowest, high = *highest, middle = (low + high) / 2;
+    float below = low, above = high;
+    size_t lower = 0;
+    for (const float h : heights) {
+        if (h < middle) {
+            below = std::max(below, h);
+            ++lower;
+        } else {
+            above = std::min(above, h);
+        }
+    }
+    const bool own_is_lower = middle > 0;
+    const size_t own = own_is_lower ? lower : heights.size() - lower;
+    if (above - below < std::max(kLayerGap * (high - low), kLayerSpacing * spacing) || own < kLeastLayer)
+        return {low, high};
+    return own_is_lower ? Layer{low, below} : Layer{above, high};
+}
+
+double area_of(std::span<const glm::vec3> offsets, const glm::vec3& normal, const Layer& layer) {
+    const double reach2 = glm::dot(offsets.back(), offsets.back());
+    double inverse = 0;  // sum of 1 / disc
+    for (const auto& offset : offsets.subspan(1)) {
+        const float height = glm::dot(offset, normal);
+        // Where the farthest neighbour is of another layer, the own layer's next one would be just beyond.
+        if (!layer.holds(height) && &offset != &offsets.back()) continue;
+        const double lift = layer.holds(height) ? static_cast<double>(height) * height : 0.0;
+        inverse += 1 / std::max(reach2 - lift, kLeastDisc * reach2);
+    }
+    return std::numbers::pi / inverse;
+}
+
+}  // namespace
+
+SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_count, bool whole_cloud,
+                             PlaneFitter& fitter) {
+    SurfaceSample sample;
+    if (offsets.size() < 4) return sample;
+    const auto near = offsets.first(std::min(offsets.size(), area_count));
+    const float reach2 = glm::dot(near.back(), near.back());
+    if (!whole_cloud && glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2) return sample;
+
+    Plane plane = fitter.fit(offsets);
+    std::array<float, kMostSampled> heights;
+    for (size_t i = 0; i < offsets.size(); ++i) heights[i] = glm::dot(offsets[i], glm::vec3(plane.normal));
+    const float spacing = std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(near.size() - 1));
+    const Layer layer = own_layer(std::span(heights).first(offsets.size()), spacing);
+
+    std::array<glm::vec3, kMostSampled> own;
+    size_t used = 0;
+    for (size_t i = 0; i < offsets.size(); ++i)
+        if (layer.holds(heights[i])) own[used++] = offsets[i];
+    const glm::vec3 first_normal(plane.normal);
+    if (used < offsets.size()) plane = fitter.fit(std::span(own).first(used));
+
+    sample.normal = glm::vec3(plane.normal);
+    sample.deviation = deviation_of(plane, used);
+    // Noise that fills the ball leaves no disc to measure: then all neighbours count, not only the nearest.
+    const bool thick = plane.variances[0] > kThick * kThick * reach2;
+    sample.area = static_cast<float>(sample.deviation < kPoorDeviation
+                                         ? area_of(thick ? offsets : near, first_normal, layer)
+                                         : std::numbers::pi * reach2 / static_cast<double>(near.size() - 1));
+    return sample;
+}
+
+}  // namespace lucarne::octree
