@@ -1,0 +1,324 @@
+// Writers: what no field holds is still not lost, what cannot be held is an error, and no half file is left.
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/io/io_testing.h"
+#include "tests/io/las_builder.h"
+
+namespace lucarne::io {
+namespace {
+
+using namespace testing;  // NOLINT: the builder's small functions
+using ::testing::HasSubstr;
+
+/// Records of a schema, filled by hand.
+class Points {
+ public:
+    explicit Points(PositionType position) {
+        schema.position = position;
+        schema.stride = static_cast<uint32_t>(position_bytes(position));
+    }
+    std::byte* add() {
+        bytes.resize(bytes.size() + schema.stride);
+        return &bytes[bytes.size() - schema.stride];
+    }
+    template <class T>
+    void set(std::string_view name, T value, size_t component = 0) {
+        store(&bytes[bytes.size() - schema.stride + schema.find(name)->offset + component * sizeof value],
+              value);
+    }
+    Schema schema;
+    std::vector<std::byte> bytes;
+};
+
+class Writers : public ::testing::Test {
+ protected:
+    Result<void> write(const std::string& name, const Points& points, const ScanInfo& info = {},
+                       const WriteOptions& options = {}) {
+        LUCARNE_ASSIGN(const auto writer, create_scan(folder_ / name, points.schema, info, options));
+        LUCARNE_TRY(writer->write(points.bytes));
+        return writer->finish();
+    }
+    std::unique_ptr<PointSource> written(const std::string& name, const Points& points,
+                                         const ScanInfo& info = {}, const WriteOptions& options = {}) {
+        const auto result = write(name, points, info, options);
+        if (!result) {
+            ADD_FAILURE() << result.error().line();
+            return nullptr;
+        }
+        auto source = open_scan(folder_ / name);
+        if (!source) ADD_FAILURE() << source.error().line();
+        return source ? std::move(*source) : nullptr;
+    }
+    double value(const PointSource& source, std::string_view name, size_t component = 0) const {
+        const Attribute* a = source.schema().find(name);
+        const auto all = read_all(source);
+        if (!a || !all || all->count == 0) {
+            ADD_FAILURE() << "no " << name;
+            return std::nan("");
+        }
+        return scalar_at(a->type, &all->bytes[a->offset + component * scalar_bytes(a->type)]);
+    }
+    const TemporaryFolder folder_;
+};
+
+Points floats(std::initializer_list<glm::vec3> positions) {
+    Points points(PositionType::f32);
+    for (const glm::vec3& p : positions) {
+        std::byte* at = points.add();
+        for (int axis = 0; axis < 3; ++axis) store(at + 4 * axis, p[axis]);
+    }
+    return points;
+}
+
+TEST_F(Writers, TheLasPointFormatIsTheSmallestWithAFieldForEveryAttribute) {
+    const std::vector<std::pair<std::vector<std::string_view>, std::string>> cases = {
+        {{}, "LAS 1.2, point format 0"},
+        {{names::gps_time}, "LAS 1.2, point format 1"},
+        {{names::color, names::intensity, names::point_source_id}, "LAS 1.2, point format 2"},
+        {{names::color, names::gps_time, names::scan_angle_rank, names::classification},
+         "LAS 1.2, point format 3"},
+        {{names::classification}, "LAS 1.4, point format 6"},
+        {{names::return_number, names::color}, "LAS 1.4, point format 7"},
+        {{names::nir}, "LAS 1.4, point format 8"}};
+    for (size_t i = 0; i < cases.size(); ++i) {
+        Points points(PositionType::i32_scaled);
+        for (const auto name : cases[i].first) {
+            const auto type = name == names::gps_time          ? ScalarType::f64
+                              : name == names::scan_angle_rank ? ScalarType::i8
+                              : name == names::color           ? ScalarType::u16
+                                                               : ScalarType::u8;
+            points.schema.add(std::string(name), type, name == names::color ? 3 : 1);
+        }
+        points.add();
+        const auto source = written(std::to_string(i) + ".las", points);
+        EXPECT_EQ(source->info().format, cases[i].second);
+        const std::string bytes = read_bytes(folder_ / (std::to_string(i) + ".las"));
+        constexpr size_t kRecordBytes[] = {20, 28, 26, 34, 30, 36, 38};
+        EXPECT_EQ(static_cast<unsigned char>(bytes[105]), kRecordBytes[i]);  // no extra bytes
+    }
+}
+
+TEST_F(Writers, TheLasHeaderSaysTheTruthAboutThePoints) {
+    Points points(PositionType::i32_scaled);
+    points.schema.scale = {0.5, -2.0, 0.25};
+    points.schema.offset = {10, 0, -1};
+    points.schema.add(std::string(names::return_number), ScalarType::u8);
+    for (const int i : {-4, 6, 2}) {
+        std::byte* at = points.add();
+        for (int axis = 0; axis < 3; ++axis) store(at + 4 * axis, i);
+        points.set(names::return_number, static_cast<uint8_t>(i == 6 ? 2 : 1));
+    }
+    ASSERT_TRUE(written("a.las", points));
+    const std::string bytes = read_bytes(folder_ / "a.las");
+    const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
+    const double expected[] = {13, 8, 8, -12, 0.5, -2};  // largest and smallest x, y, z
+    for (size_t i = 0; i < 6; ++i) EXPECT_EQ(load<double>(b + 179 + 8 * i), expected[i]) << i;
+    EXPECT_EQ(load<uint16_t>(b + 94), 375);
+    EXPECT_EQ(load<uint32_t>(b + 107), 0u);  // the old count: 0 with point formats 6 and up
+    EXPECT_EQ(load<uint64_t>(b + 247), 3u);
+    EXPECT_EQ(load<uint64_t>(b + 255), 2u);
+    EXPECT_EQ(load<uint64_t>(b + 263), 1u);
+    EXPECT_EQ(bytes.size(), load<uint32_t>(b + 96) + 3u * load<uint16_t>(b + 105));
+}
+
+TEST_F(Writers, WhatALasFieldCannotHoldGoesToExtraBytes) {
+    Points points(PositionType::i32_scaled);
+    points.schema.add("intensity", ScalarType::f32);
+    points.schema.add("curvature", ScalarType::f64);
+    points.schema.add("normal", ScalarType::f32, 3);
+    points.schema.add("code", ScalarType::u8, 5);
+    points.schema.add("stamp", ScalarType::u64);
+    points.add();
+    points.set("intensity", 0.75f);
+    points.set("curvature", 0.1);
+    for (size_t c = 0; c < 3; ++c) points.set("normal", static_cast<float>(c) + 0.5f, c);
+    for (size_t c = 0; c < 5; ++c) points.set("code", static_cast<uint8_t>(c), c);
+    points.set("stamp", uint64_t{0xfedcba9876543210});
+    const auto source = written("a.las", points);
+    EXPECT_EQ(value(*source, "intensity"), 1);  // rounded for others
+    EXPECT_EQ(value(*source, "intensity_2"), 0.75);
+    EXPECT_EQ(value(*source, "curvature"), 0.1);
+    EXPECT_EQ(value(*source, "normal", 2), 2.5);
+    EXPECT_EQ(value(*source, "code", 4), 4);
+    const auto all = read_all(*source);
+    EXPECT_EQ(load<uint64_t>(&all->bytes[source->schema().find("stamp")->offset]), 0xfedcba9876543210u);
+}
+
+TEST_F(Writers, ColoursOfAnyTypeAreSpreadOver16BitsInLas) {
+    struct Case {
+        ScalarType type;
+        uint32_t bits;
+        double white;
+    };
+    for (const Case& c : {Case{ScalarType::u8, 8, 255}, Case{ScalarType::f32, 0, 1},
+                          Case{ScalarType::f64, 8, 255}, Case{ScalarType::u16, 16, 65535}}) {
+        Points points(PositionType::i32_scaled);
+        points.schema.add(std::string(names::color), c.type, 3);
+        store_scalar(c.type, points.add() + 12, c.white);
+        ScanInfo info;
+        info.color_bits = c.bits;
+        WriteOptions options;
+        options.overwrite = true;
+        const auto source = written("a.las", points, info, options);
+        EXPECT_EQ(value(*source, names::color, 0), 65535);
+        EXPECT_EQ(value(*source, names::color, 1), 0);
+    }
+    Points small(PositionType::i32_scaled);  // 8 bits in 16 stay what they were
+    small.schema.add(std::string(names::color), ScalarType::u16, 3);
+    small.add();
+    small.set(names::color, uint16_t{255});
+    EXPECT_EQ(value(*written("b.las", small), names::color), 255);
+}
+
+TEST_F(Writers, FloatPositionsGetTheFinestScaleTheirBoxAllows) {
+    const Points points = floats({{-20.123456f, 3, 0.25f}, {20, 4, 0.5f}});
+    WriteOptions options;
+    options.bounds = {{glm::dvec3(-20.2, 3, 0), glm::dvec3(20, 4, 1)}};
+    const auto source = written("a.las", points, {}, options);
+    EXPECT_DOUBLE_EQ(source->schema().scale.x, 1e-8);
+    const auto all = read_all(*source);
+    EXPECT_NEAR(position_of(source->schema(), all->bytes.data()).x, double{-20.123456f}, 0.51e-8);
+}
+
+TEST_F(Writers, APositionBeyondTheIntegersOfLasIsAnError) {
+    const auto result = write("a.las", floats({{1, 2, 3}, {3e8f, 0, 0}}));
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().line(), HasSubstr("does not fit"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(Writers, AClassBeyondTheBitsOfItsFieldIsAnErrorAndNotAnotherClass) {
+    LasFile file;
+    file.records = {record0(1, 2, 3)};
+    write_bytes(folder_ / "old.las", file.bytes());
+    const auto source = open_scan(folder_ / "old.las");
+    ASSERT_TRUE(source);
+    auto all = read_all(**source);
+    store<uint8_t>(&all->bytes[(*source)->schema().find(names::classification)->offset], 32);
+    const auto writer = create_scan(folder_ / "new.las", (*source)->schema(), (*source)->info(), {});
+    ASSERT_TRUE(writer);
+    const auto result = (*writer)->write(all->bytes);
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().line(), HasSubstr("does not fit point format 0"));
+}
+
+TEST_F(Writers, A64BitIntegerBecomesTwoPropertiesInPly) {
+    Points points(PositionType::f64);
+    points.schema.add("stamp", ScalarType::i64);
+    points.schema.add("two words", ScalarType::u8);
+    points.add();
+    points.set("stamp", int64_t{-2});
+    points.set("two words", uint8_t{9});
+    const auto source = written("a.ply", points);
+    EXPECT_EQ(value(*source, "stamp_low"), 4294967294.0);
+    EXPECT_EQ(value(*source, "stamp_high"), -1);
+    EXPECT_EQ(value(*source, "two_words"), 9);
+}
+
+TEST_F(Writers, StationsUnitsAndColourBitsSurviveInBothFormats) {
+    ScanInfo info;
+    info.color_bits = 16;
+    info.stations = {{1, {1.5, -2.25, 1e6}}, {65535, {0.1, 0.2, 0.3}}};
+    Points points(PositionType::i32_scaled);
+    points.schema.add(std::string(names::color), ScalarType::u16, 3);
+    points.add();
+    points.set(names::color, uint16_t{40000});
+    for (const char* name : {"a.las", "a.ply"}) {
+        const auto source = written(name, points, info);
+        ASSERT_EQ(source->info().stations.size(), 2u) << name;
+        for (size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(source->info().stations[i].id, info.stations[i].id);
+            EXPECT_EQ(source->info().stations[i].position, info.stations[i].position);
+        }
+        EXPECT_EQ(source->info().color_bits, 16u);
+    }
+    info.metres_per_unit = 0.3048;
+    EXPECT_EQ(written("b.ply", points, info)->info().metres_per_unit, 0.3048);
+}
+
+TEST_F(Writers, ManyStationsTakeALargerLasVersion) {
+    ScanInfo info;
+    for (uint32_t i = 0; i < 3000; ++i) info.stations.push_back({i, {i * 0.1, 2, 3}});
+    const auto source = written("a.las", floats({{1, 2, 3}}), info);
+    EXPECT_EQ(source->info().format, "LAS 1.4, point format 0");
+    EXPECT_EQ(source->info().stations.size(), 3000u);
+}
+
+TEST_F(Writers, NoPointsMakeAValidFile) {
+    for (const char* name : {"a.las", "a.ply"}) {
+        const auto source = written(name, floats({}));
+        ASSERT_TRUE(source);
+        EXPECT_EQ(read_all(*source)->count, 0u);
+    }
+}
+
+TEST_F(Writers, AnUnfinishedFileLeavesNothing) {
+    for (const char* name : {"a.las", "a.ply"}) {
+        const Points points = floats({{1, 2, 3}});
+        const auto writer = create_scan(folder_ / name, points.schema, {}, {});
+        ASSERT_TRUE(writer);
+        ASSERT_TRUE((*writer)->write(points.bytes));
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(Writers, AnExistingFileAndAnUnknownExtensionAreRefused) {
+    write_bytes(folder_ / "a.las", "mine");
+    const Points points = floats({{1, 2, 3}});
+    EXPECT_EQ(write("a.las", points).error().kind, ErrorKind::failed);
+    EXPECT_EQ(read_bytes(folder_ / "a.las"), "mine");
+    const auto unknown = write("a.xyz", points);
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().kind, ErrorKind::arguments);
+    EXPECT_TRUE(write("B.LAS", points));
+}
+
+TEST_F(Writers, DamagedDetailsAreAnErrorOrIgnoredButNeverACrash) {
+    const Points points = floats({{1, 2, 3}});
+    for (const char* details :
+         {"", "[", "[]", "7", R"({"format":7})", R"({"format":"las"})",
+          R"({"format":"las","point_format":-1})", R"({"format":"ply"})",
+          R"({"format":"ply","properties":[1]})",
+          R"({"format":"ply","properties":[{"name":"x","type":"quux"}]})",
+          R"({"format":"ply","properties":[{"name":"a b\n","type":"int"}],"comments":[3,"x\ny"]})"}) {
+        ScanInfo info;
+        info.details = details;
+        WriteOptions options;
+        options.overwrite = true;
+        const auto las = write("a.las", points, info, options);
+        const auto ply = write("a.ply", points, info, options);
+        EXPECT_TRUE(ply) << details;
+        if (!las) {
+            EXPECT_THAT(las.error().line(), HasSubstr("is damaged"));
+        }
+        EXPECT_EQ(las.has_value(), std::string_view(details).find("\"las\"") == std::string_view::npos)
+            << details;
+    }
+}
+
+TEST_F(Writers, HeadersOfEveryLasVersionComeBack) {
+    for (const int minor : {0, 1, 2, 3, 4}) {
+        LasFile file;
+        file.minor = static_cast<uint8_t>(minor);
+        file.add_vlr("someone", 7, "data of a record");
+        file.records = {record0(1, 2, 3) + "xy", record0(4, 5, 6) + "zw"};
+        write_bytes(folder_ / "a.las", file.bytes());
+        const auto source = open_scan(folder_ / "a.las");
+        ASSERT_TRUE(source);
+        const auto all = read_all(**source);
+        const auto writer =
+            create_scan(folder_ / "b.las", (*source)->schema(), (*source)->info(), {true, 0, {}});
+        ASSERT_TRUE(writer && (*writer)->write(all->bytes) && (*writer)->finish());
+        const auto copy = open_scan(folder_ / "b.las");
+        ASSERT_TRUE(copy) << copy.error().line();
+        EXPECT_EQ((*copy)->info().details, (*source)->info().details) << minor;
+        EXPECT_TRUE(read_all(**copy)->bytes == all->bytes) << minor;
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::io
