@@ -1,18 +1,19 @@
 #pragma once
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "io/formats/scan.h"
 
 // What every fuzzer of a scan format does: open, read to the end, write what was read in both formats.
 namespace lucarne::io {
 
-inline void write_unfinished(const PointSource& source, std::span<const std::byte> records, const char* extension) {
+inline void write_unfinished(const PointSource& source, std::span<const std::byte> records,
+                             const char* extension) {
     const auto path = std::filesystem::temp_directory_path() / (std::string("lucarne-fuzz") + extension);
     const auto writer = create_scan(path, source.schema(), source.info(), {});
     if (writer) (void)(*writer)->write(records);

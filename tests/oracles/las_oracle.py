@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""What laspy reads in the LAS files of the shared data, as tests/io/las_oracle_test.cpp compares it with our reader.
+
+    python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install laspy==2.7.0 numpy
+    /tmp/oracle/bin/python tests/oracles/las_oracle.py ../shared/data/las > tests/oracles/las_expected.json
+
+A digest of a list of numbers is two exact sums modulo 2^64 over their 64-bit patterns b_i (integers sign-extended,
+floats as doubles): sum b_i and sum (i + 1) b_i, so that a changed value and a changed order both show.
+"""
+import json
+import pathlib
+import sys
+
+import laspy
+import numpy as np
+
+# Our name: laspy's names, in order of component.
+NAMES = {
+    "position": ["X", "Y", "Z"],
+    "intensity": ["intensity"],
+    "return_number": ["return_number"],
+    "number_of_returns": ["number_of_returns"],
+    "scan_direction": ["scan_direction_flag"],
+    "edge_of_flight_line": ["edge_of_flight_line"],
+    "classification": ["classification"],
+    "scanner_channel": ["scanner_channel"],
+    "scan_angle_rank": ["scan_angle_rank"],
+    "scan_angle": ["scan_angle"],
+    "user_data": ["user_data"],
+    "point_source_id": ["point_source_id"],
+    "gps_time": ["gps_time"],
+    "color": ["red", "green", "blue"],
+    "nir": ["nir"],
+}
+FLAGS = ["synthetic", "key_point", "withheld", "overlap"]  # bits 0-3 of our class_flags
+
+
+def digest(values):
+    values = np.asarray(values)
+    if values.dtype.kind == "f":
+        bits = values.astype(np.float64).view(np.uint64)
+    else:
+        bits = values.astype(np.int64).view(np.uint64) if values.dtype.kind == "i" else values.astype(np.uint64)
+    with np.errstate(over="ignore"):
+        index = np.arange(1, len(bits) + 1, dtype=np.uint64)
+        return [f"{int(bits.sum(dtype=np.uint64)):016x}", f"{int((bits * index).sum(dtype=np.uint64)):016x}"]
+
+
+def describe(path):
+    las = laspy.read(path)
+    dimensions = set(las.point_format.dimension_names)
+    attributes = {}
+    for ours, theirs in NAMES.items():
+        if all(name in dimensions for name in theirs):
+            attributes[ours] = [digest(np.array(las[name])) for name in theirs]
+    flags = sum(np.array(las[name]).astype(np.uint8) << bit for bit, name in enumerate(FLAGS) if name in dimensions)
+    attributes["class_flags"] = [digest(flags)]
+    for name in las.point_format.extra_dimension_names:
+        raw = np.array(las.points.array[name])  # as stored, before the scale of an extra byte
+        columns = raw.reshape(len(raw), -1)
+        attributes[name] = [digest(columns[:, c]) for c in range(columns.shape[1])]
+    return {
+        "points": len(las.points),
+        "scale": list(las.header.scales),
+        "offset": list(las.header.offsets),
+        "attributes": attributes,
+    }
+
+
+files = sorted(pathlib.Path(sys.argv[1]).glob("*.las"))
+print(json.dumps({path.name: describe(path) for path in files}, indent=1))
