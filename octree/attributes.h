@@ -8,7 +8,7 @@
 namespace lucarne::octree {
 
 /// Estimated unit normals as two 12-bit octahedral coordinates in three bytes (Meyer et al. 2010; largest error
-/// .05 degrees, far under the .3 degrees and more that an estimate over scan noise has).
+/// .06 degrees, far under the .3 degrees and more that an estimate over scan noise has).
 /// 0xff 0xff 0xff marks a point without a stable plane.
 using NormalCode = std::array<uint8_t, 3>;
 inline constexpr NormalCode kNoNormal = {0xff, 0xff, 0xff};

@@ -19,8 +19,9 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kGrain = 2048;          ///< sites a piece of parallel work
-constexpr size_t kMostNeighbours = 128;  ///< per site, on the stack
+constexpr size_t kGrain = 2048;                       ///< sites a piece of parallel work
+constexpr size_t kMostNeighbours = 128;               ///< per site, on the stack
+constexpr size_t kMostChunkPoints = size_t{1} << 29;  ///< sites times edges must fit 32 bits
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A halo is widened to this many chunk sizes and no further: an isolated point must not load the world.
 constexpr double kWidestHalo = 4.0;
@@ -90,8 +91,7 @@ class CellSet {
 Result<ChunkNeighbours> ChunkNeighbours::load(ChunkCache& cache, size_t chunk) {
     ChunkNeighbours loaded(cache, chunk);
     LUCARNE_ASSIGN(const auto points, cache.positions(chunk));
-    if (points->size() >= static_cast<size_t>(std::numeric_limits<int32_t>::max()))
-        return failed("normals", "a chunk of 2^31 points or more");
+    if (points->size() >= kMostChunkPoints) return failed("normals", "a chunk of more than 2^29 points");
     loaded.sort_sites(*points);
     loaded.box_ = bounds_of(loaded.sites_);
     loaded.find_around();

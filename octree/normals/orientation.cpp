@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -13,7 +15,7 @@ namespace lucarne::octree {
 namespace {
 
 constexpr float kParallel = 0.7f;  ///< |n.n'| from which no turn of the surface is assumed
-constexpr size_t kBuckets = 512;   ///< of doubt, for the counting sort of edges
+constexpr size_t kGrades = 512;    ///< of doubt, for the counting sort of edges
 constexpr size_t kVotesPerPair = 256;
 constexpr float kClearlyUp = 0.3f;  ///< |n.z| of a topmost point that can be told from a wall's
 
@@ -21,44 +23,43 @@ bool has_normal(const glm::vec3& n) {
     return n != glm::vec3(0.0f);
 }
 
-struct SignedEdge {
-    uint32_t site;
-    uint32_t slot : 4, bucket : 27;
-    uint32_t opposite : 1;
+/// The graph's edges in Kruskal's order: by rising doubt, then by site; found by a counting sort. An edge is
+/// its place among all sites' slots.
+struct SortedEdges {
+    std::vector<uint32_t> slots;
+    std::vector<uint16_t> grade;  ///< of each slot: doubt in steps, kOpposite
+    static constexpr uint16_t kNone = 0xffff, kOpposite = 0x8000;
+    bool opposite(uint32_t slot) const { return grade[slot] & kOpposite; }
 };
 
-/// The graph's edges by rising doubt, then by site: Kruskal's order, found by a counting sort.
-std::vector<SignedEdge> sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& surface) {
+SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& surface) {
     const auto& edges = surface.edges;
-    std::vector<uint16_t> bucket_of(edges.size() * kSiteEdges);
-    constexpr uint16_t kNone = 0xffff, kOpposite = 0x8000;
+    SortedEdges sorted;
+    sorted.grade.resize(edges.size() * kSiteEdges);
     parallel_ranges(edges.size(), 4096, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
+        for (auto i = static_cast<uint32_t>(first); i < last; ++i)
             for (size_t e = 0; e < kSiteEdges; ++e) {
-                auto& bucket = bucket_of[i * kSiteEdges + e];
+                auto& grade = sorted.grade[i * kSiteEdges + e];
                 const uint32_t j = edges[i][e];
-                bucket = kNone;
+                grade = SortedEdges::kNone;
                 if (j == kNoSite || !has_normal(surface.normals[i]) || !has_normal(surface.normals[j]))
                     continue;
                 // An edge known from both ends is taken once.
                 if (j < i && std::find(edges[j].begin(), edges[j].end(), i) != edges[j].end()) continue;
-                const glm::vec3 offset(neighbours.position(j) -
-                                       neighbours.position(static_cast<uint32_t>(i)));
+                const glm::vec3 offset(neighbours.position(j) - neighbours.position(i));
                 const Agreement a = agreement(surface.normals[i], surface.normals[j], offset);
-                bucket = static_cast<uint16_t>(a.doubt * (kBuckets - 1)) | (a.opposite ? kOpposite : 0);
+                grade = static_cast<uint16_t>(a.doubt * (kGrades - 1));
+                if (a.opposite) grade |= SortedEdges::kOpposite;
             }
     });
-    std::vector<uint32_t> starts(kBuckets + 1, 0);
-    for (const uint16_t b : bucket_of)
-        if (b != kNone) ++starts[(b & ~kOpposite) + 1];
-    for (size_t b = 0; b < kBuckets; ++b) starts[b + 1] += starts[b];
-    std::vector<SignedEdge> sorted(starts.back());
-    for (size_t at = 0; at < bucket_of.size(); ++at) {
-        const uint16_t b = bucket_of[at];
-        if (b == kNone) continue;
-        sorted[starts[b & ~kOpposite]++] = {static_cast<uint32_t>(at / kSiteEdges),
-                                            static_cast<uint32_t>(at % kSiteEdges), 0u, (b & kOpposite) != 0};
-    }
+    std::vector<uint32_t> starts(kGrades + 1, 0);
+    for (const uint16_t grade : sorted.grade)
+        if (grade != SortedEdges::kNone) ++starts[(grade & ~SortedEdges::kOpposite) + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    sorted.slots.resize(starts.back());
+    for (uint32_t slot = 0; slot < sorted.grade.size(); ++slot)
+        if (const uint16_t grade = sorted.grade[slot]; grade != SortedEdges::kNone)
+            sorted.slots[starts[grade & ~SortedEdges::kOpposite]++] = slot;
     return sorted;
 }
 
@@ -87,8 +88,10 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
             forest.unite(sites, i, toward[i] < 0);
             orientation.anchored = true;
         }
-    for (const SignedEdge& e : sorted_edges(neighbours, surface))
-        forest.unite(e.site, surface.edges[e.site][e.slot], e.opposite);
+    const SortedEdges sorted = sorted_edges(neighbours, surface);
+    for (const uint32_t slot : sorted.slots)
+        forest.unite(slot / kSiteEdges, surface.edges[slot / kSiteEdges][slot % kSiteEdges],
+                     sorted.opposite(slot));
 
     orientation.components.assign(sites, 0);
     std::unordered_map<uint32_t, uint32_t> numbers;  // component by root

@@ -1,0 +1,140 @@
+#include "octree/normals/orientation.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "octree/normals/signed_forest.h"
+#include "tests/octree/normal_clouds.h"
+
+namespace lucarne::octree {
+namespace {
+
+using namespace testing;
+using Random = lucarne::Random;
+
+double oriented(const char* name, const Cloud& cloud, uint32_t parts, const NormalOptions& options = {}) {
+    const Score s = score(cloud, estimate(cloud, options, parts));
+    std::printf("%-34s %3u chunks: oriented %.5f, marked %.4f\n", name, parts * parts * parts, s.oriented,
+                s.marked);
+    return s.oriented;
+}
+
+/// Hills of half a unit over a unit square, seen from above.
+Cloud wavy_sheet(size_t count) {
+    Random random(1);
+    Cloud cloud;
+    for (size_t i = 0; i < count; ++i) {
+        const double x = random.uniform() * 6, y = random.uniform() * 6;
+        cloud.points.push_back({x, y, std::sin(2 * x) * std::cos(2 * y)});
+        cloud.normals.push_back(glm::normalize(
+            glm::dvec3(-2 * std::cos(2 * x) * std::cos(2 * y), 2 * std::sin(2 * x) * std::sin(2 * y), 1)));
+    }
+    return cloud;
+}
+
+/// A torus on its edge: its topmost point is outside, but half of its surface looks at its own centre.
+Cloud torus(size_t count) {
+    Random random(2);
+    Cloud cloud;
+    while (cloud.points.size() < count) {
+        const double u = random.uniform() * 2 * std::numbers::pi, v = random.uniform() * 2 * std::numbers::pi;
+        const double ring = 2 + 0.7 * std::cos(v);
+        if (random.uniform() * 2.7 > ring) continue;  // evenly by area
+        const glm::dvec3 n(std::cos(u) * std::cos(v), std::sin(v), std::sin(u) * std::cos(v));
+        cloud.points.push_back({std::cos(u) * ring, 0.7 * std::sin(v), std::sin(u) * ring});
+        cloud.normals.push_back(n);
+    }
+    return cloud;
+}
+
+/// A unit room seen from its middle.
+Cloud room(size_t count) {
+    Cloud cloud = cube(count);
+    for (auto& n : cloud.normals) n = -n;
+    return cloud;
+}
+
+TEST(Orientation, SignedForestKeepsRelativeSigns) {
+    Random random(1);
+    constexpr uint32_t kNodes = 2000;
+    std::vector<bool> truth(kNodes);
+    for (uint32_t i = 0; i < kNodes; ++i) truth[i] = random.next() & 1;
+    SignedForest forest(kNodes);
+    for (int i = 0; i < 20000; ++i) {
+        const auto a = static_cast<uint32_t>(random.next() % kNodes),
+                   b = static_cast<uint32_t>(random.next() % kNodes);
+        const bool joined = forest.find(a).node == forest.find(b).node;
+        EXPECT_EQ(forest.unite(a, b, truth[a] != truth[b]), !joined);
+    }
+    for (uint32_t i = 0; i < kNodes; ++i) {
+        EXPECT_EQ(forest.find(i).node, 0u);
+        EXPECT_EQ(forest.find(i).opposite, truth[i] != truth[0]);
+    }
+}
+
+TEST(Orientation, AgreementFollowsTheSurfaceRoundAnEdge) {
+    const glm::vec3 up(0, 0, 1), right(1, 0, 0);
+    EXPECT_FALSE(agreement(up, up, {1, 0, 0}).opposite);
+    EXPECT_TRUE(agreement(up, -up, {1, 0, 0}).opposite);
+    // Over the outer edge of a box, and into the corner of a room.
+    const Agreement over = agreement(up, right, {1, 0, -1}), into = agreement(up, right, {-1, 0, 1});
+    EXPECT_FALSE(over.opposite);
+    EXPECT_LT(over.doubt, 1e-6f);
+    EXPECT_FALSE(into.opposite);
+    EXPECT_LT(into.doubt, 1e-6f);
+}
+
+TEST(Orientation, ClosedSurfacesPointOutwardWithoutStations) {
+    Cloud statue = torus(20000);
+    append(statue, sphere(5000), {5, 0, 1}, 0.5);
+    append(statue, cube(8000), {-5, 0, -3});
+    for (const uint32_t parts : {1u, 2u, 4u}) {
+        EXPECT_EQ(oriented("sphere", sphere(10000), parts), 1);
+        EXPECT_GT(oriented("noisy sphere", sphere(10000, 0.02), parts), 0.999);
+        EXPECT_GT(oriented("torus, sphere and cube", statue, parts), 0.998);
+    }
+}
+
+TEST(Orientation, OpenSheetsPointUpAndHangTogether) {
+    for (const uint32_t parts : {1u, 3u, 5u})
+        EXPECT_GT(oriented("wavy sheet", wavy_sheet(20000), parts), 0.9999);
+}
+
+TEST(Orientation, PointsFaceTheStationThatSawThem) {
+    Cloud inside = room(20000);
+    NormalOptions options;
+    options.stations = {{0.4, 0.5, 0.6}};
+    inside.stations.assign(inside.points.size(), 0);
+    for (const uint32_t parts : {1u, 3u})
+        EXPECT_GT(oriented("room, one station", inside, parts, options), 0.9995);
+
+    // Two stations on either side of a wall that is thinner than the neighbourhoods: only the stations can
+    // tell.
+    Cloud wall = plane(10000, 0, 1);
+    append(wall, plane(10000, 0, 2), {0, 0, -0.02});
+    options.stations = {{0.5, 0.5, 1}, {0.5, 0.5, -1}};
+    wall.stations.assign(10000, 0);
+    wall.stations.resize(20000, 1);
+    for (size_t i = 10000; i < 20000; ++i) wall.normals[i] = -wall.normals[i];
+    EXPECT_GT(oriented("thin wall, two stations", wall, 2, options), 0.999);
+}
+
+TEST(Orientation, KnownPointsAnchorTheUnknownOnesTheyHangTogetherWith) {
+    Cloud inside = room(20000);
+    NormalOptions options;
+    options.stations = {{0.4, 0.5, 0.6}};
+    inside.stations.assign(inside.points.size(), -1);
+    for (size_t i = 0; i < inside.points.size(); ++i)
+        if (inside.points[i].x > 0.9 && inside.points[i].z < 0.3) inside.stations[i] = 0;
+    for (const uint32_t parts : {1u, 2u, 4u})
+        EXPECT_GT(oriented("room, one corner known", inside, parts, options), 0.999);
+}
+
+TEST(Orientation, StationsThatDoNotExistCountAsUnknown) {
+    Cloud cloud = sphere(3000);
+    cloud.stations.assign(cloud.points.size(), 7);
+    EXPECT_EQ(oriented("sphere, stations that are not there", cloud, 2), 1);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
