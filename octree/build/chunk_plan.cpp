@@ -73,7 +73,7 @@ std::vector<Chunk> CountGrid::plan(uint64_t limit, size_t most) {
     std::vector<Chunk> chunks;
     // Below the whole, any limit splits the cube, and the largest such limit into no more than 64 chunks: the
     // path down to the densest cell has seven neighbours a level.
-    const uint64_t widest = limit < all ? all - 1 : all;
+    const uint64_t widest = limit < all ? all - 1 : limit;
     for (;; limit = std::min(2 * limit, widest)) {
         chunks.clear();
         join(0, 0, cube_, limit, chunks);

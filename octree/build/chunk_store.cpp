@@ -5,6 +5,12 @@
 namespace lucarne::octree {
 namespace {
 
+/// Counting and dealing read the input twice; a file that somebody writes to meanwhile must not corrupt the
+/// chunks.
+auto changed() {
+    return rejected("inputs", "changed while they were read", "convert again when they are complete");
+}
+
 constexpr uint64_t kMinBuffer = 8 << 10, kMaxBuffer = 256 << 10;
 
 /// Collects the records of each chunk and writes them in large pieces.
@@ -14,7 +20,9 @@ class Dealer {
         : file_(file), stride_(stride) {
         const uint64_t each = std::clamp<uint64_t>(bytes / chunks.size(), kMinBuffer, kMaxBuffer);
         capacity_ = std::max<uint64_t>(1, each / stride) * stride;
-        for (const auto& chunk : chunks) lanes_.push_back({(first + chunk.first) * stride, {}});
+        for (const auto& chunk : chunks)
+            lanes_.push_back(
+                {(first + chunk.first) * stride, (first + chunk.first + chunk.count) * stride, {}});
     }
 
     Result<void> deal(size_t chunk, const std::byte* record) {
@@ -25,16 +33,20 @@ class Dealer {
     }
 
     Result<void> finish() {
-        for (auto& lane : lanes_) LUCARNE_TRY(flush(lane));
+        for (auto& lane : lanes_) {
+            LUCARNE_TRY(flush(lane));
+            if (lane.offset != lane.end) return changed();
+        }
         return {};
     }
 
  private:
     struct Lane {
-        uint64_t offset;
+        uint64_t offset, end;
         std::vector<std::byte> waiting;
     };
     Result<void> flush(Lane& lane) {
+        if (lane.waiting.size() > lane.end - lane.offset) return changed();
         LUCARNE_TRY(file_.write_at(lane.offset, lane.waiting));
         lane.offset += lane.waiting.size();
         lane.waiting.clear();
@@ -73,6 +85,9 @@ Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cu
     std::vector<Chunk> chunks =
         grid.plan(memory.chunk_points,
                   std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride)));
+    uint64_t counted = 0;
+    for (const auto& chunk : chunks) counted += chunk.count;
+    if (counted != points) return changed();
     Dealer dealer(file_, chunks, end_, stride, memory.buffer_bytes);
     const auto deal = [&](std::span<const std::byte> records) -> Result<void> {
         for (size_t at = 0; at < records.size(); at += stride)

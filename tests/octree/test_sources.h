@@ -1,17 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include "io/points.h"
 #include "octree/source.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::test {
 
@@ -60,26 +57,7 @@ class ComputedSource final : public io::PointSource {
     Fill fill_;
 };
 
-/// A folder of its own that goes with the test.
-class TempFolder {
- public:
-    TempFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lucarne-test-XXXXXX").string();
-        if (::mkdtemp(name.data())) path_ = name;
-    }
-    ~TempFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-    bool empty() const { return std::filesystem::is_empty(path_); }
-
- private:
-    std::filesystem::path path_;
-};
+using TempFolder = io::testing::TemporaryFolder;
 
 /// The first `bytes` of every record, sorted: equal for equal multisets.
 inline std::vector<std::string> sorted_records(const io::PointSource& source, size_t bytes) {

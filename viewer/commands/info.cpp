@@ -15,7 +15,7 @@
 namespace lucarne::viewer {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path input;

@@ -1,0 +1,191 @@
+// Conversion when the disk fills or the arguments are wrong: one clear line, the right exit code, nothing
+// left behind.
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include "io/formats/scan.h"
+#include "io/synthetic/synthetic.h"
+#include "octree/build/build.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne {
+namespace {
+
+using test::TempFolder;
+
+struct Outcome {
+    int code = -1;
+    std::string text;  ///< stderr and stdout
+};
+Outcome lucarne(const std::string& arguments) {
+    Outcome outcome;
+    FILE* pipe = ::popen((std::string(LUCARNE_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
+    if (!pipe) return outcome;
+    char buffer[4096];
+    while (std::fgets(buffer, sizeof buffer, pipe)) outcome.text += buffer;
+    const int status = ::pclose(pipe);
+    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+    return outcome;
+}
+
+std::string quoted(const std::filesystem::path& path) {
+    return "'" + path.string() + "'";
+}
+
+size_t lines(const std::string& text) {
+    return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::unique_ptr<io::PointSource> scan_of(uint64_t points) {
+    io::SyntheticOptions options;
+    options.points = points;
+    options.even = true;
+    auto source = io::synthetic_source(options);
+    return source ? std::move(*source) : nullptr;
+}
+
+/// No file of this process may grow beyond `bytes`: what a full disk looks like, without filling one.
+class FileSizeLimit {
+ public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit limit = before_;
+        limit.rlim_cur = bytes;
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+
+ private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST(ConvertFaults, LeaveNothingBehindWhereverWritingFails) {
+    const auto source = scan_of(100'000);
+    ASSERT_TRUE(source);
+    const uint64_t whole = 100'000 * source->schema().stride;
+    // In the scratch file, in the payloads, and in the directory behind them.
+    for (const uint64_t limit : {uint64_t{0}, whole / 3, whole, whole + 8192, whole + 9000}) {
+        const TempFolder folder;
+        octree::BuildOptions options{
+            .inputs = {source.get()}, .output = folder / "a.luc", .normals = octree::NormalsMode::none};
+        const auto report = [&] {
+            const FileSizeLimit full(limit);
+            return octree::build_cache(options);
+        }();
+        ASSERT_FALSE(report) << limit;
+        EXPECT_EQ(report.error().kind, ErrorKind::failed);
+        EXPECT_NE(report.error().line().find("cannot be written"), std::string::npos)
+            << report.error().line();
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << limit;
+    }
+}
+
+TEST(ConvertFaults, SayThatTheDiskIsFull) {
+    const TempFolder folder;
+    const auto disk = folder / "disk";
+    std::filesystem::create_directory(disk);
+    if (::mount("lucarne-test", disk.c_str(), "tmpfs", 0, "size=2m") != 0)
+        GTEST_SKIP() << "may not mount a small disk here";
+    ASSERT_EQ(lucarne("generate cornell --even --points 200k -o " + quoted(folder / "a.las")).code, 0);
+    const auto output_full = lucarne("convert --normals none --temp " + quoted(folder.path()) + " " +
+                                     quoted(folder / "a.las") + " -o " + quoted(disk / "a.luc"));
+    const auto scratch_full = lucarne("convert --normals none --temp " + quoted(disk) + " " +
+                                      quoted(folder / "a.las") + " -o " + quoted(folder / "a.luc"));
+    const bool left = !std::filesystem::is_empty(disk) || std::filesystem::exists(folder / "a.luc");
+    ::umount(disk.c_str());
+    EXPECT_EQ(output_full.code, 1);
+    EXPECT_NE(output_full.text.find("No space left on device"), std::string::npos) << output_full.text;
+    EXPECT_EQ(scratch_full.code, 1);
+    EXPECT_NE(scratch_full.text.find("No space left on device"), std::string::npos) << scratch_full.text;
+    EXPECT_FALSE(left);
+}
+
+TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
+    const TempFolder folder;
+    io::testing::write_bytes(folder / "empty.las", "");
+    io::testing::write_bytes(folder / "text.las", "this is no scan at all, whatever it is called");
+    io::testing::write_bytes(folder / "taken.luc", "mine");
+    ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "ok.las")).code, 0);
+    const auto ok = quoted(folder / "ok.las"), output = quoted(folder / "out.luc");
+    struct Case {
+        std::string arguments;
+        int code;
+        std::string says;
+    };
+    const Case cases[] = {
+        {"convert " + quoted(folder / "absent.las") + " -o " + output, 3, "No such file"},
+        {"convert " + quoted(folder.path()) + " -o " + output, 3, "not a regular file"},
+        {"convert " + quoted(folder / "empty.las") + " -o " + output, 3, "is empty"},
+        {"convert " + quoted(folder / "text.las") + " -o " + output, 3, "no format that can be read"},
+        {"convert " + ok + " -o " + quoted(folder / "taken.luc"), 1, "exists already"},
+        {"convert " + ok + " -o " + quoted(folder / "no" / "where.luc"), 1, "does not exist"},
+        {"convert " + ok + " -o " + output + " --memory lots", 2, "not an amount of memory"},
+        {"convert " + ok + " -o " + output + " --memory 1M", 2, "too little"},
+        {"convert " + ok + " -o " + output + " --normals keep", 2, "no normals to keep"},
+        {"convert " + ok + " -o " + output + " --normals none --temp " + quoted(folder / "absent"), 1,
+         "temporary file"},
+        {"convert " + ok, 2, "output"},
+        {"verify " + ok, 3, "not a cache"},
+        {"verify " + quoted(folder / "absent.luc"), 3, "No such file"},
+        {"info " + quoted(folder / "absent.luc"), 3, "No such file"},
+        {"export " + ok + " -o " + quoted(folder / "b.las"), 3, "not a cache"},
+    };
+    for (const auto& tested : cases) {
+        const auto outcome = lucarne(tested.arguments);
+        EXPECT_EQ(outcome.code, tested.code) << tested.arguments << "\n" << outcome.text;
+        EXPECT_NE(outcome.text.find(tested.says), std::string::npos) << tested.arguments << "\n"
+                                                                     << outcome.text;
+        EXPECT_EQ(lines(outcome.text), 1u) << outcome.text;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.luc"));
+    EXPECT_EQ(io::testing::read_bytes(folder / "taken.luc"), "mine");
+}
+
+TEST(ConvertFaults, RejectEveryBadSharedScanOrConvertIt) {
+    const auto data = io::testing::shared_data();
+    if (data.empty()) GTEST_SKIP() << "no shared scans here";
+    const TempFolder folder;
+    size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(data / "bad")) {
+        const auto output = folder / (entry.path().filename().string() + ".luc");
+        const auto outcome =
+            lucarne("convert --normals none " + quoted(entry.path()) + " -o " + quoted(output));
+        EXPECT_TRUE(outcome.code == 0 || outcome.code == 3) << entry.path() << "\n" << outcome.text;
+        EXPECT_EQ(std::filesystem::exists(output), outcome.code == 0) << entry.path();
+        if (outcome.code == 0) EXPECT_EQ(lucarne("verify " + quoted(output)).code, 0) << entry.path();
+        ++files;
+    }
+    EXPECT_GT(files, 10u);
+}
+
+TEST(Commands, ConvertInfoVerifyAndExportWorkTogether) {
+    const TempFolder folder;
+    const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc"), json = folder / "a.json";
+    ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
+    const auto converted =
+        lucarne("convert --normals none " + scan + " -o " + cache + " --json " + quoted(json));
+    ASSERT_EQ(converted.code, 0) << converted.text;
+    const auto report = io::testing::read_bytes(json);
+    for (const char* stage : {"scan", "chunk", "build", "write", "cpu_seconds"})
+        EXPECT_NE(report.find(stage), std::string::npos) << report;
+    EXPECT_NE(lucarne("info " + cache).text.find("50000"), std::string::npos);
+    EXPECT_NE(lucarne("info " + scan).text.find("LAS"), std::string::npos);
+    EXPECT_NE(lucarne("verify " + cache).text.find("sound; 50000 points"), std::string::npos);
+    EXPECT_EQ(lucarne("export " + cache + " -o " + quoted(folder / "b.las")).code, 0);
+    EXPECT_EQ(std::filesystem::file_size(folder / "a.las"), std::filesystem::file_size(folder / "b.las"));
+}
+
+}  // namespace
+}  // namespace lucarne

@@ -1,0 +1,139 @@
+// From a scan file to a cache and back: the same points with the same attributes.
+#include "octree/export/export.h"
+
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "io/formats/scan.h"
+#include "octree/build/build.h"
+#include "octree/cache.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+using test::TempFolder;
+
+Result<void> convert(std::vector<const io::PointSource*> inputs, const std::filesystem::path& cache) {
+    BuildOptions options{.inputs = std::move(inputs), .output = cache, .normals = NormalsMode::none};
+    LUCARNE_ASSIGN([[maybe_unused]] const auto report, build_cache(options));
+    return {};
+}
+
+Result<void> export_to(const std::filesystem::path& cache, const std::filesystem::path& output) {
+    LUCARNE_ASSIGN(const auto source, open_cache(cache));
+    const Exporter exporter(*source, {});
+    LUCARNE_ASSIGN(const auto writer, io::create_scan(output, exporter.schema(), exporter.info(), {}));
+    return exporter.write(*writer, [](uint64_t) {});
+}
+
+/// Scan, cache, scan: `extension` is that of the file written at the end.
+void expect_same_after_round_trip(const std::filesystem::path& scan, const std::string& extension) {
+    SCOPED_TRACE(scan.string());
+    const TempFolder folder;
+    const auto before = io::open_scan(scan);
+    ASSERT_TRUE(before) << before.error().line();
+    const auto converted = convert({before->get()}, folder / "a.luc");
+    ASSERT_TRUE(converted) << converted.error().line();
+    const auto output = folder / ("b" + extension);
+    const auto exported = export_to(folder / "a.luc", output);
+    ASSERT_TRUE(exported) << exported.error().line();
+    const auto after = io::open_scan(output);
+    ASSERT_TRUE(after) << after.error().line();
+    ASSERT_EQ((*after)->schema(), (*before)->schema());
+    if (extension == ".las") EXPECT_EQ((*after)->info().format, (*before)->info().format);
+    const uint32_t stride = (*before)->schema().stride;
+    EXPECT_TRUE(test::sorted_records(**after, stride) == test::sorted_records(**before, stride));
+}
+
+void write_scan(const std::filesystem::path& path, const test::ComputedSource& source) {
+    const auto writer = io::create_scan(path, source.schema(), source.info(), {});
+    ASSERT_TRUE(writer) << writer.error().line();
+    const auto reader = source.open();
+    io::PointBatch batch;
+    while ((*reader)->read(batch, 5000).value_or(0) > 0) ASSERT_TRUE((*writer)->write(batch.bytes));
+    const auto finished = (*writer)->finish();
+    ASSERT_TRUE(finished) << finished.error().line();
+}
+
+test::ComputedSource cloud(io::PositionType position, uint64_t seed) {
+    io::Schema schema;
+    schema.position = position;
+    if (position == io::PositionType::i32_scaled)
+        schema.scale = glm::dvec3(0.001), schema.offset = glm::dvec3(500, 600, 7);
+    schema.stride = static_cast<uint32_t>(io::position_bytes(position));
+    schema.add("intensity", io::ScalarType::u16);
+    schema.add("classification", io::ScalarType::u8);
+    schema.add("color", io::ScalarType::u16, 3);
+    if (position != io::PositionType::i32_scaled) {
+        schema.add("normal", io::ScalarType::f32, 3);
+        schema.add("temperature", io::ScalarType::f64);
+        schema.add("area", io::ScalarType::f32);  // called like one of ours
+    }
+    return {schema, 40'000, [schema, seed](uint64_t index, std::byte* record) {
+                Random random(seed, index);
+                for (size_t axis = 0; axis < 3; ++axis) {
+                    const double v = 10 * random.uniform();
+                    if (schema.position == io::PositionType::i32_scaled)
+                        io::store(record + 4 * axis, static_cast<int32_t>(1000 * v));
+                    else if (schema.position == io::PositionType::f32)
+                        io::store(record + 4 * axis, static_cast<float>(v));
+                    else
+                        io::store(record + 8 * axis, v);
+                }
+                for (const auto& a : schema.attributes)
+                    for (size_t c = 0; c < a.components; ++c)
+                        io::store_scalar(a.type, record + a.offset + c * io::scalar_bytes(a.type),
+                                         a.name == "classification" ? 2.0 : 1000 * random.uniform());
+            }};
+}
+
+TEST(Export, GivesLasBackAsItWas) {
+    const TempFolder folder;
+    write_scan(folder / "a.las", cloud(io::PositionType::i32_scaled, 1));
+    expect_same_after_round_trip(folder / "a.las", ".las");
+}
+
+TEST(Export, GivesFloatAndDoublePlyBackAsTheyWere) {
+    for (const auto position : {io::PositionType::f32, io::PositionType::f64}) {
+        const TempFolder folder;
+        write_scan(folder / "a.ply", cloud(position, 2));
+        expect_same_after_round_trip(folder / "a.ply", ".ply");
+    }
+}
+
+TEST(Export, KeepsTheScanOfEachPointOfSeveral) {
+    const TempFolder folder;
+    const auto a = cloud(io::PositionType::f64, 3), b = cloud(io::PositionType::f64, 4);
+    ASSERT_TRUE(convert({&a, &b}, folder / "two.luc"));
+    ASSERT_TRUE(export_to(folder / "two.luc", folder / "two.ply"));
+    const auto after = io::open_scan(folder / "two.ply");
+    ASSERT_TRUE(after) << after.error().line();
+    const auto* scan = (*after)->schema().find("scan");
+    ASSERT_TRUE(scan);
+    const auto records = io::testing::read_all(**after);
+    ASSERT_TRUE(records);
+    size_t second = 0;
+    for (size_t i = 0; i < records->count; ++i)
+        second += io::load<uint16_t>(&records->bytes[i * (*after)->schema().stride + scan->offset]) == 1;
+    EXPECT_EQ(records->count, 80'000u);
+    EXPECT_EQ(second, 40'000u);
+}
+
+TEST(Export, GivesEverySharedLasAndPlyBackAsItWas) {
+    const auto data = io::testing::shared_data();
+    if (data.empty()) GTEST_SKIP() << "no shared scans here";
+    size_t files = 0;
+    for (const std::string kind : {"las", "ply"})
+        for (const auto& entry : std::filesystem::directory_iterator(data / kind)) {
+            if (entry.path().extension() != "." + kind) continue;
+            const auto source = io::open_scan(entry.path());
+            if (!source || io::testing::read_all(**source)->count == 0) continue;  // nothing to convert
+            expect_same_after_round_trip(entry.path(), "." + kind);
+            ++files;
+        }
+    EXPECT_GT(files, 8u);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
