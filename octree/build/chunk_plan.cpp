@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/core/options.h"
+#include "octree/normals/normals.h"
 
 namespace lucarne::octree {
 namespace {
@@ -15,27 +16,31 @@ constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, 
 /// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
 /// samples.
 constexpr uint64_t kWorkPerPoint = 48;
+/// The normals stage holds a few chunks at a time, a chunk's neighbours among them.
+constexpr uint64_t kNormalChunks = 4;
 /// What sampling one node holds a candidate.
 constexpr uint64_t kWorkPerCandidate = 48;
 
 }  // namespace
 
-Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, uint32_t record, size_t leaf, unsigned threads) {
+Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
     if (bytes < kMinMemory)
         return bad_arguments("--memory", fmt::format("{} is too little", bytes_text(bytes)),
                              fmt::format("give at least {}", bytes_text(kMinMemory)));
-    const uint64_t per_point = 2 * uint64_t{record} + kWorkPerPoint;
-    const uint64_t sampling = 16 * leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
+    const uint64_t per_point = 2 * uint64_t{work.record} + kWorkPerPoint;
+    const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
     // As many workers as threads while each can have a chunk of several leaves and the assembly its own
     // sampling; a single worker takes turns with the assembly.
-    MemoryPlan plan{.workers = std::max(1u, threads), .memory = bytes};
+    MemoryPlan plan{.workers = std::max(1u, work.threads), .memory = bytes};
     const uint64_t share = bytes * 7 / 8;
     const auto room = [&] {
         const uint64_t taken = sampling * (plan.workers > 1 ? plan.workers + 1 : 1);
         return share > taken ? (share - taken) / plan.workers / per_point : 0;
     };
-    while (plan.workers > 1 && room() < 4 * leaf) --plan.workers;
-    plan.chunk_points = std::clamp<uint64_t>(room(), leaf, std::max<uint64_t>(leaf, kMaxChunkPoints));
+    while (plan.workers > 1 && room() < 4 * work.leaf) --plan.workers;
+    uint64_t most = std::min(room(), kMaxChunkPoints);
+    if (work.normals) most = std::min(most, bytes / (kNormalChunks * kNormalBytesPerPoint));
+    plan.chunk_points = std::max<uint64_t>(work.leaf, most);
     plan.grid_bytes = bytes / 4;
     plan.buffer_bytes = bytes / 2;
     plan.batch_bytes = std::min<uint64_t>(bytes / 16, 1 << 20);

@@ -76,7 +76,10 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     options.memory = settings.memory;
     options.threads = settings.threads;
     options.normals = settings.normals;
-    if (access.chunk_count()) return failed("normals", "cannot be estimated yet", "use --normals none");
+    const auto keep = [&](size_t chunk, ChunkNormals&& found) {
+        return store.keep(chunk, access.point_count(chunk), found);
+    };
+    LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
     return store;
 }
 

@@ -164,7 +164,8 @@ TEST(ConvertFaults, RejectEveryBadSharedScanOrConvertIt) {
             lucarne("convert --normals none " + quoted(entry.path()) + " -o " + quoted(output));
         EXPECT_TRUE(outcome.code == 0 || outcome.code == 3) << entry.path() << "\n" << outcome.text;
         EXPECT_EQ(std::filesystem::exists(output), outcome.code == 0) << entry.path();
-        if (outcome.code == 0) EXPECT_EQ(lucarne("verify " + quoted(output)).code, 0) << entry.path();
+        const bool sound = outcome.code != 0 || lucarne("verify " + quoted(output)).code == 0;
+        EXPECT_TRUE(sound) << entry.path();
         ++files;
     }
     EXPECT_GT(files, 10u);
@@ -172,7 +173,8 @@ TEST(ConvertFaults, RejectEveryBadSharedScanOrConvertIt) {
 
 TEST(Commands, ConvertInfoVerifyAndExportWorkTogether) {
     const TempFolder folder;
-    const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc"), json = folder / "a.json";
+    const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc");
+    const auto json = folder / "a.json";
     ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
     const auto converted =
         lucarne("convert --normals none " + scan + " -o " + cache + " --json " + quoted(json));
