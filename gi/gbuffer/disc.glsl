@@ -1,6 +1,7 @@
 // Surfels as discs in a view: projection, and where a pixel's ray meets them. View space: x right, y down, z along
 // the view's forward axis (the depth), metres; the ray through a pixel is (x, y, 1).
 #include "gi/shared/cut.glsl"
+#include "gi/shared/gbuffer.h"
 
 uniform vec4 view_right;    // unit; w: tangent of half the field
 uniform vec4 view_down;     // likewise
@@ -14,12 +15,9 @@ struct Disc {
     vec3 normal;
     float radius;
     float extent;  // half the depth it spans, m
+    float push;    // of its rim, m of depth
 };
 
-// Of discs that overlap on one surface the one whose centre is nearest shall win, or their planes' noise would decide:
-// the ordering depth is the plane's, pushed back by this share of the radius times (distance / radius)^2. Less than
-// a radius, so that nothing shows through from a few radii behind.
-const float kPush = 0.5;
 const uint kNoKey = 0xffffffffu;
 
 vec2 pixels_per_tangent() { return vec2(view_width, view_height) / (2.0 * vec2(view_right.w, view_down.w)); }
@@ -35,6 +33,7 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
     float distance2 = dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
+    disc.push = kRimPush * disc.radius * toward.z;  // so far along the ray
     disc.normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : toward;
     disc.extent = disc.radius * sqrt(max(1.0 - disc.normal.z * disc.normal.z, 0.0));
     return disc.centre.z + disc.extent > view_forward.w;
@@ -92,6 +91,6 @@ uint disc_key(Disc disc, vec2 ray, bool at_home) {
     if (!inside && !at_home) return kNoKey;
     z = clamp(z, disc.centre.z - disc.extent, disc.centre.z + disc.extent);
     if (!(z > view_forward.w)) return kNoKey;
-    precise float key = z + kPush * disc.radius * (inside && r2 > 0.0 ? d2 / r2 : 1.0);
+    precise float key = z + disc.push * (inside && r2 > 0.0 ? d2 / r2 : 1.0);
     return floatBitsToUint(key);
 }

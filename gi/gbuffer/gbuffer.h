@@ -17,7 +17,7 @@ struct GBuffer {
 };
 
 /// Draws the discs of a cut by compute: per pixel the nearest intersection of its ray with a surfel's disc
-/// wins, where discs that overlap within half a radius of depth are told apart by whose centre is nearer;
+/// wins, where overlapping discs of one surface are told apart by whose centre is nearer (kRimPush);
 /// equal orders go to the smaller id. A disc takes at least the pixel of its centre. The depths written are
 /// the exact plane depths; nothing is smeared in the picture. Errors: out of device memory.
 Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target);

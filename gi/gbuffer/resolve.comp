@@ -1,7 +1,6 @@
 // One invocation a pixel: the texel of the surfel that took it.
 layout(local_size_x = 64) in;
 #include "gi/gbuffer/disc.glsl"
-#include "gi/shared/gbuffer.h"
 
 layout(std430, binding = 4) readonly buffer Ids { uint ids[]; };
 layout(std430, binding = 6) writeonly buffer Texels { GBufferTexel texels[]; };

@@ -13,13 +13,13 @@ constexpr uint32_t pages_for(size_t surfels) {
     return static_cast<uint32_t>((surfels + SurfelPool::kPageSurfels - 1) / SurfelPool::kPageSurfels);
 }
 
-/// m^2; a hostile cache's floor must not make discs that cover the world: no node holds more surface than a
-/// few of its cube's faces.
+/// m^2. The shares in a node add up to its surface, and no node holds more than a few times the surface of
+/// its cube: a hostile cache's floors must not make discs that cover the world.
 float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per_unit, float size) {
     const float share = info.count ? static_cast<float>(count) / static_cast<float>(info.count) : 1.0f;
     const float floors[4] = {info.area_floor[0], info.area_floor[1], info.area_floor[2], info.area_floor[3]};
     const double floor = octree::floor_at_prefix(floors, share) * metres_per_unit * metres_per_unit;
-    const double most = 4.0 * size * size;
+    const double most = kMostSurface * size * size / std::max(count, 1u);
     return floor > 0 ? static_cast<float>(std::min(floor, most)) : 0.0f;  // NaN: 0
 }
 

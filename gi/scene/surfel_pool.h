@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <span>
 #include <unordered_map>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "gi/device/device.h"
 #include "gi/scene/scene.h"
@@ -13,9 +14,13 @@
 
 namespace lucarne::gi {
 
-/// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB (.5
-/// linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The material is the
-/// last one in the scene whose conditions all hold ([0], the default, has none); those beyond 256 are not used.
+/// No node holds more surface than this many faces of its cube; what claims more is no scan.
+inline constexpr double kMostSurface = 64;
+
+/// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB
+/// (.5 linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The
+/// material is the last one in the scene whose conditions all hold ([0], the default, has none); those beyond
+/// 256 are not used.
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
                                        const octree::NodeData& data, const Scene& scene);
 
@@ -42,8 +47,8 @@ class DeviceCut {
     uint32_t surfels_ = 0, blocks_ = 0;
 };
 
-/// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's load,
-/// replace and evict events. A node takes consecutive pages.
+/// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's
+/// load, replace and evict events. A node takes consecutive pages.
 class SurfelPool {
  public:
     static constexpr uint32_t kPageSurfels = 1024;
@@ -54,16 +59,17 @@ class SurfelPool {
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
     bool holds(uint32_t node) const;
-    uint32_t used() const;      ///< surfels' worth of pages in use
+    uint32_t used() const;  ///< surfels' worth of pages in use
     uint32_t capacity() const;
 
-    /// Builds a cut from resident nodes (entries must be ancestor-closed; those that are not resident are left out
-    /// with their descendants). `local_origin` in world units; everything on the device is metres relative to it.
+    /// Builds a cut from resident nodes (entries must be ancestor-closed; those that are not resident are
+    /// left out with their descendants). `local_origin` in world units; everything on the device is metres
+    /// relative to it.
     Result<void> make_cut(Device& device, const octree::NodeSource& source, std::span<const CutEntry> entries,
                           const glm::dvec3& local_origin, DeviceCut& cut) const;
 
-    /// The cut's surfels with their footprints, decoded on the host by the same rules, in the order of their ids
-    /// without the gaps: what the reference engine traces.
+    /// The cut's surfels with their footprints, decoded on the host by the same rules, in the order of their
+    /// ids without the gaps: what the reference engine traces.
     std::vector<Surfel> download(const DeviceCut& cut) const;
 
  private:

@@ -88,17 +88,11 @@ class Packer {
         return 0;
     }
 
-    /// The value of full white in the scan's colours.
+    /// The value of full white in a scan's colours.
     double white(uint32_t scan) const {
-        (void)scan;
-        switch (color_->type) {
-            case io::ScalarType::u8:
-                return 255.0;
-            case io::ScalarType::u16:
-                return 65535.0;
-            default:
-                return 1.0;
-        }
+        if (scan < header_.scans.size()) return io::color_white(header_.scans[scan].color_bits);
+        const io::ScalarType type = color_->type;
+        return io::color_white(type == io::ScalarType::u8 ? 8 : type == io::ScalarType::u16 ? 16 : 0);
     }
 
     uint32_t albedo(const std::byte* record, uint32_t scan) const {
@@ -132,6 +126,20 @@ class Packer {
     const Attribute *color_, *normal_, *normal_oct_, *area_, *classification_, *scan_;
 };
 
+/// Shares add up to the surface in the node. Where a hostile file claims more than any node can hold, all of
+/// them shrink: the work of drawing a node stays bounded.
+void limit_areas(std::vector<PackedSurfel>& surfels) {
+    double sum = 0;  // in faces of the node's cube
+    for (const PackedSurfel& s : surfels) sum += surfel_own_area(s.b, 1.0f);
+    if (sum <= kMostSurface) return;
+    const auto eighths = static_cast<uint32_t>(std::ceil(8 * std::log2(sum / kMostSurface)));
+    for (PackedSurfel& s : surfels) {
+        const uint32_t code = s.b >> 16 & 255u;
+        if (code == kUnknownArea) continue;
+        s.b = (s.b & 0xff00ffffu) | std::min(code + eighths, kUnknownArea - 1) << 16;
+    }
+}
+
 }  // namespace
 
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
@@ -140,6 +148,7 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
     const Packer packer(header, node, scene);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
+    limit_areas(surfels);
     return surfels;
 }
 

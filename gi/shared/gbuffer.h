@@ -16,6 +16,12 @@ struct GBufferTexel {
     uint material;  // index | radius of the surfel as a half float << 16
 };
 
+// Of discs that overlap on one surface the one whose centre is nearest shall take the pixel, or the noise of their
+// planes would decide: they are ordered by the plane's depth, pushed back by this share of the radius times
+// (distance / radius)^2. So a disc may show where it sticks out of another surface by up to this share of its radius,
+// and no further.
+const float kRimPush = 0.25f;
+
 #ifdef __cplusplus
 static_assert(sizeof(GBufferTexel) == 16);
 }  // namespace lucarne::gi

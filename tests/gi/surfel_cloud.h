@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gi/scene/surfel_pool.h"
+#include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/random.h"
 #include "octree/source.h"

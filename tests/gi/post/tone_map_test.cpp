@@ -1,0 +1,104 @@
+#include "gi/post/tone_map.h"
+
+#include <cmath>
+#include <limits>
+
+#include <glm/vec4.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+class ToneMapTest : public OnDevice {
+ protected:
+    Buffer radiance(const std::vector<glm::vec4>& values) {
+        auto made = device->buffer(values.size() * sizeof(glm::vec4), "radiance");
+        EXPECT_TRUE(made);
+        made->upload_all(values);
+        return std::move(*made);
+    }
+    std::vector<uint32_t> map(const std::vector<glm::vec4>& values, ToneMap curve, double ev) {
+        Buffer picture;
+        const auto pixels = static_cast<uint32_t>(values.size());
+        EXPECT_TRUE(tone_map(*device, radiance(values), pixels, curve, ev, picture));
+        return picture.download_all<uint32_t>(values.size());
+    }
+    double exposure(const std::vector<glm::vec4>& values) {
+        const auto ev = automatic_exposure(*device, radiance(values), static_cast<uint32_t>(values.size()));
+        EXPECT_TRUE(ev);
+        return ev.value_or(-1000);
+    }
+};
+
+uint32_t srgb8(double linear) {
+    const double v = linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<uint32_t>(std::lround(std::min(v, 1.0) * 255));
+}
+
+TEST_F(ToneMapTest, NoCurveCodesLinearLightAsSrgb) {
+    const auto picture = map({{0.5f, 0.2f, 0.002f, 0}, {0, 1, 3, 0}}, ToneMap::none, 0);
+    EXPECT_EQ(picture[0], srgb8(0.5) | srgb8(0.2) << 8 | srgb8(0.002) << 16 | 255u << 24);
+    EXPECT_EQ(picture[1], 0xffffff00u);
+}
+
+TEST_F(ToneMapTest, OneStopDoublesTheLight) {
+    EXPECT_EQ(map({{0.1f, 0.2f, 0.3f, 0}}, ToneMap::none, 1), map({{0.2f, 0.4f, 0.6f, 0}}, ToneMap::none, 0));
+}
+
+TEST_F(ToneMapTest, ReinhardHalvesAWhiteOfLuminanceOne) {
+    EXPECT_EQ(map({{1, 1, 1, 0}}, ToneMap::reinhard, 0)[0] & 255u, srgb8(0.5));
+}
+
+TEST_F(ToneMapTest, FilmicFollowsThePublishedFit) {
+    const double x = 0.18, y = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+    EXPECT_EQ(map({{0.18f, 0.18f, 0.18f, 0}}, ToneMap::filmic, 0)[0] & 255u, srgb8(y));
+}
+
+TEST_F(ToneMapTest, CurvesRiseFromBlackToWhite) {
+    std::vector<glm::vec4> ramp;
+    for (int i = 0; i < 400; ++i)
+        ramp.emplace_back(glm::vec4(i ? std::exp2(static_cast<float>(i) / 16 - 12) : 0.0f));
+    for (const ToneMap curve : {ToneMap::filmic, ToneMap::reinhard, ToneMap::none}) {
+        const auto picture = map(ramp, curve, 0);
+        EXPECT_EQ(picture[0], 0xff000000u);
+        EXPECT_GE(picture.back() & 255u, 250u);
+        for (size_t i = 1; i < picture.size(); ++i) EXPECT_GE(picture[i] & 255u, picture[i - 1] & 255u) << i;
+    }
+}
+
+TEST_F(ToneMapTest, WhatIsNoNumberBecomesBlackAndInfinityWhite) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN(),
+                    kInfinite = std::numeric_limits<float>::infinity();
+    for (const ToneMap curve : {ToneMap::filmic, ToneMap::none}) {
+        const auto picture = map({glm::vec4(kNone), glm::vec4(-1.0f), glm::vec4(kInfinite)}, curve, 0);
+        EXPECT_EQ(picture[0], 0xff000000u);
+        EXPECT_EQ(picture[1], 0xff000000u);
+        EXPECT_EQ(picture[2], 0xffffffffu);
+    }
+}
+
+TEST_F(ToneMapTest, AutomaticExposureBringsTheLogAverageToTheKey) {
+    std::vector<glm::vec4> picture(1000, glm::vec4(0.25f));
+    for (size_t i = 0; i < 500; ++i) picture[i] = glm::vec4(4.0f);
+    EXPECT_NEAR(exposure(picture), std::log2(0.18), 1e-4);  // log-average of 1/4 and 4 is 1
+    for (auto& v : picture) v *= 8.0f;
+    EXPECT_NEAR(exposure(picture), std::log2(0.18 / 8), 1e-4);
+}
+
+TEST_F(ToneMapTest, BlackPixelsDoNotTurnTheExposureUp) {
+    std::vector<glm::vec4> picture(1000, glm::vec4(1.0f));
+    const double lit = exposure(picture);
+    picture.resize(5000, glm::vec4(0.0f));
+    EXPECT_NEAR(exposure(picture), lit, 1e-4);
+    picture.resize(5100, glm::vec4(std::numeric_limits<float>::quiet_NaN()));
+    EXPECT_NEAR(exposure(picture), lit, 1e-4);
+}
+
+TEST_F(ToneMapTest, BlackPictureIsNotExposedAtAll) {
+    EXPECT_EQ(exposure(std::vector<glm::vec4>(100, glm::vec4(0.0f))), 0.0);
+}
+
+}  // namespace
+}  // namespace lucarne::gi
