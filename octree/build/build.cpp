@@ -142,8 +142,8 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
     const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
     const NodeLimits limits(inputs.schema().stride + added);
-    LUCARNE_ASSIGN(const auto memory,
-                   MemoryPlan::create(options.memory, inputs.schema().stride + added, limits.leaf, threads));
+    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
+    LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, work));
 
     BuildReport report;
     LUCARNE_ASSIGN(const auto facts,

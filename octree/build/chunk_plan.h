@@ -17,9 +17,14 @@ struct Chunk {
 
 /// How a build shares out `--memory`.
 struct MemoryPlan {
-    /// `record` is the size of a record while it is built, `leaf` the most points of a leaf. Errors: too
-    /// little.
-    static Result<MemoryPlan> create(uint64_t memory, uint32_t record, size_t leaf, unsigned threads);
+    struct Work {
+        uint32_t record = 0;   ///< bytes of a record in the cache
+        size_t leaf = 0;       ///< most points of a leaf
+        bool normals = false;  ///< normals or areas are estimated
+        unsigned threads = 1;
+    };
+    /// Errors: too little memory for any work.
+    static Result<MemoryPlan> create(uint64_t memory, const Work& work);
 
     uint64_t chunk_points = 0;  ///< most points of a chunk
     unsigned workers = 1;       ///< chunks built at a time

@@ -12,6 +12,7 @@
 #include "io/core/options.h"
 #include "io/formats/scan.h"
 #include "octree/build/build.h"
+#include "octree/normals/normals.h"
 #include "viewer/commands/commands.h"
 
 namespace lucarne::viewer {
@@ -95,7 +96,7 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->type_name("DIR");
     command->add_option("--neighbours", options->build.neighbours, "Nearest points that make a normal")
         ->capture_default_str()
-        ->check(CLI::Range(3, 256))
+        ->check(CLI::Range(3u, octree::kMostNormalNeighbours))
         ->type_name("K");
     command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
     command->add_option("--json", options->json, "Write what was done and how long it took")

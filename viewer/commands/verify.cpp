@@ -13,9 +13,12 @@ namespace lucarne::viewer {
 namespace {
 
 Result<void> verify(const std::filesystem::path& path) {
-    std::error_code ignored;
-    const uint64_t bytes = std::filesystem::file_size(path, ignored);
-    Progress progress("verifying", ignored ? 0 : bytes, "bytes");
+    uint64_t bytes = 0;
+    {
+        LUCARNE_ASSIGN(const auto cache, octree::open_cache(path));
+        for (const auto& node : cache->nodes()) bytes += node.payload_bytes;
+    }
+    Progress progress("verifying", bytes, "bytes");
     LUCARNE_ASSIGN(const auto report, octree::verify_cache(path, [&](uint64_t done) { progress.add(done); }));
     log::info("{}: sound; {} points in {} nodes on {} levels, {}", path.string(), report.points, report.nodes,
               report.depth + 1, bytes_text(report.bytes));
