@@ -1,0 +1,67 @@
+// What the VPLs send to a point: the sum that shading and the merge's repairs have in common.
+#include "gi/shared/brdf.h"
+#include "gi/vpl/parabolic.glsl"
+#include "gi/vpl/vpl_light.h"
+
+layout(std430, binding = 9) readonly buffer Lights { VplLight lights[]; };
+
+struct Receiver {
+    vec3 position;
+    vec3 normal;
+    vec3 to_viewer;  // unit
+    Reflectance reflectance;
+};
+
+struct Gathered {
+    vec3 irradiance;  // W/m^2: free of the receiver's albedo
+    vec3 specular;    // W/(sr m^2) toward the viewer by the receiver's lobe
+};
+
+// Whether VPL `index` sees the receiver by its shadow map. Both are measured along the texel's central ray, the
+// receiver by its tangent plane, so that slanted surfaces do not shadow themselves. What lies lower over the
+// receiver's tangent plane than splats err is the receiver's own sheet.
+bool vpl_sees(uint index, vec3 light_normal, vec3 offset, float distance_m, vec3 normal) {
+    mat3 frame = frame_about(light_normal);
+    uvec2 texel = texel_at(map_coordinates(offset * frame / distance_m));
+    uint nearest = atlas[texel_index(index, texel)];
+    if (nearest == kNothing) return true;
+    vec2 uv = texel_centre(texel);
+    float height = -dot(normal, offset);                 // of the VPL over the receiver's plane
+    float slope = -dot(normal, frame * map_ray(uv));     // how fast the central ray falls toward it, times its length
+    float reach = distance_m;
+    if (slope > 0.0) reach = min(reach, height / slope * (1.0 + dot(uv, uv)));
+    float blocker = map_distance(nearest);
+    float over_plane = (reach - blocker) * height / distance_m;
+    return over_plane <= sheet_tolerance(map_radius(nearest), blocker);
+}
+
+// Every `stride`-th VPL from `first` on. Each is a disc of area A rather than a point: G = cos cos' / (d^2 + A / pi), which is the
+// form factor of a disc seen along its axis and stays finite where the receiver touches it.
+Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
+    Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+    for (uint i = first; i < count; i += stride) {
+        vec4 position = lights[i].position;
+        vec4 light_normal = lights[i].normal;
+        vec3 offset = receiver.position - position.xyz;
+        float cosines = -dot(receiver.normal, offset);
+        float light_cosine = dot(light_normal.xyz, offset);
+        if (!(cosines > 0.0 && light_cosine > 0.0)) continue;  // also the dead
+        float distance2 = dot(offset, offset);
+        if (!vpl_sees(i, light_normal.xyz, offset, sqrt(distance2), receiver.normal)) continue;
+        float geometry = cosines * light_cosine / (distance2 * (distance2 + position.w / kPi));
+        vec4 diffuse = lights[i].diffuse;
+        vec3 arriving = diffuse.xyz;
+#ifdef LUCARNE_GLOSSY
+        vec3 direction = offset * inversesqrt(distance2);
+        Reflectance source;
+        source.kd = vec3(0.0);
+        source.ks = light_normal.w;
+        source.exponent = diffuse.w;
+        arriving += lights[i].flux.xyz * specular_brdf(source, light_normal.xyz, lights[i].incident.xyz, direction);
+        sum.specular += arriving * geometry *
+                        specular_brdf(receiver.reflectance, receiver.normal, -direction, receiver.to_viewer);
+#endif
+        sum.irradiance += arriving * geometry;
+    }
+    return sum;
+}

@@ -1,0 +1,71 @@
+// The importance map of the light G-buffer and its mip chain, and the warp that samples it.
+//
+// A texel holds (weight, lit): what the VPLs should be proportional to, and 1 where light lands on something at all.
+// Level 0 has `importance_side` (a power of two) texels along a side; each level above sums 2 x 2 texels of the one
+// below; all levels lie one after the other in one buffer.
+
+#include "gi/shared/gbuffer.glsl"
+
+layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
+
+uniform uint importance_side;
+
+// The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
+// surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).
+const float kUniformShare = 0.05;
+
+uint importance_level(uint level) {  // where a level begins
+    uint first = 0u;
+    for (uint l = 0u; l < level; ++l) first += (importance_side >> l) * (importance_side >> l);
+    return first;
+}
+
+// Solid angle of one pixel of a pinhole view about the point `at` (pixels): dA cos^3 at unit depth, sr.
+float ray_solid_angle(CameraView view, vec2 at) {
+    float pixel_area = 4.0 * length(view.right.xyz) * length(view.up.xyz) / (float(view.width) * float(view.height));
+    vec3 ray = view_ray(view, at);
+    float cosine = inversesqrt(dot(ray, ray));
+    return pixel_area * cosine * cosine * cosine;
+}
+
+struct WarpedPoint {
+    vec2 at;            // in texels of level 0
+    float probability;  // of its texel; 0 where the map is empty
+};
+
+// Hierarchical warping (Clarberg, Jarosz, Akenine-Moller, Jensen 2005, section 3.2): from the coarsest level down the
+// point is moved between the two rows of a 2 x 2 block by their sums, then between the two texels of its row; the
+// remainder is rescaled to [0, 1) and goes on to the next level.
+WarpedPoint warp(vec2 point) {
+    WarpedPoint result;
+    result.at = vec2(0.0);
+    result.probability = 0.0;
+    uint levels = uint(findMSB(importance_side));
+    vec2 total = importance[importance_level(levels)];
+    if (!(total.x + total.y > 0.0)) return result;
+    // Both parts as shares of their sums; a map without any weight (all black) is sampled evenly.
+    vec2 mix_factors = total.x > 0.0 ? vec2((1.0 - kUniformShare) / total.x, kUniformShare / total.y)
+                                     : vec2(0.0, 1.0 / total.y);
+    uvec2 cell = uvec2(0u);
+    float probability = 1.0;
+    for (uint l = levels; l-- > 0u;) {
+        uint side = importance_side >> l;
+        uint base = importance_level(l) + 2u * cell.y * side + 2u * cell.x;
+        vec2 upper = vec2(dot(importance[base], mix_factors), dot(importance[base + 1u], mix_factors));
+        vec2 lower = vec2(dot(importance[base + side], mix_factors), dot(importance[base + side + 1u], mix_factors));
+        vec2 rows = vec2(upper.x + upper.y, lower.x + lower.y);
+        float split_y = rows.x / (rows.x + rows.y);
+        bool down = point.y >= split_y;
+        point.y = down ? (point.y - split_y) / (1.0 - split_y) : point.y / split_y;
+        vec2 row = down ? lower : upper;
+        float split_x = row.x / (row.x + row.y);
+        bool right = point.x >= split_x;
+        point.x = right ? (point.x - split_x) / (1.0 - split_x) : point.x / split_x;
+        point = clamp(point, vec2(0.0), vec2(0.99999994));
+        cell = 2u * cell + uvec2(right ? 1u : 0u, down ? 1u : 0u);
+        probability = right ? row.y : row.x;
+    }
+    result.at = vec2(cell) + point;
+    result.probability = probability;
+    return result;
+}

@@ -1,0 +1,49 @@
+// The parabolic map of a VPL's hemisphere (Brabec, Annen, Seidel 2002) and the layout of the atlas of them.
+//
+// In the VPL's frame (z its normal) direction w has the map coordinates (u, v) = w.xy / (1 + w.z): the stereographic
+// projection, conformal, the hemisphere is the unit disc; d_omega = 4 / (1 + u^2 + v^2)^2 du dv.
+
+layout(std430, binding = 10) buffer Atlas { uint atlas[]; };
+
+uniform uint map_side;  // texels along a side of one VPL's map; maps lie one after the other
+
+// An atlas texel: the distance along the texel's central ray, a positive float whose bits sort like itself; its last
+// 8 bits hold the radius of the surfel instead (2^(code/8 - 16) m), which leaves the distance 15 bits of mantissa.
+const uint kNothing = 0xffffffffu;
+
+uint pack_map_texel(float distance_m, float radius) {
+    uint code = uint(clamp(8.0 * (log2(radius) + 16.0) + 0.5, 0.0, 254.0));
+    return (floatBitsToUint(distance_m) & 0xffffff00u) | code;
+}
+float map_distance(uint texel) { return uintBitsToFloat(texel & 0xffffff00u); }
+float map_radius(uint texel) { return exp2(float(texel & 0xffu) * 0.125 - 16.0); }
+
+// Surfels are thinned to splats of this angle (radius over distance) as seen from the VPL; see splat.comp.
+uniform float splat_angle;
+
+float splat_radius(float surfel_radius, float distance_m) { return max(surfel_radius, splat_angle * distance_m); }
+
+// How far a splat may lie off the surface that it stands for. A surfel strays by half its radius (scan noise; the
+// reference engine lifts its rays as much), and the disc of a splat that grew to stand for its neighbours errs by the
+// angle of its normal and by the surface's curvature: .05 R for 3 degrees, .05 R for a curvature radius of 10 R.
+float sheet_tolerance(float surfel_radius, float distance_m) {
+    return 0.5 * surfel_radius + 0.1 * splat_radius(surfel_radius, distance_m);
+}
+
+// An orthonormal frame about a unit vector (Duff et al. 2017); columns: tangent, bitangent, normal.
+mat3 frame_about(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}
+
+// The direction through map coordinates, times (1 + u^2 + v^2): cheaper than unit, and all that a ray needs.
+vec3 map_ray(vec2 uv) { return vec3(2.0 * uv, 1.0 - dot(uv, uv)); }
+vec2 map_coordinates(vec3 unit_direction) { return unit_direction.xy / (1.0 + unit_direction.z); }
+
+vec2 texel_centre(uvec2 texel) { return (2.0 * vec2(texel) + 1.0) / float(map_side) - 1.0; }
+uvec2 texel_at(vec2 uv) {
+    return uvec2(clamp((uv * 0.5 + 0.5) * float(map_side), vec2(0.0), vec2(float(map_side) - 1.0)));
+}
+uint texel_index(uint map, uvec2 texel) { return (map * map_side + texel.y) * map_side + texel.x; }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gi/device/device.h"
+#include "gi/scene/surfel_pool.h"
+
+namespace lucarne::gi::vpl {
+
+/// How an atlas of imperfect shadow maps (Ritschel et al. 2008) is laid out for a cut.
+struct AtlasLayout {
+    uint32_t maps = 0;      ///< one a VPL, one after the other in the buffer
+    uint32_t side = 0;      ///< texels along a side of a map, a multiple of 8
+    float splat_angle = 0;  ///< radius of the splats over their distance, rad
+    uint32_t levels = 0;    ///< of pull-push; 1 closes holes of one texel, 2 of three
+
+    size_t texels() const { return size_t{maps} * side * side; }
+    size_t coarse_texels() const;  ///< of the levels above 0, in all
+};
+
+/// An atlas of about `atlas` x `atlas` texels for `maps` VPLs. Errors (arguments): no VPLs, or so many that a map
+/// would have fewer than 8 x 8 texels.
+Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps);
+
+/// The shadow maps of all VPLs. Binding 10 when bound.
+struct ShadowMaps {
+    AtlasLayout layout;
+    Buffer atlas, coarse;
+    Buffer clusters;  ///< of VPLs (clusters.glsl)
+};
+
+/// Draws `cut` into the maps of `lights` (VplLight[layout.maps]) and closes the holes between the splats. Which
+/// surfels enter which maps follows from their ids and `seed`. Errors: no device memory, a shader that fails.
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights, const AtlasLayout& layout,
+                              uint32_t seed, PassTimes& times, ShadowMaps& target);
+
+}  // namespace lucarne::gi::vpl

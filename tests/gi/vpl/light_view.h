@@ -1,0 +1,71 @@
+// Light G-buffers made by hand, for tests of what is seeded on them.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "gi/device/device.h"
+#include "gi/gbuffer/gbuffer.h"
+#include "gi/shared/surfel_code.h"
+#include "gi/vpl/bindings.h"
+#include "gi/vpl/constants.h"
+#include "gi/vpl/seeding.h"
+#include "gi/vpl/vpl_light.h"
+
+namespace lucarne::gi::vpl::testing {
+
+/// A spot at the origin that looks down (-z), seen through a square view around its cone.
+struct LightView {
+    SpotLight spot;
+    CameraView view;
+};
+
+inline LightView downward_spot(uint32_t resolution, float half_angle, float cos_inner, float intensity) {
+    const float t = std::tan(half_angle);
+    LightView v;
+    v.spot = {glm::vec4(0, 0, 0, std::cos(half_angle)), glm::vec4(0, 0, -1, cos_inner), glm::vec4(intensity)};
+    v.view = {glm::vec4(0, 0, 0, .001f), glm::vec4(0, 0, -1, 0), glm::vec4(t, 0, 0, 0),
+              glm::vec4(0, t, 0, 0),     resolution,             resolution,
+              0,                         0};
+    return v;
+}
+
+inline glm::vec3 ray_of(const CameraView& view, float x, float y) {
+    const float u = 2 * x / static_cast<float>(view.width) - 1, v = 2 * y / static_cast<float>(view.height) - 1;
+    return glm::vec3(view.right.x * u, -view.up.y * v, -1);
+}
+
+inline uint32_t encode_grey(float albedo) {
+    const auto code = static_cast<uint32_t>(linear_to_srgb(albedo) * 1023 + .5f);
+    return code | code << 10 | code << 20;
+}
+
+/// A texel of the plane z = -height, facing the light.
+inline GBufferTexel floor_texel(float height, float albedo) {
+    return {height, encode_octahedral(glm::vec3(0, 0, 1)), encode_grey(albedo), 0};
+}
+
+/// What seed_lights makes of the texels for the given points.
+inline Result<std::vector<VplLight>> seed_on(Device& device, const LightView& light,
+                                             const std::vector<GBufferTexel>& texels,
+                                             const std::vector<Material>& materials,
+                                             const std::vector<glm::vec2>& points) {
+    GBuffer gbuffer;
+    gbuffer.width = light.view.width;
+    gbuffer.height = light.view.height;
+    LUCARNE_ASSIGN(gbuffer.texels, device.buffer(texels.size() * sizeof(GBufferTexel), "light G-buffer"));
+    gbuffer.texels.upload_all(texels);
+    LUCARNE_ASSIGN(Buffer material_buffer, device.buffer(materials.size() * sizeof(Material), "materials"));
+    material_buffer.upload_all(materials);
+    LUCARNE_ASSIGN(Buffer constants, device.buffer(sizeof(FrameConstants), "constants"));
+    constants.upload_all(std::vector<FrameConstants>{{light.view, light.view, light.spot, glm::vec4(0.0f)}});
+    material_buffer.bind(kBindMaterials);
+    constants.bind(kBindConstants);
+    Seeds seeds;
+    LUCARNE_TRY(seed_lights(device, gbuffer, points, seeds));
+    return seeds.lights.download_all<VplLight>(points.size());
+}
+
+}  // namespace lucarne::gi::vpl::testing
