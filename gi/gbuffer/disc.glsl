@@ -31,6 +31,10 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
     disc.radius = cut_surfel_radius(item, surfel);
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
+    // Outside a side plane of the view: without this a disc that stands beside the eye would ask every pixel.
+    vec2 side = vec2(view_right.w, view_down.w);
+    vec2 outside = (abs(disc.centre.xy) - disc.centre.z * side) * inversesqrt(1.0 + side * side);
+    if (max(outside.x, outside.y) > disc.radius) return false;
     float distance2 = dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
     disc.push = kRimPush * disc.radius * toward.z;  // so far along the ray
