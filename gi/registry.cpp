@@ -5,12 +5,14 @@
 #include <string>
 
 #include "gi/direct/direct.h"
+#include "gi/reference/reference.h"
 
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array<EngineEntry, 1> all = {{
+    static const std::array<EngineEntry, 2> all = {{
         {{"direct", "direct light with shadow maps"}, make_direct_engine},
+        {{"reference", "path tracing over the same surfels: slow, and the truth"}, make_reference_engine},
     }};
     return all;
 }

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include "gi/post/accumulate.h"
+#include "gi/post/tone_map.h"
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
@@ -210,13 +211,23 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
 
 /// Average and tone map.
 Result<void> Pipeline::State::finish(const FrameRequest& request) {
-    const auto pixels = request.size.width * request.size.height;
+    const uint32_t pixels = request.size.width * request.size.height;
     ++accumulated;
     averaged = request.accumulate;
+    times.begin("tone map");
     if (averaged) {
         LUCARNE_TRY(device.reserve(mean, pixels * sizeof(glm::vec4), "the picture's average"));
         LUCARNE_TRY(gi::accumulate(device, sample, pixels, accumulated, mean));
     }
+    const gi::Buffer& radiance = averaged ? mean : sample;
+    exposure_ev = 0;
+    if (scene.exposure_ev) {
+        exposure_ev = *scene.exposure_ev;
+    } else {
+        LUCARNE_ASSIGN(exposure_ev, gi::automatic_exposure(device, radiance, pixels));
+    }
+    LUCARNE_TRY(gi::tone_map(device, radiance, pixels, scene.tone_map, exposure_ev, picture));
+    times.end();
     return {};
 }
 

@@ -47,8 +47,7 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
 class ReferenceEngine final : public Engine {
  public:
     const EngineInfo& info() const override {
-        static const EngineInfo info{"reference",
-                                     "path tracing over the same surfels (Embree): slow, and the truth"};
+        static const EngineInfo info{"reference", "path tracing over the same surfels: slow, and the truth"};
         return info;
     }
 

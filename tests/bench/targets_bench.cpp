@@ -1,0 +1,158 @@
+// Every figure of the project's targets for speed and memory, measured and printed beside its target. A
+// program and no test: nothing here fails because a machine is busy. `bench_targets [FOLDER]` puts its scans
+// into FOLDER (default: a temporary one, removed afterwards; it needs 4 GB).
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "gi/gbuffer/gbuffer.h"
+#include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
+#include "viewer/views.h"
+
+namespace lucarne {
+namespace {
+
+struct Usage {
+    double cpu_seconds = 0, peak_mebibytes = 0;
+};
+
+/// Runs `lucarne` with these arguments as a process of its own, so that its memory is its own.
+Result<Usage> run_lucarne(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), LUCARNE_BINARY);
+    std::vector<char*> argv;
+    for (auto& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child < 0) return failed("fork", "no new process");
+    if (child == 0) {
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    wait4(child, &status, 0, &used);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return failed("lucarne " + arguments[1], fmt::format("ended with status {}", status));
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
+}
+
+void row(const std::string& what, double value, const std::string& unit, double target) {
+    fmt::print("{:<68} {:>9.1f} {:<7} target {:>7.0f}  {}\n", what, value, unit, target,
+               value <= target ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+Result<void> bench_conversion(const std::filesystem::path& folder) {
+    const std::string scan = folder / "nave20m.las", cache = folder / "nave20m.luc";
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "20M", "--overwrite"}));
+    LUCARNE_ASSIGN(const Usage used, run_lucarne({"convert", scan, "-o", cache, "--normals", "none",
+                                                  "--memory", "1G", "--overwrite"}));
+    row("conversion of 20M points without normals, --memory 1G: CPU", used.cpu_seconds, "s", 26);
+    row("the same: peak resident memory", used.peak_mebibytes, "MiB", 1024);
+    std::filesystem::remove(scan);
+    std::filesystem::remove(cache);
+    return {};
+}
+
+Result<void> bench_normals(const std::filesystem::path& folder) {
+    const std::string scan = folder / "nave4m.las", cache = folder / "nave4m.luc";
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "4M", "--overwrite"}));
+    LUCARNE_ASSIGN(const Usage without,
+                   run_lucarne({"convert", scan, "-o", cache, "--normals", "none", "--overwrite"}));
+    LUCARNE_ASSIGN(const Usage with,
+                   run_lucarne({"convert", scan, "-o", cache, "--normals", "estimate", "--overwrite"}));
+    row("normals and areas of 4M points, CPU per million", (with.cpu_seconds - without.cpu_seconds) / 4, "s",
+        5);
+    std::filesystem::remove(scan);
+    return {};
+}
+
+/// One frame after another with the camera a little further each time, as a user sees them.
+Result<std::vector<double>> moving_frames(viewer::Pipeline& pipeline, viewer::FrameRequest request,
+                                          int frames, std::string_view pass) {
+    std::vector<double> times;
+    for (int i = 0; i < frames; ++i) {
+        request.camera.position.x += 0.01;
+        LUCARNE_ASSIGN(const viewer::FrameStats stats, pipeline.render(request));
+        double seconds = pass.empty() ? stats.seconds : 0;
+        for (const auto& entry : stats.passes)
+            if (entry.name == pass) seconds += entry.seconds;
+        times.push_back(1e3 * seconds);
+    }
+    return times;
+}
+
+Result<void> bench_frames(const std::filesystem::path& folder) {
+    const std::string scan = folder / "even.ply", cache = folder / "even.luc";
+    LUCARNE_TRY(run_lucarne(
+        {"generate", "nave", "-o", scan, "--points", "8M", "--even", "--normals", "--overwrite"}));
+    LUCARNE_TRY(run_lucarne({"convert", scan, "-o", cache, "--normals", "keep", "--overwrite"}));
+    std::filesystem::remove(scan);
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    LUCARNE_ASSIGN(const auto source, viewer::open_input(cache));
+    viewer::DrawingOptions options;
+    options.scene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
+    LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
+    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, source->header()));
+    viewer::FrameRequest request;
+    request.wait = true;
+    LUCARNE_ASSIGN(request.camera, viewer::find_camera(scene, ""));
+    LUCARNE_ASSIGN(auto pipeline, viewer::open_pipeline(*device, source, options, drawing, scene));
+
+    request.size = {512, 512};
+    LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // shaders, first loads
+    LUCARNE_ASSIGN(const auto interactive, moving_frames(*pipeline, request, 9, ""));
+    row("512x512, preset interactive, one bounce: a frame in all", median(interactive), "ms", 600);
+
+    LUCARNE_TRY(pipeline->set_engine("direct"));
+    pipeline->set_budgets(
+        {.view = 5'000'000, .light_view = 100'000, .light = 100'000, .pixel_spacing = 1e-3});
+    request.size = {1280, 720};
+    LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
+    LUCARNE_ASSIGN(const auto gbuffer, moving_frames(*pipeline, request, 9, "G-buffer"));
+    LUCARNE_ASSIGN(const viewer::FrameStats stats, pipeline->render(request));
+    row(fmt::format("{:.2f}M surfels into a 1280x720 G-buffer",
+                    1e-6 * static_cast<double>(stats.view_points)),
+        median(gbuffer), "ms", 100);
+    std::filesystem::remove(cache);
+    return {};
+}
+
+Result<void> bench(const std::filesystem::path& folder) {
+    fmt::print("{} hardware threads\n", std::thread::hardware_concurrency());
+    LUCARNE_TRY(bench_frames(folder));
+    LUCARNE_TRY(bench_normals(folder));
+    return bench_conversion(folder);
+}
+
+}  // namespace
+}  // namespace lucarne
+
+int main(int argc, char** argv) {
+    std::string name = (std::filesystem::temp_directory_path() / "lucarne-bench-XXXXXX").string();
+    const bool own = argc < 2;
+    if (own && !mkdtemp(name.data())) return 1;
+    const std::filesystem::path folder = own ? name : argv[1];
+    const auto done = lucarne::bench(folder);
+    if (own) std::filesystem::remove_all(folder);
+    if (!done) fmt::print(stderr, "bench_targets: {}\n", done.error().line());
+    return done ? 0 : 1;
+}

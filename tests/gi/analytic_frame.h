@@ -1,0 +1,164 @@
+// Surfels built by hand, brought onto a device through the same pool, cut and G-buffer as a scan's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "gi/engine.h"
+#include "gi/registry.h"
+#include "gi/shared/surfel_code.h"
+#include "octree/source.h"
+
+namespace lucarne::gi::scenes {
+
+/// One octree node with all surfels of a scene, which share one area. Classification carries the material.
+class OneNode final : public octree::NodeSource {
+ public:
+    explicit OneNode(const std::vector<Surfel>& surfels) {
+        auto& schema = header_.schema;
+        schema.position = io::PositionType::f64;
+        schema.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+        schema.add(std::string(io::names::color), io::ScalarType::u16, 3);
+        schema.add(std::string(io::names::classification), io::ScalarType::u8);
+        glm::vec3 least(1e30f), most(-1e30f);
+        for (const Surfel& s : surfels) {
+            least = glm::min(least, s.position);
+            most = glm::max(most, s.position);
+        }
+        if (surfels.empty()) least = most = glm::vec3(0.0f);
+        header_.min = least;
+        header_.max = most;
+        const glm::vec3 extent = most - least;
+        header_.root = {glm::dvec3(least) - 0.001, std::max({extent.x, extent.y, extent.z}) + 0.002};
+        header_.points = surfels.size();
+        if (surfels.empty()) return;
+        octree::NodeInfo node;
+        node.count = static_cast<uint32_t>(surfels.size());
+        node.subtree_count = node.count;
+        // No share of its own is stored, so that the floor decides: an even pattern.
+        node.area_floor.fill(surfels[0].area);
+        nodes_.push_back(node);
+        data_.count = node.count;
+        for (const Surfel& s : surfels) append(s);
+    }
+
+    const octree::SourceHeader& header() const override { return header_; }
+    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    Result<octree::NodeData> load(uint32_t) const override { return data_; }
+
+ private:
+    void append(const Surfel& s) {
+        const size_t at = data_.records.size();
+        data_.records.resize(at + header_.schema.stride);
+        std::byte* record = data_.records.data() + at;
+        for (int i = 0; i < 3; ++i) {
+            io::store<double>(record + 8 * i, s.position[i]);
+            io::store<float>(record + 24 + 4 * i, s.normal[i]);
+            io::store<uint16_t>(record + 36 + 2 * i,
+                                static_cast<uint16_t>(std::lround(65535 * linear_to_srgb(s.albedo[i]))));
+        }
+        io::store<uint8_t>(record + 42, static_cast<uint8_t>(s.material));
+    }
+
+    octree::SourceHeader header_;
+    std::vector<octree::NodeInfo> nodes_;
+    octree::NodeData data_;
+};
+
+struct AnalyticScene {
+    std::vector<Surfel> surfels;
+    std::vector<SpotLight> lights;
+    std::vector<Material> materials;  ///< [0] is the default
+    CameraView camera;
+    EngineSettings settings;
+};
+
+/// A square picture seen from `eye` toward `target`, `tangent` of half its field.
+inline CameraView look(const glm::vec3& eye, const glm::vec3& target, float tangent, uint32_t size) {
+    const glm::vec3 forward = glm::normalize(target - eye);
+    const glm::vec3 hint = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, hint));
+    const glm::vec3 up = glm::cross(right, forward);
+    return {glm::vec4(eye, 1e-3f),
+            glm::vec4(forward, 0),
+            glm::vec4(right * tangent, 0),
+            glm::vec4(up * tangent, 0),
+            size,
+            size,
+            0,
+            0};
+}
+
+inline SpotLight spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
+                      float intensity) {
+    return {glm::vec4(position, std::cos(half_angle)),
+            glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
+            glm::vec4(intensity, intensity, intensity, 0)};
+}
+
+inline Material material(float diffuse, float specular, float exponent, float emission) {
+    return {glm::vec4(diffuse, diffuse, diffuse, specular),
+            glm::vec4(emission, emission, emission, exponent)};
+}
+
+struct Rendered {
+    std::vector<glm::vec4> radiance;
+    std::vector<GBufferTexel> texels;
+    std::vector<std::pair<std::string, double>> stats;
+};
+
+/// Renders a scene with an engine as the viewer would: every cut is the whole scene.
+inline Result<Rendered> render(Device& device, std::string_view engine_name, const AnalyticScene& scene,
+                               uint64_t index = 0) {
+    const OneNode source(scene.surfels);
+    Scene assignments;
+    assignments.materials.resize(std::max<size_t>(scene.materials.size(), 1));
+    for (size_t i = 1; i < assignments.materials.size(); ++i)
+        assignments.materials[i].classification = static_cast<int>(i);
+    LUCARNE_ASSIGN(SurfelPool pool, SurfelPool::create(device, static_cast<uint32_t>(scene.surfels.size())));
+    std::vector<CutEntry> entries;
+    if (!source.nodes().empty()) {
+        LUCARNE_ASSIGN(const auto data, source.load(0));
+        LUCARNE_ASSIGN(const bool fits,
+                       pool.load(0, pack_surfels(source.header(), source.nodes()[0], data, assignments)));
+        EXPECT_TRUE(fits);
+        entries.push_back({0, source.nodes()[0].count});
+    }
+    DeviceCut cut;
+    LUCARNE_TRY(pool.make_cut(device, source, entries, glm::dvec3(0.0), cut));
+    GBuffer gbuffer;
+    LUCARNE_TRY(rasterize(device, cut, scene.camera, gbuffer));
+    const size_t pixels = size_t{scene.camera.width} * scene.camera.height;
+    LUCARNE_ASSIGN(Buffer radiance, device.buffer(pixels * sizeof(glm::vec4), "radiance"));
+    radiance.clear(0x7fc00000u);  // NaN: whatever the engine leaves out shows
+    PassTimes times(device);
+    const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(scene.lights.size(), &cut), &cut};
+    const std::vector<Material> materials =
+        scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
+    Frame frame{device,          pool,           cuts,  scene.camera, gbuffer, scene.lights, materials,
+                glm::vec3(0.0f), scene.settings, index, radiance,     times};
+    LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
+    LUCARNE_TRY(engine->prepare(frame));
+    LUCARNE_TRY(engine->render(frame));
+    return Rendered{radiance.download_all<glm::vec4>(pixels),
+                    gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats()};
+}
+
+/// The point that a texel shows.
+inline glm::vec3 position_of(const CameraView& camera, const std::vector<GBufferTexel>& texels,
+                             size_t pixel) {
+    const float x =
+        2 * (static_cast<float>(pixel % camera.width) + .5f) / static_cast<float>(camera.width) - 1;
+    const float y =
+        2 * (static_cast<float>(pixel / camera.width) + .5f) / static_cast<float>(camera.height) - 1;
+    const glm::vec3 ray = glm::vec3(camera.forward) + glm::vec3(camera.right) * x - glm::vec3(camera.up) * y;
+    return glm::vec3(camera.origin) + texels[pixel].depth * ray;
+}
+
+}  // namespace lucarne::gi::scenes

@@ -1,0 +1,237 @@
+// Scenes whose light is known in closed form, and every engine held against them: one table for all.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "gi/compare/metrics.h"
+#include "tests/gi/analytic_frame.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi {
+namespace {
+
+using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
+
+constexpr float kPi = 3.14159265f;
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
+
+/// What an engine claims to compute, beyond direct light: the tests that apply to it.
+struct Claims {
+    const char* engine;
+    bool one_bounce;        ///< light of spots that one surface sends to another
+    bool emission_bounces;  ///< light of emitting surfaces likewise, any number of times
+};
+constexpr Claims kClaims[] = {{"direct", false, false}, {"vpl", true, false}, {"reference", true, true}};
+
+class Engines : public testing::TestWithParam<Claims> {
+ protected:
+    static void SetUpTestSuite() {
+        auto made = Device::headless();
+        ASSERT_TRUE(made) << made.error().line();
+        device_ = std::move(*made);
+    }
+    static void TearDownTestSuite() { device_.reset(); }
+
+    static scenes::Rendered render(const AnalyticScene& scene) {
+        auto rendered = scenes::render(*device_, GetParam().engine, scene);
+        EXPECT_TRUE(rendered) << rendered.error().line();
+        if (!rendered) return {};
+        for (const glm::vec4& pixel : rendered->radiance)
+            EXPECT_TRUE(std::isfinite(pixel.x + pixel.y + pixel.z)) << "a radiance that is not finite";
+        return std::move(*rendered);
+    }
+
+    static std::unique_ptr<Device> device_;
+};
+std::unique_ptr<Device> Engines::device_;
+
+AnalyticScene floor_under_a_spot() {
+    AnalyticScene scene;
+    scenes::add_rectangle(scene.surfels, kO, 2.0f * kX, 2.0f * kY, 160, glm::vec3(0.5f));
+    scene.lights = {spot(glm::vec3(0.7f, 0.9f, 2), glm::vec3(1, 1, 0), 0.6f, 0.5f, 10)};
+    scene.camera = look(glm::vec3(1, 1, 3), glm::vec3(1, 1, 0), 0.25f, 96);
+    scene.settings.only_bounce = 0;
+    return scene;
+}
+
+/// kd/pi I cos / d^2: the reflected light of a spot's bright centre at a point of the floor.
+float lit_floor(const SpotLight& light, const glm::vec3& point) {
+    const glm::vec3 to_light = glm::vec3(light.position) - point;
+    const float d2 = glm::dot(to_light, to_light);
+    return 0.5f / kPi * light.intensity.x * to_light.z / std::sqrt(d2) / d2;
+}
+
+TEST_P(Engines, SpotOnAFloorGivesTheIrradianceOfItsIntensity) {
+    const AnalyticScene scene = floor_under_a_spot();
+    const auto rendered = render(scene);
+    double sum = 0, truth = 0;
+    for (size_t i = 0; i < rendered.radiance.size(); ++i) {
+        sum += rendered.radiance[i].x;
+        truth += lit_floor(scene.lights[0], scenes::position_of(scene.camera, rendered.texels, i));
+    }
+    EXPECT_NEAR(sum / truth, 1, 0.01);
+}
+
+TEST_P(Engines, SheetBetweenLightAndFloorCastsItsShadowAndNoMore) {
+    AnalyticScene scene = floor_under_a_spot();
+    const SpotLight light = scene.lights[0];
+    const glm::vec3 above(0.7f, 0.9f, 1.6f);
+    scenes::add_rectangle(scene.surfels, above - glm::vec3(.05f, .05f, 0), 0.1f * kX, 0.1f * kY, 8,
+                          glm::vec3(0.5f));
+    const auto rendered = render(scene);
+    size_t shaded = 0, lit = 0;
+    for (size_t i = 0; i < rendered.radiance.size(); ++i) {
+        const glm::vec3 p = scenes::position_of(scene.camera, rendered.texels, i);
+        if (p.z > 0.1f) continue;
+        // Where the ray to the light passes the sheet's plane, from its centre; the disc rim is .02 wide.
+        const glm::vec3 to_light = glm::vec3(light.position) - p;
+        const glm::vec3 at = p + to_light * ((above.z - p.z) / to_light.z) - above;
+        const float away = std::max(std::abs(at.x), std::abs(at.y));
+        if (away < 0.035f) {
+            ++shaded;
+            EXPECT_EQ(rendered.radiance[i].x, 0) << i;
+        } else if (away > 0.085f) {
+            ++lit;
+            EXPECT_NEAR(rendered.radiance[i].x / lit_floor(light, p), 1, 0.02) << i;
+        }
+    }
+    EXPECT_GT(shaded, 50u);
+    EXPECT_GT(lit, 500u);
+}
+
+TEST_P(Engines, SealedDarkRoomStaysBlack) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 60, glm::vec3(0.9f));
+    scene.lights = {spot(glm::vec3(1, 1, 4), glm::vec3(1), 0.9f, 0.8f, 1e4f)};
+    scene.camera = look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 64);
+    scene.settings.samples = 16;
+    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
+}
+
+TEST_P(Engines, EmissionIsSeenAsItIs) {
+    AnalyticScene scene = floor_under_a_spot();
+    scene.lights.clear();
+    scene.materials = {material(1, 0, 1, 0.75f)};
+    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_NEAR(pixel.x, 0.75f, 1e-4f);
+}
+
+/// A wall x = 0 that a spot lights, and a floor z = 0 that only the wall lights.
+AnalyticScene lit_corner() {
+    AnalyticScene scene;
+    scenes::add_rectangle(scene.surfels, kO, kY, kZ, 100, glm::vec3(0.6f));
+    scenes::add_rectangle(scene.surfels, kO, kX, kY, 100, glm::vec3(0.5f));
+    scene.lights = {spot(glm::vec3(1.5f, .5f, .9f), glm::vec3(0, .5f, .6f), 0.2f, 0.2f, 20)};
+    scene.camera = look(glm::vec3(0.5f, 0.5f, 2), glm::vec3(0.5f, 0.5f, 0), 0.18f, 48);
+    scene.settings.only_bounce = 1;
+    scene.settings.vpls = 1024;
+    scene.settings.interleave = 1;
+    scene.settings.atlas = 2048;
+    scene.settings.samples = 256;
+    return scene;
+}
+
+/// Radiance of the floor at a point by quadrature over the wall.
+double floor_light(const AnalyticScene& scene, const glm::vec3& point) {
+    const SpotLight& light = scene.lights[0];
+    const glm::vec3 place(light.position), axis(light.direction);
+    double irradiance = 0;
+    for (const Surfel& s : scene.surfels) {
+        if (s.normal.x < 0.5f) continue;
+        const glm::vec3 to_light = place - s.position, to_point = point - s.position;
+        const double l2 = glm::dot(to_light, to_light), r2 = glm::dot(to_point, to_point);
+        if (-glm::dot(axis, to_light) / std::sqrt(l2) < light.position.w) continue;
+        const double incident = light.intensity.x * to_light.x / std::sqrt(l2) / l2;
+        irradiance += 0.6 / kPi * incident * to_point.x * -to_point.z / (r2 * r2) * s.area;
+    }
+    return 0.5 / kPi * irradiance;
+}
+
+TEST_P(Engines, OneBounceFromALitWallMatchesQuadrature) {
+    const AnalyticScene scene = lit_corner();
+    const auto rendered = render(scene);
+    double sum = 0, truth = 0;
+    for (size_t i = 0; i < rendered.radiance.size(); ++i) {
+        sum += rendered.radiance[i].x;
+        truth += floor_light(scene, scenes::position_of(scene.camera, rendered.texels, i));
+    }
+    if (GetParam().one_bounce)
+        EXPECT_NEAR(sum / truth, 1, 0.03);
+    else
+        EXPECT_EQ(sum, 0);
+}
+
+TEST_P(Engines, BouncesOneByOneAddUp) {
+    AnalyticScene scene = lit_corner();
+    scene.camera = look(glm::vec3(1.2f, 0.5f, 1.2f), glm::vec3(0, 0.5f, 0.2f), 0.6f, 48);
+    const auto mean = [&](int32_t only) {
+        scene.settings.only_bounce = only;
+        return mean_luminance(render(scene).radiance);
+    };
+    const double both = mean(-1), first = mean(0), second = mean(1);
+    EXPECT_GT(first, 0);
+    EXPECT_NEAR(both, first + second, 1e-4 * both);
+}
+
+TEST_P(Engines, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
+    if (!GetParam().emission_bounces) GTEST_SKIP() << "emitting surfaces light nothing else in this engine";
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 60, glm::vec3(0.5f));
+    scene.materials = {material(1, 0, 1, 0.5f)};
+    scene.camera = look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 48);
+    scene.settings.samples = 64;
+    for (const uint32_t bounces : {0u, 1u, 3u}) {
+        scene.settings.bounces = bounces;
+        EXPECT_NEAR(mean_luminance(render(scene).radiance), 1 - std::pow(0.5, bounces + 1), 0.003) << bounces;
+    }
+}
+
+TEST_P(Engines, NothingToSeeAndNothingToLightWithIsBlack) {
+    AnalyticScene dark = floor_under_a_spot();
+    dark.lights.clear();
+    dark.settings.only_bounce = -1;
+    for (const glm::vec4& pixel : render(dark).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
+    AnalyticScene empty = floor_under_a_spot();
+    empty.surfels.clear();
+    empty.settings.only_bounce = -1;
+    for (const glm::vec4& pixel : render(empty).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
+}
+
+TEST_P(Engines, LightOnASurfaceOrInsideAWallGivesFinitePictures) {
+    for (const glm::vec3& place : {glm::vec3(1, 1, 0), glm::vec3(1, 1, -1e-4f), glm::vec3(1, 1, 1e-4f)}) {
+        AnalyticScene scene = floor_under_a_spot();
+        scene.lights = {spot(place, place + kZ, 1.2f, 1.0f, 10), spot(place, place - kZ, 1.2f, 1.0f, 10)};
+        scene.settings.only_bounce = -1;
+        scene.settings.samples = 4;
+        render(scene);
+    }
+}
+
+TEST_P(Engines, SamePicturesEveryRun) {
+    AnalyticScene scene = lit_corner();
+    scene.settings.only_bounce = -1;
+    scene.settings.vpls = 64;
+    scene.settings.interleave = 2;
+    scene.settings.samples = 4;
+    const auto first = render(scene), second = render(scene);
+    EXPECT_EQ(first.radiance, second.radiance);
+}
+
+std::vector<Claims> registered() {
+    std::vector<Claims> found;
+    for (const auto& entry : engines())
+        for (const Claims& claims : kClaims)
+            if (entry.info.name == claims.engine) found.push_back(claims);
+    return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Engines, testing::ValuesIn(registered()),
+                         [](const auto& tested) { return std::string(tested.param.engine); });
+
+TEST(EngineTable, EveryEngineIsTested) {
+    EXPECT_EQ(registered().size(), engines().size());
+}
+
+}  // namespace
+}  // namespace lucarne::gi

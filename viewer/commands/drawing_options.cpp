@@ -1,0 +1,128 @@
+#include "viewer/commands/drawing_options.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "gi/registry.h"
+#include "io/core/log.h"
+
+namespace lucarne::viewer {
+namespace {
+
+template <class T>
+void override_with(T& value, const auto& given) {
+    if (given) value = static_cast<T>(*given);
+}
+
+std::string engine_names() {
+    std::string names;
+    for (const auto& engine : gi::engines())
+        names += fmt::format("\n  {:<11}{}", engine.info.name, engine.info.description);
+    return names;
+}
+
+std::string preset_names() {
+    std::string names;
+    for (const auto& preset : presets())
+        names += fmt::format("\n  {:<12}{}", preset.name, preset.description);
+    return names;
+}
+
+}  // namespace
+
+void add_drawing_options(CLI::App& command, DrawingOptions& options) {
+    command.add_option("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
+        ->type_name("FILE");
+    command.add_option("--engine", options.engine, "How light is computed, see below")
+        ->capture_default_str()
+        ->type_name("NAME");
+    command.add_option("--preset", options.preset, "Effort, see below")
+        ->capture_default_str()
+        ->type_name("NAME");
+    command.add_option("--size", options.size, "Of the picture in pixels")
+        ->capture_default_str()
+        ->type_name("WxH");
+    command.add_option("--bounces", options.bounces, "Indirect bounces; 0: direct light alone")
+        ->check(CLI::Range(0, 64))
+        ->type_name("N");
+    command.add_option("--only-bounce", options.only_bounce, "Just this bounce; 0: direct light")
+        ->check(CLI::Range(0, 64))
+        ->type_name("K");
+    command.add_option("--vpls", options.vpls, "Virtual point lights")
+        ->check(CLI::Range(1, 65536))
+        ->type_name("N");
+    command.add_option("--interleave", options.interleave, "Pixels along a side that share out the lights")
+        ->check(CLI::IsMember({1, 2, 4}))
+        ->type_name("N");
+    command.add_option("--atlas", options.atlas, "Texels along a side of the shadow maps' atlas")
+        ->check(CLI::IsMember({256, 512, 1024, 2048, 4096, 8192}))
+        ->type_name("N");
+    command.add_option("--points", options.points, "Most points that a cut takes")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+        ->type_name("N");
+    command.add_option("--samples", options.samples, "Paths a pixel and frame (reference)")
+        ->check(CLI::Range(1, 1 << 20))
+        ->type_name("N");
+    command.add_option("--seed", options.seed, "Of all random numbers")->type_name("N");
+    command.add_option("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->type_name("EV");
+    command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
+}
+
+Result<Drawing> resolve(const DrawingOptions& options) {
+    Drawing drawing;
+    LUCARNE_ASSIGN(drawing.preset, find_preset(options.preset));
+    LUCARNE_ASSIGN(drawing.size, parse_size("--size", options.size));
+    LUCARNE_TRY(gi::make_engine(options.engine));
+    gi::EngineSettings& engine = drawing.preset.engine;
+    override_with(engine.bounces, options.bounces);
+    override_with(engine.only_bounce, options.only_bounce);
+    override_with(engine.vpls, options.vpls);
+    override_with(engine.interleave, options.interleave);
+    override_with(engine.atlas, options.atlas);
+    override_with(engine.samples, options.samples);
+    override_with(engine.seed, options.seed);
+    if (options.points) drawing.preset.budgets.cap(*options.points);
+    return drawing;
+}
+
+Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::SourceHeader& header) {
+    gi::Scene scene = gi::default_scene(header.min, header.max);
+    if (!options.scene.empty()) {
+        const auto cameras = std::move(scene.cameras);
+        LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
+        if (scene.cameras.empty()) scene.cameras = cameras;
+    }
+    if (options.exposure) scene.exposure_ev = options.exposure;
+    return scene;
+}
+
+Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name) {
+    std::string known;
+    for (const auto& camera : scene.cameras) {
+        if (name.empty() || camera.name == name) return camera;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", camera.name);
+    }
+    return bad_arguments("--camera", fmt::format("the scene has no camera '{}'", name),
+                         "choose one of: " + known);
+}
+
+Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
+                                                std::shared_ptr<const octree::NodeSource> source,
+                                                const DrawingOptions& options, const Drawing& drawing,
+                                                gi::Scene scene) {
+    const auto& schema = source->header().schema;
+    if (!schema.find(io::names::normal) && !schema.find(io::names::normal_oct))
+        log::warn(
+            "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
+            "convert with --normals estimate for correct light");
+    LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), {}));
+    LUCARNE_TRY(pipeline->set_engine(options.engine));
+    pipeline->set_settings(drawing.preset.engine);
+    pipeline->set_budgets(drawing.preset.budgets);
+    pipeline->set_scene(std::move(scene));
+    return pipeline;
+}
+
+}  // namespace lucarne::viewer

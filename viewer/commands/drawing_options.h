@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gi/scene/scene.h"
+#include "io/core/options.h"
+#include "octree/source.h"
+#include "viewer/pipeline.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lucarne::viewer {
+
+/// What `render`, `view` and `fly` ask for alike: how the picture is lit, how large it is and what it may
+/// take.
+struct DrawingOptions {
+    std::string scene;  ///< path; empty: gi::default_scene
+    std::string engine{kDefaultEngine};
+    std::string preset{kDefaultPreset};
+    std::string size = "1280x720";
+    // Single settings over the preset's:
+    std::optional<uint32_t> bounces, vpls, interleave, atlas, samples;
+    std::optional<int32_t> only_bounce;
+    std::optional<uint64_t> points, seed;
+    std::optional<double> exposure;
+};
+
+/// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
+/// --samples
+/// --seed --exposure. `options` outlives the command.
+void add_drawing_options(CLI::App& command, DrawingOptions& options);
+
+/// The same, looked up and checked.
+struct Drawing {
+    Preset preset;  ///< with the single settings in place
+    ImageSize size;
+};
+/// Errors (ErrorKind::arguments): an unknown preset or engine, a size that is none.
+Result<Drawing> resolve(const DrawingOptions& options);
+
+/// The scene file, or the default scene for this cloud; the first camera is there in any case.
+Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::SourceHeader& header);
+
+/// Errors (ErrorKind::arguments): no camera of that name; the message lists those there are. Empty: the
+/// first.
+Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name);
+
+/// Opens a pipeline on `source` with all of it set. Warns where the cloud has no normals.
+Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
+                                                std::shared_ptr<const octree::NodeSource> source,
+                                                const DrawingOptions& options, const Drawing& drawing,
+                                                gi::Scene scene);
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "gi/compare/metrics.h"
+#include "io/core/file.h"
+#include "io/core/log.h"
+#include "io/image/image.h"
+#include "viewer/commands/commands.h"
+#include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct RenderOptions {
+    std::string input, output, camera, json;
+    DrawingOptions drawing;
+    uint32_t frames = 1;
+    double seconds = 0;
+    bool overwrite = false;
+};
+
+enum class PictureKind { png, exr };
+
+Result<PictureKind> picture_kind(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (extension == ".png") return PictureKind::png;
+    if (extension == ".exr") return PictureKind::exr;
+    return bad_arguments("--output", fmt::format("'{}' is no kind of picture", path), "name it .png or .exr");
+}
+
+/// What came out of all frames together.
+struct Rendered {
+    FrameStats last;
+    uint32_t frames = 0;
+    double seconds = 0;
+    double variance = 0;  ///< of the mean luminance, where the engine knows its noise
+};
+
+double engine_stat(const FrameStats& stats, std::string_view name) {
+    for (const auto& [key, value] : stats.engine)
+        if (key == name) return value;
+    return 0;
+}
+
+/// At least `frames` frames and at least `seconds`, averaged.
+Result<Rendered> render_frames(Pipeline& pipeline, const FrameRequest& request,
+                               const RenderOptions& options) {
+    Rendered rendered;
+    while (rendered.frames < options.frames || rendered.seconds < options.seconds) {
+        LUCARNE_ASSIGN(rendered.last, pipeline.render(request));
+        const double error = engine_stat(rendered.last, "standard error");
+        rendered.variance += error * error;
+        rendered.seconds += rendered.last.seconds;
+        ++rendered.frames;
+    }
+    rendered.variance /= static_cast<double>(rendered.frames) * rendered.frames;
+    return rendered;
+}
+
+nlohmann::json report(const Rendered& rendered, const Pipeline& pipeline, const Drawing& drawing,
+                      double mean) {
+    const FrameStats& stats = rendered.last;
+    nlohmann::json passes = nlohmann::json::array(), engine = nlohmann::json::object();
+    for (const auto& pass : stats.passes) passes.push_back({{"name", pass.name}, {"seconds", pass.seconds}});
+    for (const auto& [name, value] : stats.engine) engine[name] = value;
+    return {{"engine", std::string(pipeline.engine().name)},
+            {"preset", std::string(drawing.preset.name)},
+            {"size", {drawing.size.width, drawing.size.height}},
+            {"frames", rendered.frames},
+            {"seconds", rendered.seconds},
+            {"last_frame_seconds", stats.seconds},
+            {"passes", passes},
+            {"points",
+             {{"view", stats.view_points},
+              {"light_view", stats.light_view_points},
+              {"light", stats.light_points}}},
+            {"cut_complete", stats.complete()},
+            {"bytes_loaded", stats.bytes_loaded},
+            {"exposure_ev", pipeline.exposure_ev()},
+            {"mean_luminance", mean},
+            {"standard_error", std::sqrt(rendered.variance)},
+            {"statistics", engine}};
+}
+
+Result<void> write_picture(const RenderOptions& options, PictureKind kind, const Pipeline& pipeline,
+                           io::Image radiance) {
+    if (kind == PictureKind::exr) return io::write_exr(options.output, radiance, options.overwrite);
+    io::Image8 picture{radiance.width, radiance.height, {}};
+    picture.bytes.reserve(radiance.pixels.size() * 3);
+    for (const uint32_t rgba : pipeline.picture().download_all<uint32_t>(radiance.pixels.size()))
+        for (const int shift : {0, 8, 16}) picture.bytes.push_back(static_cast<uint8_t>(rgba >> shift));
+    return io::write_png(options.output, picture, options.overwrite);
+}
+
+Result<void> render(const RenderOptions& options) {
+    // Everything that can be wrong with the arguments, before any long work.
+    LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
+    LUCARNE_TRY(check_output(options.output, options.overwrite));
+    if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, options.overwrite));
+    LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    LUCARNE_ASSIGN(const auto source, open_input(options.input));
+    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
+    FrameRequest request;
+    LUCARNE_ASSIGN(request.camera, find_camera(scene, options.camera));
+    request.size = drawing.size;
+    request.wait = true;
+    request.accumulate = options.frames > 1 || options.seconds > 0;
+
+    LUCARNE_ASSIGN(const auto pipeline,
+                   open_pipeline(*device, source, options.drawing, drawing, std::move(scene)));
+    LUCARNE_ASSIGN(const Rendered rendered, render_frames(*pipeline, request, options));
+    const size_t pixels = size_t{drawing.size.width} * drawing.size.height;
+    io::Image picture{drawing.size.width, drawing.size.height,
+                      pipeline->radiance().download_all<glm::vec4>(pixels)};
+    const double mean = gi::mean_luminance(picture.pixels);
+    LUCARNE_TRY(write_picture(options, kind, *pipeline, std::move(picture)));
+    if (!options.json.empty()) {
+        LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
+        LUCARNE_TRY(file.append(report(rendered, *pipeline, drawing, mean).dump(2) + "\n"));
+        LUCARNE_TRY(file.commit());
+    }
+    log::info("{}: {}x{}, {}, preset {}, {} frame{} in {:.2f} s{}", options.output, drawing.size.width,
+              drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,
+              rendered.frames == 1 ? "" : "s", rendered.seconds,
+              rendered.last.complete() < 1
+                  ? fmt::format("; {:.0f} % of the cuts fit the device", 100 * rendered.last.complete())
+                  : "");
+    return {};
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<RenderOptions>();
+    auto* command = app.add_subcommand("render", "Render one picture without a window");
+    command->add_option("input", options->input, "A cache, or any scan file")->required()->type_name("INPUT");
+    command->add_option("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--camera", options->camera, "One of the scene's; the first when not given")
+        ->type_name("NAME");
+    add_drawing_options(*command, options->drawing);
+    command->add_option("--frames", options->frames, "How many to average")
+        ->check(CLI::Range(1, 1'000'000))
+        ->type_name("N");
+    command->add_option("--seconds", options->seconds, "How long to go on averaging")
+        ->check(CLI::Range(0.0, 1e6))
+        ->type_name("S");
+    command->add_option("--json", options->json, "Figures of the picture, machine-readable")
+        ->type_name("FILE");
+    command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
+    command->callback([options, &chosen] { chosen = [options] { return render(*options); }; });
+}
+
+}  // namespace lucarne::viewer
