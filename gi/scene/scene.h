@@ -53,7 +53,7 @@ Result<Scene> load_scene(const std::filesystem::path& path);
 Result<Scene> parse_scene(std::string_view text, const std::string& name);
 
 /// What is used without a scene file: a camera that sees the whole box (world units) and one spot beside it, bright
-/// enough for a mid-grey picture at exposure 0.
-Scene default_scene(const glm::dvec3& min, const glm::dvec3& max);
+/// enough for a mid-grey picture at exposure 0, which is fixed.
+Scene default_scene(const glm::dvec3& min, const glm::dvec3& max, double metres_per_unit = 1.0);
 
 }  // namespace lucarne::gi

@@ -9,10 +9,18 @@ namespace lucarne::io {
 namespace {
 
 constexpr double kTinyArea = 1e-10;      ///< m^2: quads below it are left out
+constexpr double kFlat = 1e-5;           ///< m: a quad that is less twisted counts as flat
 constexpr double kSmoothCosine = 0.766;  ///< cos 40 degrees
 
 double triangle_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::length(glm::cross(b - a, c - a)) / 2;
+}
+
+/// The distance between the diagonals of a quad: 0 for a flat one.
+double twist(const PatchQuad& q) {
+    const glm::dvec3 normal = glm::cross(q[2] - q[0], q[3] - q[1]);
+    const double length = glm::length(normal);
+    return length > 0 ? std::abs(dot(q[1] - q[0], normal)) / length : 0;
 }
 
 /// The direction of the air of a quad, not normalised: the cross product of its diagonals holds for triangles
@@ -42,6 +50,23 @@ glm::dvec3 PatchMesh::normal(size_t quad, double t, double s) const {
     return unit_or_up(bilinear(normals, quad, t, s));
 }
 
+void PatchBuilder::add_quad(const ShadedQuad& quad, PatchBand& band) {
+    const auto& c = quad.corners;
+    const double area = triangle_area(c[0], c[1], c[3]) + triangle_area(c[2], c[3], c[1]);
+    if (area < kTinyArea) return;
+    const double low = glm::length(c[1] - c[0]), high = glm::length(c[2] - c[3]);
+    const double height = 2 * area / (low + high);
+    mesh_.low_before.push_back(band.low);
+    mesh_.high_before.push_back(band.high);
+    band.low += height * low;
+    band.high += height * high;
+    ++band.quads;
+    for (int i = 0; i < 4; ++i) {
+        mesh_.corners.emplace_back(c[i]);
+        mesh_.normals.emplace_back(quad.normals[i]);
+    }
+}
+
 void PatchBuilder::add(Finish finish, std::span<const std::vector<ShadedQuad>> bands) {
     Patch patch;
     patch.first_band = static_cast<uint32_t>(mesh_.bands.size());
@@ -52,24 +77,17 @@ void PatchBuilder::add(Finish finish, std::span<const std::vector<ShadedQuad>> b
         band.first_quad = static_cast<uint32_t>(mesh_.quads());
         double width = 0;
         for (const ShadedQuad& quad : quads) {
-            const auto& c = quad.corners;
-            const double area = triangle_area(c[0], c[1], c[3]) + triangle_area(c[2], c[3], c[1]);
-            if (area < kTinyArea) continue;
-            const double low = glm::length(c[1] - c[0]), high = glm::length(c[2] - c[3]);
-            const double height = 2 * area / (low + high);
-            mesh_.low_before.push_back(band.low);
-            mesh_.high_before.push_back(band.high);
-            band.low += height * low;
-            band.high += height * high;
-            width += (low + high) / 2;
-            mesh_.finishes.push_back(finish);
-            for (int i = 0; i < 4; ++i) {
-                mesh_.corners.emplace_back(c[i]);
-                mesh_.normals.emplace_back(quad.normals[i]);
+            const auto& [c, n] = quad;
+            width += (glm::length(c[1] - c[0]) + glm::length(c[2] - c[3])) / 2;
+            if (twist(c) < kFlat) {
+                add_quad(quad, band);
+            } else {  // as two triangles, so that every point between the corners lies on the surface
+                add_quad({{c[0], c[1], c[3], c[3]}, {n[0], n[1], n[3], n[3]}}, band);
+                add_quad({{c[1], c[1], c[2], c[3]}, {n[1], n[1], n[2], n[3]}}, band);
             }
         }
-        band.quads = static_cast<uint32_t>(mesh_.quads()) - band.first_quad;
         if (band.quads == 0) continue;
+        mesh_.finishes.resize(mesh_.corners.size() / 4, finish);
         band.height_before = patch.height;
         band.height = band.area() / width;
         band.area_before = patch.area;
@@ -203,28 +221,38 @@ void PatchBuilder::box(Finish finish, const glm::dvec3& min, const glm::dvec3& m
 }
 
 void PatchBuilder::revolve(Finish finish, const glm::dvec3& foot, std::span<const glm::dvec2> profile,
-                           int segments) {
+                           int segments, double from, double to) {
     Grid surface;
+    surface.close_columns = to - from >= 2 * M_PI;
+    const int columns = surface.close_columns ? segments : segments + 1;
     for (const glm::dvec2& point : profile) {
         auto& row = surface.rows.emplace_back();
-        for (int i = 0; i < segments; ++i) {
-            const double angle = 2 * M_PI * i / segments;
+        for (int i = 0; i < columns; ++i) {
+            const double angle = from + (to - from) * i / segments;
             row.push_back(foot + glm::dvec3(point.x * std::cos(angle), point.x * std::sin(angle), point.y));
         }
     }
-    surface.close_columns = true;
     grid(finish, surface);
 }
 
 void PatchBuilder::sweep(Finish finish, std::span<const glm::dvec3> path, const glm::dvec3& side,
                          std::span<const glm::dvec2> section) {
+    glm::dvec2 middle(0);
+    for (const glm::dvec2& offset : section) middle += offset / static_cast<double>(section.size());
     Grid surface;
-    for (size_t i = 0; i < path.size(); ++i) {
+    const auto add_row = [&](size_t i,
+                             bool cap) {  // a cap closes an end: its corners meet in the section's middle
         const glm::dvec3 tangent = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
         const glm::dvec3 up = glm::normalize(glm::cross(tangent, side));
         auto& row = surface.rows.emplace_back();
-        for (const glm::dvec2& offset : section) row.push_back(path[i] + side * offset.x + up * offset.y);
-    }
+        for (const glm::dvec2& offset : section) {
+            const glm::dvec2 at = cap ? middle : offset;
+            row.push_back(path[i] + side * at.x + up * at.y);
+        }
+    };
+    add_row(0, true);
+    for (size_t i = 0; i < path.size(); ++i) add_row(i, false);
+    add_row(path.size() - 1, true);
     // side x up = side x (tangent x side) = tangent: a section that turns left in (side, up) turns left about
     // the tangent, and along it x along the path points outwards.
     grid(finish, surface);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -87,17 +88,20 @@ class PatchBuilder {
     static constexpr unsigned kAllFaces = 63, kNoBottom = 63 & ~16u;
     void box(Finish finish, const glm::dvec3& min, const glm::dvec3& max, unsigned faces = kAllFaces,
              Air air = Air::outside);
-    /// Turns a profile of (radius, height) about the vertical through `foot`; the air is on the right of its
-    /// direction, which is outside for a profile that goes up.
-    void revolve(Finish finish, const glm::dvec3& foot, std::span<const glm::dvec2> profile, int segments);
+    /// Turns a profile of (radius, height) about the vertical through `foot`, all the way or from one azimuth
+    /// to another (radians); the air is on the right of its direction: outside for a profile that goes up.
+    void revolve(Finish finish, const glm::dvec3& foot, std::span<const glm::dvec2> profile, int segments,
+                 double from = 0, double to = 2 * M_PI);
     /// Moves a section (offsets along `side` and along cross(tangent, side)) along a path; `side` is
-    /// horizontal-ish and constant. The air is outside of a section that turns left around its path.
+    /// horizontal-ish and constant. The air is outside of a section that turns left around its path; both
+    /// ends are closed.
     void sweep(Finish finish, std::span<const glm::dvec3> path, const glm::dvec3& side,
                std::span<const glm::dvec2> section);
 
     PatchMesh take() { return std::move(mesh_); }
 
  private:
+    void add_quad(const ShadedQuad& quad, PatchBand& band);
     PatchMesh mesh_;
 };
 

@@ -1,6 +1,6 @@
 // A terrestrial laser scanner: a mirror sweeps vertical lines while the head turns once.
 //
-// Each beam has a width. A second ray inside it tells whether it straddles an edge in depth; there, half of
+// Each beam has a width. A second ray inside it tells whether it straddles an edge in depth; there, most of
 // the beams report the mean range of their whole footprint: the mixed pixels that real phase scanners leave
 // behind edges. Beams are lost where little light comes back: on dark, far or grazing surfaces.
 #include <algorithm>
@@ -19,11 +19,11 @@ using glm::dvec3;
 
 constexpr uint64_t kPieceRays = 8192;
 constexpr double kLowest = -62 * M_PI / 180,
-                 kHighest = M_PI / 2;     ///< elevations: the tripod hides what is below
-constexpr double kBeamHalfAngle = .0003;  ///< radians; FARO and Z+F scanners of 2015-2020 state .0002-.0004
-constexpr double kEdgeDepth = .02;        ///< metres between two ranges in a beam that make an edge of it
+                 kHighest = M_PI / 2;                       ///< elevations: the tripod hides what is below
+constexpr double kExitRadius = .003, kDivergence = .00015;  ///< of the beam, to either side: metres, radians
+constexpr double kEdgeDepth = .02;  ///< metres between two ranges in a beam that make an edge of it
 constexpr int kFootprintRays = 6;
-constexpr double kMixedShare = .5;      ///< of the beams on an edge; the others report their centre
+constexpr double kMixedShare = .8;      ///< of the beams on an edge; the others report their centre
 constexpr double kReferenceRange = 15;  ///< metres: beyond it the signal falls with the square of the range
 constexpr double kLostBelow = .002, kKeptAbove = .02;  ///< signals between which a return may be lost
 constexpr double kAlwaysLost = .002;                   ///< share lost for no reason one can see
@@ -37,6 +37,24 @@ struct Sweep {
         const double step = std::sqrt(2 * M_PI * (kHighest - kLowest) / std::max(1.0, rays));
         return {static_cast<uint64_t>(std::max(1.0, std::round(2 * M_PI / step))),
                 static_cast<uint64_t>(std::max(1.0, std::round((kHighest - kLowest) / step)))};
+    }
+};
+
+/// The cone of one pulse.
+struct Beam {
+    dvec3 origin, direction, side, up;  ///< side and up are as long as the beam's half angle, in radians
+
+    Beam(const dvec3& from, const dvec3& towards, double range) : origin(from), direction(towards) {
+        const double half_angle = kExitRadius / std::max(range, kExitRadius) + kDivergence;
+        const dvec3 other = std::abs(direction.z) < .9 ? dvec3(0, 0, 1) : dvec3(1, 0, 0);
+        side = glm::normalize(cross(direction, other)) * half_angle;
+        up = cross(side, direction);
+    }
+    /// A direction inside it, uniform over its disc.
+    dvec3 inside(Random& random) const {
+        const double radius = std::sqrt(random.uniform()), angle = 2 * M_PI * random.uniform();
+        return glm::normalize(direction + side * (radius * std::cos(angle)) +
+                              up * (radius * std::sin(angle)));
     }
 };
 
@@ -95,21 +113,20 @@ class Scanner final : public PieceGenerator {
         const auto hit = geometry_->cast(origin, direction);
         if (!hit) return std::nullopt;
 
+        const dvec3 albedo = hit->albedo();
         const double facing = std::abs(dot(hit->normal, direction));
         const double signal =
-            (hit->albedo.x + hit->albedo.y + hit->albedo.z) / 3 * facing *
+            (albedo.x + albedo.y + albedo.z) / 3 * facing *
             std::min(1.0, kReferenceRange * kReferenceRange / (hit->distance * hit->distance));
         const double kept = std::clamp((signal - kLostBelow) / (kKeptAbove - kLostBelow), 0.0, 1.0);
         if (random.uniform() >= kept * (1 - kAlwaysLost)) return std::nullopt;
 
-        RecordPacker::Point point{{}, hit->normal, hit->albedo, signal, static_cast<uint16_t>(station + 1)};
+        RecordPacker::Point point{{}, hit->normal, albedo, signal, static_cast<uint16_t>(station + 1)};
         if (dot(hit->normal, direction) > 0) point.normal = -point.normal;
         double range = hit->distance;
-        const dvec3 side = glm::normalize(std::abs(direction.z) < .9 ? cross(direction, dvec3(0, 0, 1))
-                                                                     : cross(direction, dvec3(1, 0, 0)));
-        const dvec3 up = cross(side, direction);
-        if (straddles_edge(origin, direction, side, up, *hit, random) && random.uniform() < kMixedShare)
-            mix_footprint(origin, direction, side, up, random, range, point.albedo);
+        const Beam beam(origin, direction, range);
+        if (straddles_edge(beam, *hit, random) && random.uniform() < kMixedShare)
+            mix_footprint(beam, random, range, point.albedo);
         // Box and Muller 1958; 1 - u keeps the logarithm finite.
         range += setup_.noise * std::sqrt(-2 * std::log(1 - random.uniform())) *
                  std::cos(2 * M_PI * random.uniform());
@@ -117,34 +134,24 @@ class Scanner final : public PieceGenerator {
         return point;
     }
 
-    /// A direction inside the beam, uniform over its disc.
-    static dvec3 in_beam(const dvec3& direction, const dvec3& side, const dvec3& up, Random& random) {
-        const double radius = kBeamHalfAngle * std::sqrt(random.uniform()),
-                     angle = 2 * M_PI * random.uniform();
-        return glm::normalize(direction + side * (radius * std::cos(angle)) +
-                              up * (radius * std::sin(angle)));
-    }
-
-    bool straddles_edge(const dvec3& origin, const dvec3& direction, const dvec3& side, const dvec3& up,
-                        const SurfaceHit& hit, Random& random) const {
-        const dvec3 probe = in_beam(direction, side, up, random);
-        const auto other = geometry_->cast(origin, probe);
+    bool straddles_edge(const Beam& beam, const SurfaceHit& hit, Random& random) const {
+        const dvec3 probe = beam.inside(random);
+        const auto other = geometry_->cast(beam.origin, probe);
         if (!other) return false;  // nothing comes back from beyond: the centre's range stands
         // A slanted surface is no edge: compare with the range at which the probe meets the hit's own plane.
         const double slope = dot(hit.normal, probe);
         const double expected =
-            std::abs(slope) > 1e-3 ? dot(hit.position - origin, hit.normal) / slope : hit.distance;
+            std::abs(slope) > 1e-3 ? dot(hit.position - beam.origin, hit.normal) / slope : hit.distance;
         return std::abs(other->distance - expected) > kEdgeDepth &&
                std::abs(other->distance - hit.distance) > kEdgeDepth;
     }
 
-    void mix_footprint(const dvec3& origin, const dvec3& direction, const dvec3& side, const dvec3& up,
-                       Random& random, double& range, dvec3& albedo) const {
+    void mix_footprint(const Beam& beam, Random& random, double& range, dvec3& albedo) const {
         double count = 1;
         for (int i = 0; i < kFootprintRays; ++i)
-            if (const auto hit = geometry_->cast(origin, in_beam(direction, side, up, random))) {
+            if (const auto hit = geometry_->cast(beam.origin, beam.inside(random))) {
                 range += hit->distance;
-                albedo += hit->albedo;
+                albedo += hit->albedo();
                 count += 1;
             }
         range /= count;

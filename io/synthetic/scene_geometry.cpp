@@ -25,6 +25,11 @@ constexpr std::array kEntries = {
     Entry{"cornell", "the Cornell box, 5.5 m, open in front: a red and a green wall, two blocks",
           build_cornell},
     Entry{"furnace", "a closed cube of 2 m whose albedo is .5 everywhere", build_furnace},
+    Entry{"nave",
+          "a cathedral nave, 12 x 30 x 15 m: columns, rib vaults, open windows, tiles, coloured cloth",
+          build_nave},
+    Entry{"two-rooms", "two sealed rooms with an open door and a closed door between them", build_two_rooms},
+    Entry{"statue", "a smooth closed body on a plinth, seen from outside", build_statue},
 };
 
 /// A place in a quad by its corners' weights.
@@ -179,7 +184,13 @@ std::optional<SurfaceHit> SceneGeometry::cast(const dvec3& origin, const dvec3& 
     hit.distance = ray.ray.tfar;
     hit.position = origin + direction * hit.distance;
     hit.normal = mesh().normal(quad, ray.hit.u, ray.hit.v);
-    hit.albedo = albedo_at(mesh().finishes[quad], hit.position, hit.normal);
+    // At the rim of a tessellated body the interpolated normal may turn away although the face is seen from
+    // its front.
+    dvec3 face(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+    if (dot(face, hit.normal) < 0) face = -face;
+    const double away = dot(hit.normal, direction);
+    if (away > 0 && dot(face, direction) < 0) hit.normal = glm::normalize(hit.normal - direction * away);
+    hit.finish = mesh().finishes[quad];
     return hit;
 }
 
@@ -197,7 +208,7 @@ std::optional<SurfaceHit> SceneGeometry::closest(const dvec3& point, double radi
     for (size_t i = 0; i < 4; ++i)
         hit.normal += search.place.weights[i] * dvec3(mesh().normals[4 * search.quad + i]);
     hit.normal = glm::normalize(hit.normal);
-    hit.albedo = albedo_at(mesh().finishes[search.quad], hit.position, hit.normal);
+    hit.finish = mesh().finishes[search.quad];
     return hit;
 }
 

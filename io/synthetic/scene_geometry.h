@@ -18,7 +18,8 @@ struct SurfaceHit {
     double distance = 0;  ///< along the ray, or to the point asked about; metres
     glm::dvec3 position{0.0};
     glm::dvec3 normal{0.0};  ///< unit, towards the air
-    glm::dvec3 albedo{0.0};  ///< linear Rec. 709
+    Finish finish = Finish::white;
+    glm::dvec3 albedo() const { return albedo_at(finish, position, normal); }  ///< linear Rec. 709
 };
 
 /// The true surface of a virtual scan: what readings can be checked against. Thread-safe once made. The

@@ -1,0 +1,186 @@
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "gi/scene/scene.h"
+#include "io/core/json.h"
+
+namespace lucarne::gi {
+namespace {
+
+using glm::dvec3;
+
+// data/README.md states these limits.
+constexpr size_t kMostLights = 64, kMostMaterials = 255, kMostCameras = 1000;
+constexpr JsonRange kCoordinate{-1e9, 1e9}, kShare{0, 1}, kRadiance{0, 1e12}, kScale{0, 10};
+constexpr JsonRange kConeDegrees{.1, 170}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6};
+
+Result<SceneSpot> read_light(JsonObject light) {
+    SceneSpot spot;
+    LUCARNE_TRY(light.choice("type", {"spot"}));
+    LUCARNE_ASSIGN(spot.name, light.text("name", ""));
+    LUCARNE_ASSIGN(spot.position, light.vector("position", kCoordinate));
+    const bool by_direction = light.has("direction");
+    if (by_direction && light.has("target"))
+        return light.wrong("give a target or a direction, not both", "direction");
+    LUCARNE_ASSIGN(const dvec3 direction, light.vector("direction", kCoordinate, dvec3(0)));
+    spot.target = spot.position + direction;
+    if (!by_direction) {
+        LUCARNE_ASSIGN(spot.target, light.vector("target", kCoordinate));
+    }
+    if (spot.target == spot.position)
+        return light.wrong("the light points nowhere", by_direction ? "direction" : "target");
+    LUCARNE_ASSIGN(spot.angle, light.number("angle", kConeDegrees, 60));
+    spot.angle = glm::radians(spot.angle);
+    LUCARNE_ASSIGN(spot.softness, light.number("softness", kShare, .1));
+    LUCARNE_ASSIGN(spot.intensity, light.vector("intensity", kRadiance));
+    LUCARNE_TRY(light.finish());
+    return spot;
+}
+
+Result<SceneMaterial> read_material(JsonObject object) {
+    SceneMaterial material;
+    LUCARNE_ASSIGN(material.name, object.text("name", ""));
+    LUCARNE_ASSIGN(material.diffuse, object.vector("diffuse", kScale, dvec3(1)));
+    LUCARNE_ASSIGN(material.specular, object.number("specular", kShare, 0));
+    LUCARNE_ASSIGN(material.shininess, object.number("shininess", kShininess, 1));
+    LUCARNE_ASSIGN(material.emission, object.vector("emission", kRadiance, dvec3(0)));
+    LUCARNE_ASSIGN(const int64_t classification, object.integer("class", 0, 255, -1));
+    if (classification >= 0) material.classification = static_cast<int>(classification);
+    LUCARNE_ASSIGN(const int64_t scan, object.integer("scan", 0, 65535, -1));
+    if (scan >= 0) material.scan = static_cast<int>(scan);
+    LUCARNE_ASSIGN(auto box, object.object("box"));
+    if (box) {
+        LUCARNE_ASSIGN(const dvec3 min, box->vector("min", kCoordinate));
+        LUCARNE_ASSIGN(const dvec3 max, box->vector("max", kCoordinate));
+        if (min.x > max.x || min.y > max.y || min.z > max.z) return box->wrong("lies below min", "max");
+        LUCARNE_TRY(box->finish());
+        material.box = {min, max};
+    }
+    LUCARNE_TRY(object.finish());
+    return material;
+}
+
+Result<SceneCamera> read_camera(JsonObject object) {
+    SceneCamera camera;
+    LUCARNE_ASSIGN(camera.name, object.text("name"));
+    LUCARNE_ASSIGN(camera.position, object.vector("position", kCoordinate));
+    LUCARNE_ASSIGN(camera.target, object.vector("target", kCoordinate));
+    LUCARNE_ASSIGN(camera.up, object.vector("up", kCoordinate, dvec3(0, 0, 1)));
+    LUCARNE_ASSIGN(camera.vertical_fov, object.number("fov", kFovDegrees, 60));
+    camera.vertical_fov = glm::radians(camera.vertical_fov);
+    const dvec3 forward = camera.target - camera.position;
+    if (forward == dvec3(0)) return object.wrong("is where the camera stands", "target");
+    // Six millionths of a degree: closer to its axis the camera's roll is noise.
+    if (glm::length(cross(forward, camera.up)) <= 1e-7 * glm::length(forward) * glm::length(camera.up))
+        return object.wrong("the camera looks along its up direction", object.has("up") ? "up" : "target");
+    LUCARNE_TRY(object.finish());
+    return camera;
+}
+
+bool applies_everywhere(const SceneMaterial& material) {
+    return !material.classification && !material.scan && !material.box;
+}
+
+Result<void> read_materials(JsonObject& root, Scene& scene) {
+    LUCARNE_ASSIGN(const auto objects, root.objects("materials", kMostMaterials));
+    scene.materials = {SceneMaterial{}};
+    scene.materials[0].name = "default";
+    bool has_default = false;
+    for (const JsonObject& object : objects) {
+        LUCARNE_ASSIGN(SceneMaterial material, read_material(object));
+        if (!applies_everywhere(material)) {
+            scene.materials.push_back(std::move(material));
+            continue;
+        }
+        if (has_default) return object.wrong("a second material without class, scan or box");
+        has_default = true;
+        scene.materials[0] = std::move(material);
+    }
+    return {};
+}
+
+Result<void> read_exposure(JsonObject& root, Scene& scene) {
+    LUCARNE_ASSIGN(auto exposure, root.object("exposure"));
+    if (!exposure) return {};
+    LUCARNE_ASSIGN(const double ev, exposure->number("ev", kStops, NAN));
+    if (!std::isnan(ev)) scene.exposure_ev = ev;
+    LUCARNE_ASSIGN(const size_t tone_map, exposure->choice("tone_map", {"filmic", "reinhard", "none"}, 0));
+    scene.tone_map = static_cast<ToneMap>(tone_map);
+    return exposure->finish();
+}
+
+Result<Scene> read_scene(const nlohmann::json& document, const std::string& name) {
+    LUCARNE_ASSIGN(JsonObject root, JsonObject::of(document, name));
+    Scene scene;
+    LUCARNE_TRY(read_exposure(root, scene));
+    LUCARNE_ASSIGN(scene.background, root.vector("background", kRadiance, dvec3(0)));
+    LUCARNE_ASSIGN(const auto lights, root.objects("lights", kMostLights));
+    for (const JsonObject& light : lights) {
+        LUCARNE_ASSIGN(SceneSpot spot, read_light(light));
+        scene.lights.push_back(std::move(spot));
+    }
+    LUCARNE_TRY(read_materials(root, scene));
+    LUCARNE_ASSIGN(const auto cameras, root.objects("cameras", kMostCameras));
+    std::set<std::string> names;
+    for (const JsonObject& object : cameras) {
+        LUCARNE_ASSIGN(SceneCamera camera, read_camera(object));
+        if (!names.insert(camera.name).second)
+            return object.wrong(fmt::format("a second camera '{}'", camera.name), "name");
+        scene.cameras.push_back(std::move(camera));
+    }
+    LUCARNE_TRY(root.finish());
+    return scene;
+}
+
+}  // namespace
+
+Result<Scene> parse_scene(std::string_view text, const std::string& name) {
+    LUCARNE_ASSIGN(const nlohmann::json document, parse_json(text, name));
+    return read_scene(document, name);
+}
+
+Result<Scene> load_scene(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const nlohmann::json document, load_json(path));
+    return read_scene(document, path.string());
+}
+
+Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) {
+    dvec3 centre = (min + max) / 2.0;
+    double radius = glm::length(max - min) / 2;
+    if (!std::isfinite(radius)) centre = dvec3(0), radius = 1;  // an empty box: nothing to frame
+    radius = std::max(radius, 1e-3);
+
+    constexpr double kFov = glm::radians(50.0);
+    SceneCamera camera;
+    camera.name = "overview";
+    camera.vertical_fov = kFov;
+    camera.target = centre;
+    const dvec3 back = glm::normalize(dvec3(-.55, -1, .6));
+    const double distance = radius / std::sin(kFov / 2);
+    camera.position = centre + back * distance;
+
+    SceneSpot spot;
+    spot.name = "beside the camera";
+    const dvec3 right = glm::normalize(cross(-back, camera.up)), up = cross(right, -back);
+    spot.position = camera.position + (right * .35 + up * .35) * distance;
+    spot.target = centre;
+    const double from = glm::length(spot.position - centre);
+    spot.angle = 2 * std::asin(std::min(.95, 1.1 * radius / from));
+    // A surface of albedo .5 in the middle, lit at 45 degrees, leaves L = (.5 / pi) I cos(45) / d^2 = .18.
+    const double metres = from * metres_per_unit;
+    spot.intensity = dvec3(.18 * M_PI / .5 * metres * metres / M_SQRT1_2);
+
+    Scene scene;
+    scene.lights = {spot};
+    scene.materials = {SceneMaterial{}};
+    scene.materials[0].name = "default";
+    scene.cameras = {camera};
+    scene.exposure_ev = 0;
+    return scene;
+}
+
+}  // namespace lucarne::gi

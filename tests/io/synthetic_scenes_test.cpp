@@ -1,0 +1,181 @@
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "io/synthetic/scene_geometry.h"
+#include "io/synthetic/synthetic.h"
+
+namespace lucarne::io {
+namespace {
+
+using glm::dvec3;
+
+std::shared_ptr<const SceneGeometry> geometry_of(const std::string& scene) {
+    return SceneGeometry::create(scene).value();
+}
+
+dvec3 random_direction(Random& random) {
+    const double z = 2 * random.uniform() - 1, angle = 2 * M_PI * random.uniform(), r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+TEST(SyntheticScenes, SealedRoomsAreWatertight) {
+    for (const auto& [scene, inside] : {std::pair{"furnace", dvec3(.3, -.2, .1)},
+                                        {"two-rooms", dvec3(1.1, 1.3, 1.5)},
+                                        {"two-rooms", dvec3(6.9, 2.2, 1.2)}}) {
+        const auto geometry = geometry_of(scene);
+        Random random(11);
+        size_t escaped = 0;
+        for (int i = 0; i < 500'000; ++i) escaped += geometry->cast(inside, random_direction(random)) ? 0 : 1;
+        // And rays that start anywhere on the surface.
+        for (int i = 0; i < 200'000; ++i) {
+            const auto from = geometry->cast(inside, random_direction(random));
+            ASSERT_TRUE(from);
+            dvec3 direction = random_direction(random);
+            if (dot(direction, from->normal) < 0) direction = -direction;
+            escaped += geometry->cast(from->position + from->normal * 1e-4, direction) ? 0 : 1;
+        }
+        EXPECT_EQ(escaped, 0u) << scene;
+    }
+}
+
+TEST(SyntheticScenes, TheAirIsOnTheSideOfTheNormal) {
+    // From a station in the air, whatever is seen shows its front.
+    for (const auto& scene : synthetic_scenes()) {
+        const auto geometry = geometry_of(scene.name);
+        size_t seen = 0, behind = 0;
+        Random random(5);
+        for (const dvec3& station : geometry->model().stations)
+            for (int i = 0; i < 50'000; ++i) {
+                const dvec3 direction = random_direction(random);
+                const auto hit = geometry->cast(station, direction);
+                if (!hit) continue;
+                ++seen;
+                behind += dot(hit->normal, direction) > 1e-9 ? 1 : 0;
+            }
+        // A ray may slip through the seam between a body and the wall it stands against.
+        EXPECT_LT(static_cast<double>(behind), 2e-5 * static_cast<double>(seen)) << scene.name;
+        EXPECT_GT(seen, 50'000u) << scene.name;
+    }
+}
+
+TEST(SyntheticScenes, AreasAreThoseOfTheBodies) {
+    EXPECT_NEAR(geometry_of("furnace")->area(), 24, 1e-9);
+    // Five walls of the Cornell box, and the blocks' sides and tops from their corners.
+    const auto block = [](std::initializer_list<std::array<double, 2>> corners, double height) {
+        const std::vector<std::array<double, 2>> c(corners);
+        double around = 0, twice_top = 0;
+        for (size_t i = 0; i < c.size(); ++i) {
+            const auto &a = c[i], &b = c[(i + 1) % c.size()];
+            around += std::hypot(b[0] - a[0], b[1] - a[1]);
+            twice_top += a[0] * b[1] - a[1] * b[0];
+        }
+        return around * height + std::abs(twice_top) / 2;
+    };
+    const double blocks = block({{1.30, .65}, {.82, 2.25}, {2.40, 2.72}, {2.90, 1.14}}, 1.65) +
+                          block({{4.23, 2.47}, {2.65, 2.96}, {3.14, 4.56}, {4.72, 4.06}}, 3.30);
+    EXPECT_NEAR(geometry_of("cornell")->area(), 5 * 5.5 * 5.5 + blocks, 1e-5);
+}
+
+TEST(SyntheticScenes, TheStatueIsAClosedBody) {
+    // Any straight line that misses the plinth enters it as often as it leaves.
+    const auto statue = geometry_of("statue");
+    Random random(3);
+    size_t through = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        dvec3 origin(-3, 2.4 * random.uniform() - 1.2, 1.2 + 1.6 * random.uniform());
+        const dvec3 direction = glm::normalize(dvec3(1, .2 * random.uniform() - .1, .2 * random.uniform()));
+        int crossings = 0;
+        for (; crossings < 40; ++crossings) {
+            const auto hit = statue->cast(origin, direction);
+            if (!hit) break;
+            origin = hit->position + direction * 1e-5;
+        }
+        EXPECT_EQ(crossings % 2, 0);
+        through += crossings > 0 ? 1 : 0;
+    }
+    EXPECT_GT(through, 2000u);
+}
+
+TEST(SyntheticScenes, OneDoorIsOpenAndTheOtherClosed) {
+    const auto geometry = geometry_of("two-rooms");
+    // Straight through each doorway from the first room (x < 4) to the second (x > 4.2), heights and widths.
+    size_t open = 0, closed = 0, tried = 0;
+    for (double y = .03; y < .9; y += .06)
+        for (double z = .05; z < 2.1; z += .1) {
+            ++tried;
+            const auto through = geometry->cast({3.5, .8 + y, z}, {1, 0, 0});
+            open += through && through->position.x > 4.3 ? 1 : 0;
+            const auto stopped = geometry->cast({3.5, 3.2 + y, z}, {1, 0, 0});
+            closed += stopped && std::abs(stopped->position.x - 4.08) < 1e-4 ? 1 : 0;
+        }
+    EXPECT_EQ(open, tried);
+    EXPECT_EQ(closed, tried);
+    // No ray from the first room reaches the second other than by the open door.
+    Random random(9);
+    for (int i = 0; i < 300'000; ++i) {
+        const dvec3 from(1.0, 4.2, 1.5), direction = random_direction(random);
+        const auto hit = geometry->cast(from, direction);
+        ASSERT_TRUE(hit);
+        if (hit->position.x <= 4.2001) continue;
+        const dvec3 at = from + direction * ((4.1 - from.x) / direction.x);
+        EXPECT_TRUE(at.y > .79 && at.y < 1.71 && at.z < 2.11) << at.y << " " << at.z;
+    }
+}
+
+TEST(SyntheticScenes, WindowsOfTheNaveAreOpenAndItsWallsAreNot) {
+    const auto geometry = geometry_of("nave");
+    const dvec3 middle(0, 12.5, 9.5);
+    for (const double side : {-1.0, 1.0}) {
+        for (const double y : {-.85, .85}) {
+            const dvec3 window(side * 3.2, 12.5 + y, 9.5);
+            EXPECT_FALSE(geometry->cast(middle, glm::normalize(window - middle))) << "clerestory";
+        }
+        EXPECT_TRUE(geometry->cast(middle, {side, 0, 0})) << "the mullion between two lancets";
+        const dvec3 oculus(side * 3.2, 12.5, 12.5), below(0, 12.5, 12.4);
+        EXPECT_FALSE(geometry->cast(below, glm::normalize(oculus - below)));
+        EXPECT_FALSE(geometry->cast({side * 4.75, 12.5, 3}, {side, 0, 0})) << "aisle";
+    }
+    EXPECT_FALSE(geometry->cast({0, 20, 10.7}, {0, 1, 0})) << "the rose's hub";
+    EXPECT_TRUE(geometry->cast({0, 20, 10.7 + .68}, {0, 1, 0})) << "the stone around it";
+    EXPECT_TRUE(geometry->cast({0, 10, 1}, {0, -1, 0})) << "the portal is shut";
+    // Only openings let rays out: all that escape a station pass through the height of windows.
+    Random random(7);
+    size_t escaped = 0;
+    for (int i = 0; i < 300'000; ++i) {
+        const dvec3 from(0, 11.6, 1.7), direction = random_direction(random);
+        if (geometry->cast(from, direction)) continue;
+        ++escaped;
+        EXPECT_GT(direction.z, 0) << "nothing leaves through the floor";
+        EXPECT_LT(direction.z, .95) << "or through the crown of the vault";
+    }
+    EXPECT_GT(escaped, 300u);
+    EXPECT_LT(escaped, 30'000u);
+}
+
+TEST(SyntheticScenes, TheNearestPlaceAgreesWithTheRays) {
+    const auto geometry = geometry_of("statue");
+    Random random(21);
+    for (int i = 0; i < 2000; ++i) {
+        const dvec3 from(3 * random.uniform() - 1.5, 3 * random.uniform() - 1.5, 3 * random.uniform());
+        const auto nearest = geometry->closest(from);
+        ASSERT_TRUE(nearest);
+        EXPECT_NEAR(glm::length(nearest->position - from), nearest->distance, 1e-9);
+        // Nothing that a ray finds is nearer, and a ray to the nearest place finds it.
+        const auto any = geometry->cast(from, random_direction(random));
+        if (any) {
+            EXPECT_GE(any->distance, nearest->distance - 1e-5);
+        }
+        if (nearest->distance < 1e-3) continue;
+        const auto there = geometry->cast(from, (nearest->position - from) / nearest->distance);
+        if (there) {
+            EXPECT_NEAR(there->distance, nearest->distance, 1e-4);
+        }
+        EXPECT_FALSE(geometry->closest(from, nearest->distance * .999));
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::io
