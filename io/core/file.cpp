@@ -1,26 +1,30 @@
 #include "io/core/file.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace lucarne {
 namespace {
 
-std::string reason(int code) { return std::strerror(code); }
+std::string reason(int code) {
+    return std::strerror(code);
+}
 
-Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data, const std::filesystem::path& path) {
+Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data,
+                       const std::filesystem::path& path) {
     while (!data.empty()) {
         const ssize_t n = ::pwrite(fd, data.data(), data.size(), static_cast<off_t>(offset));
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
-            return failed(path.string(), fmt::format("cannot be written ({})", reason(n < 0 ? errno : ENOSPC)),
+            return failed(path.string(),
+                          fmt::format("cannot be written ({})", reason(n < 0 ? errno : ENOSPC)),
                           errno == ENOSPC || n == 0 ? "free some space or choose another disk" : "");
         offset += static_cast<uint64_t>(n);
         data = data.subspan(static_cast<size_t>(n));
@@ -28,10 +32,12 @@ Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data,
     return {};
 }
 
-Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out, const std::filesystem::path& path) {
+Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out,
+                          const std::filesystem::path& path) {
     size_t done = 0;
     while (done < out.size()) {
-        const ssize_t n = ::pread(fd, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
+        const ssize_t n =
+            ::pread(fd, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return failed(path.string(), fmt::format("cannot be read ({})", reason(errno)));
         if (n == 0) break;
@@ -40,15 +46,26 @@ Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out, con
     return done;
 }
 
-Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out, const std::filesystem::path& path) {
+Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
+                          const std::filesystem::path& path) {
     LUCARNE_ASSIGN(const size_t got, read_up_to(fd, offset, out, path));
     if (got != out.size())
-        return rejected(path.string(), fmt::format("ends early: {} bytes wanted at {}, {} there", out.size(), offset, got));
+        return rejected(path.string(),
+                        fmt::format("ends early: {} bytes wanted at {}, {} there", out.size(), offset, got));
     return {};
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
     return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+/// A name beside an output while it is not whole: of this process, and not left over from another.
+std::filesystem::path unused_name(const std::filesystem::path& folder) {
+    struct stat status {};
+    for (int n = 0;; ++n) {
+        auto name = folder / fmt::format(".lucarne-{}-{}.part", ::getpid(), n);
+        if (::lstat(name.c_str(), &status) != 0) return name;
+    }
 }
 
 }  // namespace
@@ -64,7 +81,9 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path) {
     return InputFile(fd, static_cast<uint64_t>(status.st_size), path);
 }
 
-InputFile::InputFile(InputFile&& other) noexcept { *this = std::move(other); }
+InputFile::InputFile(InputFile&& other) noexcept {
+    *this = std::move(other);
+}
 InputFile& InputFile::operator=(InputFile&& other) noexcept {
     std::swap(fd_, other.fd_);
     std::swap(size_, other.size_);
@@ -85,15 +104,22 @@ Result<size_t> InputFile::read_some(uint64_t offset, std::span<std::byte> out) c
 Result<void> check_output(const std::filesystem::path& path, bool overwrite) {
     struct stat status {};
     if (path.filename().empty()) return bad_arguments(path.string(), "is not a file name");
-    if (::stat(path.c_str(), &status) == 0) {
+    if (::lstat(path.c_str(), &status) == 0) {  // a link that leads nowhere is a name that is taken, too
         if (S_ISDIR(status.st_mode)) return failed(path.string(), "is a folder", "choose a file name");
-        if (!overwrite) return failed(path.string(), "exists already", "choose another name or pass --overwrite");
+        if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
+            return failed(path.string(), "is a device or the like", "choose a file name");
+        if (!overwrite)
+            return failed(path.string(), "exists already", "choose another name or pass --overwrite");
+    } else if (errno == ENAMETOOLONG) {
+        return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)));
     }
     const auto folder = folder_of(path);
     if (::stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode))
-        return failed(path.string(), fmt::format("the folder {} does not exist", folder.string()), "create it first");
+        return failed(path.string(), fmt::format("the folder {} does not exist", folder.string()),
+                      "create it first");
     if (::access(folder.c_str(), W_OK) != 0)
-        return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)), "choose another folder");
+        return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)),
+                      "choose another folder");
     return {};
 }
 
@@ -104,18 +130,17 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path, bool ov
     file.overwrite_ = overwrite;
     file.fd_ = ::open(folder_of(path).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
     if (file.fd_ < 0) {
-        file.temporary_ = path.string() + fmt::format(".part-{}", ::getpid());
-        file.fd_ = ::open(file.temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
-        if (file.fd_ < 0) {
-            const int code = errno;
-            file.temporary_.clear();
-            return failed(path.string(), fmt::format("cannot be created ({})", reason(code)));
-        }
+        const auto name = unused_name(folder_of(path));
+        file.fd_ = ::open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+        if (file.fd_ < 0) return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)));
+        file.temporary_ = name;
     }
     return file;
 }
 
-OutputFile::OutputFile(OutputFile&& other) noexcept { *this = std::move(other); }
+OutputFile::OutputFile(OutputFile&& other) noexcept {
+    *this = std::move(other);
+}
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
     std::swap(fd_, other.fd_);
     std::swap(overwrite_, other.overwrite_);
@@ -135,7 +160,9 @@ Result<void> OutputFile::append(std::span<const std::byte> data) {
     position_ += data.size();
     return {};
 }
-Result<void> OutputFile::append(std::string_view text) { return append(std::as_bytes(std::span(text))); }
+Result<void> OutputFile::append(std::string_view text) {
+    return append(std::as_bytes(std::span(text)));
+}
 Result<void> OutputFile::write_at(uint64_t offset, std::span<const std::byte> data) {
     return write_all(fd_, offset, data, path_);
 }
@@ -148,8 +175,7 @@ Result<void> OutputFile::commit() {
     if (temporary_.empty()) {
         // linkat never replaces a name, so an overwrite goes through a second name and rename.
         const std::string self = fmt::format("/proc/self/fd/{}", fd_);
-        std::filesystem::path name = path_;
-        if (overwrite_) name += fmt::format(".part-{}", ::getpid());
+        const auto name = overwrite_ ? unused_name(folder_of(path_)) : path_;
         if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)
             return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
         if (overwrite_) temporary_ = name;
@@ -159,7 +185,8 @@ Result<void> OutputFile::commit() {
     if (!temporary_.empty() && ::rename(temporary_.c_str(), path_.c_str()) != 0)
         return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
     committed_ = true;
-    if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+    if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        folder >= 0) {
         ::fsync(folder);  // the name itself; not every file system supports it
         ::close(folder);
     }
@@ -172,14 +199,17 @@ Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
         std::string name = (folder / "lucarne-XXXXXX").string();
         fd = ::mkstemp(name.data());
         if (fd < 0)
-            return failed(folder.string(), fmt::format("no temporary file can be made here ({})", reason(errno)),
+            return failed(folder.string(),
+                          fmt::format("no temporary file can be made here ({})", reason(errno)),
                           "choose another folder with --temp");
         ::unlink(name.c_str());
     }
     return ScratchFile(fd, folder);
 }
 
-ScratchFile::ScratchFile(ScratchFile&& other) noexcept { *this = std::move(other); }
+ScratchFile::ScratchFile(ScratchFile&& other) noexcept {
+    *this = std::move(other);
+}
 ScratchFile& ScratchFile::operator=(ScratchFile&& other) noexcept {
     std::swap(fd_, other.fd_);
     std::swap(folder_, other.folder_);
