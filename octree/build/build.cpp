@@ -98,10 +98,12 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
     };
     const auto assemble = [&](const std::shared_ptr<Built>& built) {
         if (error.any()) return;
-        progress.add(store.chunks()[built->chunk].count);
+        const uint64_t count = store.chunks()[built->chunk].count;
+        const bool whole = built->tree.overflow_first == count;  // else its rest is read when its parent is there
+        progress.add(count);
         if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
             error.report(built->chunk, std::move(done).error());
-        store.discard(built->chunk);
+        if (whole) store.discard(built->chunk);
     };
     tbb::parallel_pipeline(
         memory.workers,
@@ -142,7 +144,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
     const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
     const NodeLimits limits(inputs.schema().stride + added);
-    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
+    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, threads};
     LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, work));
 
     BuildReport report;

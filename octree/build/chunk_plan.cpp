@@ -16,7 +16,7 @@ constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, 
 /// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
 /// samples.
 constexpr uint64_t kWorkPerPoint = 48;
-/// The normals stage holds a few chunks at a time, a chunk's neighbours among them.
+/// The normals stage holds a few chunks at a time, a chunk's neighbours among them; building needs less.
 constexpr uint64_t kNormalChunks = 4;
 /// What sampling one node holds a candidate.
 constexpr uint64_t kWorkPerCandidate = 48;
@@ -29,18 +29,17 @@ Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
                              fmt::format("give at least {}", bytes_text(kMinMemory)));
     const uint64_t per_point = 2 * uint64_t{work.record} + kWorkPerPoint;
     const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
-    // As many workers as threads while each can have a chunk of several leaves and the assembly its own
-    // sampling; a single worker takes turns with the assembly.
-    MemoryPlan plan{.workers = std::max(1u, work.threads), .memory = bytes};
-    const uint64_t share = bytes * 7 / 8;
-    const auto room = [&] {
-        const uint64_t taken = sampling * (plan.workers > 1 ? plan.workers + 1 : 1);
-        return share > taken ? (share - taken) / plan.workers / per_point : 0;
+    // Points that each of so many workers has room for. The assembly samples as well; a single worker takes
+    // turns with it.
+    const auto room = [&](unsigned workers) {
+        const uint64_t share = bytes * 7 / 8, taken = sampling * (workers > 1 ? workers + 1 : 1);
+        return share > taken ? (share - taken) / workers / per_point : 0;
     };
-    while (plan.workers > 1 && room() < 4 * work.leaf) --plan.workers;
-    uint64_t most = std::min(room(), kMaxChunkPoints);
-    if (work.normals) most = std::min(most, bytes / (kNormalChunks * kNormalBytesPerPoint));
-    plan.chunk_points = std::max<uint64_t>(work.leaf, most);
+    // Chunks must not depend on the number of threads: orientation is propagated chunk by chunk.
+    MemoryPlan plan{.workers = std::max(1u, work.threads)};
+    plan.chunk_points = std::max<uint64_t>(
+        work.leaf, std::min({room(1), bytes / (kNormalChunks * kNormalBytesPerPoint), kMaxChunkPoints}));
+    while (plan.workers > 1 && room(plan.workers) < plan.chunk_points) --plan.workers;
     plan.grid_bytes = bytes / 4;
     plan.buffer_bytes = bytes / 2;
     plan.batch_bytes = std::min<uint64_t>(bytes / 16, 1 << 20);

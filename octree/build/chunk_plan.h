@@ -18,9 +18,8 @@ struct Chunk {
 /// How a build shares out `--memory`.
 struct MemoryPlan {
     struct Work {
-        uint32_t record = 0;   ///< bytes of a record in the cache
-        size_t leaf = 0;       ///< most points of a leaf
-        bool normals = false;  ///< normals or areas are estimated
+        uint32_t record = 0;  ///< bytes of a record in the cache
+        size_t leaf = 0;      ///< most points of a leaf
         unsigned threads = 1;
     };
     /// Errors: too little memory for any work.
@@ -31,7 +30,6 @@ struct MemoryPlan {
     uint64_t grid_bytes = 0;    ///< for counting
     uint64_t buffer_bytes = 0;  ///< for dealing points out to chunks
     uint64_t batch_bytes = 0;   ///< of points read at a time
-    uint64_t memory = 0;
 };
 
 /// Counts the points of a cube in a regular grid of cells and joins sparse cells to chunks: cubes of the
