@@ -67,7 +67,7 @@ void append(std::vector<Surfel>& to, const std::vector<Surfel>& more) {
 }
 
 TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
-    for (const float area : {1e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: both ways of drawing
+    for (const float area : {2e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: both ways of drawing
         const Surfel tilted{{0.3f, 3, 0.2f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 3};
         const Picture p = draw({tilted}, look({0, 0, 0}, {0, 1, 0}, 320, 240));
         ASSERT_EQ(p.surfels.size(), 1u);
