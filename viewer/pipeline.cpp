@@ -266,7 +266,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     const auto capacity = static_cast<uint32_t>(std::min<uint64_t>(options.pool_surfels, most));
     LUCARNE_ASSIGN(state.pool, gi::SurfelPool::create(device, capacity));
     const auto& header = state.source->header();
-    state.scene = gi::default_scene(header.min, header.max);
+    state.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
     state.budgets = preset.budgets;

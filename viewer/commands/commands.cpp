@@ -8,11 +8,12 @@ void add_convert(CLI::App& app, Command& chosen);
 void add_export(CLI::App& app, Command& chosen);
 void add_generate(CLI::App& app, Command& chosen);
 void add_info(CLI::App& app, Command& chosen);
+void add_render(CLI::App& app, Command& chosen);
 void add_verify(CLI::App& app, Command& chosen);
 
 std::span<const AddCommand> commands() {
-    static constexpr std::array<AddCommand, 5> kAll = {add_generate, add_convert, add_info, add_verify,
-                                                       add_export};
+    static constexpr std::array<AddCommand, 6> kAll = {add_generate, add_convert, add_info,
+                                                       add_verify,   add_export,  add_render};
     return kAll;
 }
 

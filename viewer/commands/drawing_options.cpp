@@ -88,7 +88,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 }
 
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::SourceHeader& header) {
-    gi::Scene scene = gi::default_scene(header.min, header.max);
+    gi::Scene scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
     if (!options.scene.empty()) {
         const auto cameras = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
