@@ -1,7 +1,6 @@
 // Conversion when the disk fills or the arguments are wrong: one clear line, the right exit code, nothing
 // left behind.
 #include <csignal>
-#include <cstdio>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -12,31 +11,16 @@
 #include "io/formats/scan.h"
 #include "io/synthetic/synthetic.h"
 #include "octree/build/build.h"
+#include "tests/fault/run_lucarne.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne {
 namespace {
 
+using test::lucarne;
+using test::Outcome;
+using test::quoted;
 using test::TempFolder;
-
-struct Outcome {
-    int code = -1;
-    std::string text;  ///< stderr and stdout
-};
-Outcome lucarne(const std::string& arguments) {
-    Outcome outcome;
-    FILE* pipe = ::popen((std::string(LUCARNE_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
-    if (!pipe) return outcome;
-    char buffer[4096];
-    while (std::fgets(buffer, sizeof buffer, pipe)) outcome.text += buffer;
-    const int status = ::pclose(pipe);
-    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
-    return outcome;
-}
-
-std::string quoted(const std::filesystem::path& path) {
-    return "'" + path.string() + "'";
-}
 
 size_t lines(const std::string& text) {
     return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
