@@ -8,7 +8,6 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <imgui.h>
 
 #include "gi/registry.h"
 
@@ -142,9 +141,10 @@ std::span<const Gesture> gestures() {
     return kGestures;
 }
 
-void run_actions(ViewModel& model) {
-    for (const Action& action : actions())
-        if (ImGui::IsKeyPressed(action.key, false)) action.run(model);
+void run_actions(ViewModel& model, std::span<const int> keys) {
+    for (const int key : keys)
+        for (const Action& action : actions())
+            if (action.key == key) action.run(model);
 }
 
 void place_light_at_camera(ViewModel& model) {

@@ -22,8 +22,8 @@ struct Gesture {
 };
 std::span<const Gesture> gestures();
 
-/// Runs the action of every key pressed in this frame.
-void run_actions(ViewModel& model);
+/// Runs the actions of keys that were pressed.
+void run_actions(ViewModel& model, std::span<const int> keys);
 
 // Lights. Positions are world units.
 void place_light_at_camera(ViewModel& model);

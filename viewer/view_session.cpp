@@ -105,7 +105,8 @@ bool ViewSession::take_navigation() {
 
 void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantCaptureKeyboard) run_actions(model_);
+    const std::vector<int> keys = window_.take_pressed_keys();
+    if (!io.WantCaptureKeyboard) run_actions(model_, keys);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
     if (at_light && !io.WantCaptureMouse) {

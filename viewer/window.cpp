@@ -14,6 +14,8 @@
 namespace lucarne::viewer {
 namespace {
 
+constexpr size_t kMostPressed = 64;  ///< keys kept between two frames
+
 /// GLFW's last complaint, without its habit of several sentences.
 std::string glfw_reason() {
     const char* text = nullptr;
@@ -55,7 +57,12 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     glfwGetWindowContentScale(window_, &scale, nullptr);
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale;
-    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+        auto& pressed = static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_;
+        if (action == GLFW_PRESS && pressed.size() < kMostPressed) pressed.push_back(key);
+    });
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);  // its callbacks call ours
     ImGui_ImplOpenGL3_Init("#version 450 core");
     glGenTextures(1, &texture_);
     return {};

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/core/options.h"
@@ -33,7 +34,9 @@ class Window {
     /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
     void wait(double seconds);
     ImageSize framebuffer() const;  ///< pixels; 1x1 at least
-    GLFWwindow* handle() const { return window_; }
+    /// Keys pressed since the last call, as GLFW numbers them: also those released again before a frame saw
+    /// them.
+    std::vector<int> take_pressed_keys() { return std::exchange(pressed_, {}); }
 
     /// From here ImGui and show() may be used, until draw().
     void begin_frame();
@@ -54,6 +57,7 @@ class Window {
     unsigned texture_ = 0;
     ImageSize texture_size_;
     uint64_t shown_ = 0;
+    std::vector<int> pressed_;
 };
 
 }  // namespace lucarne::viewer

@@ -6,14 +6,16 @@ namespace lucarne::viewer {
 
 void add_convert(CLI::App& app, Command& chosen);
 void add_export(CLI::App& app, Command& chosen);
+void add_fly(CLI::App& app, Command& chosen);
 void add_generate(CLI::App& app, Command& chosen);
 void add_info(CLI::App& app, Command& chosen);
 void add_render(CLI::App& app, Command& chosen);
 void add_verify(CLI::App& app, Command& chosen);
+void add_view(CLI::App& app, Command& chosen);
 
 std::span<const AddCommand> commands() {
-    static constexpr std::array<AddCommand, 6> kAll = {add_generate, add_convert, add_info,
-                                                       add_verify,   add_export,  add_render};
+    static constexpr std::array<AddCommand, 8> kAll = {add_view,     add_convert, add_render, add_fly,
+                                                       add_generate, add_info,    add_verify, add_export};
     return kAll;
 }
 

@@ -35,7 +35,7 @@ bool edit_spot(gi::SceneSpot& light, double scene_size) {
     float color[3] = {1, 1, 1};
     if (strength > 0)
         for (int i = 0; i < 3; ++i) color[i] = static_cast<float>(light.intensity[i]) / strength;
-    bool dyed = ImGui::ColorEdit3("colour (linear)", color, ImGuiColorEditFlags_Float);
+    bool dyed = ImGui::ColorEdit3("colour", color, ImGuiColorEditFlags_Float);
     dyed |= ImGui::DragFloat("W/sr", &strength, std::max(strength, 0.01f) / 100, 1e-3f, 1e9f, "%.4g",
                              ImGuiSliderFlags_AlwaysClamp);
     if (dyed) light.intensity = glm::dvec3(color[0], color[1], color[2]) * static_cast<double>(strength);

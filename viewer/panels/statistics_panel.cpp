@@ -1,3 +1,5 @@
+#include <cfloat>
+
 #include <imgui.h>
 
 #include "io/core/options.h"
@@ -39,8 +41,8 @@ void draw_statistics_panel(ViewModel& model) {
     const float width = ImGui::GetFontSize() * 19;
     ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 8, 8), ImGuiCond_FirstUseEver,
                             ImVec2(1, 0));
-    ImGui::SetNextWindowSize(ImVec2(width, 0), ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Statistics")) {
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, FLT_MAX));
+    if (ImGui::Begin("Statistics", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
         if (model.picture) {
             const Picture& picture = *model.picture;
             const FrameStats& stats = picture.stats;

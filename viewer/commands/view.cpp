@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <glm/geometric.hpp>
+
+#include "io/core/file.h"
+#include "viewer/commands/commands.h"
+#include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
+#include "viewer/view_session.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct ViewOptions {
+    std::string input, camera, screenshot;
+    DrawingOptions drawing;
+    uint32_t frames = 1;
+    bool overwrite = false;
+};
+
+Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing,
+                              const octree::SourceHeader& header) {
+    ViewModel model(std::max(glm::distance(header.min, header.max), 1e-6));
+    LUCARNE_ASSIGN(model.scene, load_scene_for(options.drawing, header));
+    LUCARNE_ASSIGN(model.home, find_camera(model.scene, options.camera));
+    model.rig = CameraRig(model.home);
+    model.engine = options.drawing.engine;
+    model.preset = drawing.preset.name;
+    model.settings = drawing.preset.engine;
+    model.budgets = drawing.preset.budgets;
+    return model;
+}
+
+Result<void> view(const ViewOptions& options) {
+    LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
+    std::optional<ScriptedShot> shot;
+    if (!options.screenshot.empty()) {
+        LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
+        shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
+    }
+    LUCARNE_ASSIGN(const auto source, open_input(options.input));
+    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, source->header()));
+    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne - " + options.input));
+    LUCARNE_ASSIGN(const auto worker,
+                   PictureWorker::start(window->worker_device(), source, {}, &Window::wake));
+    model.device = worker->device();
+    return ViewSession(*window, *worker, model, shot).run();
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<ViewOptions>();
+    auto* command = app.add_subcommand("view", "Look around in a cache or a scan, lit by its own surfaces");
+    command->add_option("INPUT", options->input, "A cache or any scan file")->required();
+    add_drawing_options(*command, options->drawing);
+    command->add_option("--camera", options->camera, "Start with this camera of the scene");
+    command->add_option("--screenshot", options->screenshot,
+                        "Save the window as this PNG once it is whole, and close");
+    command->add_option("--frames", options->frames, "Whole pictures to wait for with --screenshot")
+        ->check(CLI::Range(1u, 256u))
+        ->capture_default_str();
+    command->add_flag("--overwrite", options->overwrite, "Replace the screenshot's file");
+    command->callback([options, &chosen] { chosen = [options] { return view(*options); }; });
+}
+
+}  // namespace lucarne::viewer
