@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -21,9 +22,42 @@ constexpr double kThick = 0.4;  ///< deviation of the heights over d, from which
 /// The nearest of 16 neighbours in a plane is at this share of the farthest once in 2^18 (Poisson); a point
 /// out in the air sees all of a surface from afar and has no share of it.
 constexpr float kIsolated = 0.75f;
+/// A few points hanging in the air together (mixed pixels behind an edge) have each other, and then nothing
+/// up to the surfaces around, whose points stand much closer: the distance to the 8th neighbour over that of
+/// the neighbours to their own 2nd is about 2 within a surface, 3 on its edge, and 4 along the lines of the
+/// most uneven scanner.
+constexpr size_t kOwnRank = 8, kTheirRank = 2;
+constexpr float kSparser = 5.0f;
 /// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
+
+/// The squared distance from near[i] to its kTheirRank-th nearest among `near`, the point itself left out.
+float their_reach2(std::span<const glm::vec3> near, size_t i) {
+    std::array<float, kTheirRank> best;  // ascending
+    best.fill(std::numeric_limits<float>::max());
+    for (size_t j = 1; j < near.size(); ++j) {
+        const glm::vec3 apart = near[i] - near[j];
+        const float d2 = glm::dot(apart, apart);
+        if (j == i || d2 >= best.back()) continue;
+        size_t at = kTheirRank - 1;
+        for (; at > 0 && best[at - 1] > d2; --at) best[at] = best[at - 1];
+        best[at] = d2;
+    }
+    return best.back();
+}
+
+/// Whether the neighbourhood of the point is much sparser than those of its neighbours (as the local outlier
+/// factor compares them: Breunig et al. 2000), from the neighbours' distances among themselves. Within a
+/// surface the first neighbour asked ends it.
+bool stands_apart(std::span<const glm::vec3> near) {
+    if (near.size() <= kOwnRank) return false;
+    const float limit = glm::dot(near[kOwnRank], near[kOwnRank]) / (kSparser * kSparser);
+    if (their_reach2(near, near.size() - 1) > limit && their_reach2(near, kOwnRank) > limit) return false;
+    size_t denser = 0;
+    for (size_t i = 1; i < near.size(); ++i) denser += their_reach2(near, i) < limit;
+    return 2 * denser >= near.size() - 1;
+}
 
 float deviation_of(const Plane& plane, size_t points) {
     const double n = static_cast<double>(points);
@@ -88,6 +122,7 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     const auto near = offsets.first(std::min(offsets.size(), area_count));
     const float reach2 = glm::dot(near.back(), near.back());
     if (!whole_cloud && glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2) return sample;
+    if (!whole_cloud && stands_apart(near)) return sample;
 
     Plane plane = fitter.fit(offsets);
     std::array<float, kMostSampled> heights;
