@@ -38,7 +38,7 @@ class Background {
     }
     ~Background() {
         if (running()) {
-            kill(pid_, SIGKILL);
+            kill(pid_, SIGTERM);
             waitpid(pid_, nullptr, 0);
         }
     }
@@ -92,7 +92,7 @@ class ViewerWindow : public testing::Test {
     void SetUp() override {
         if (!installed("Xvfb") || !installed("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool";
         const std::string number = folder_ / "display";
-        server_.emplace("Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>" + number + " 2>/dev/null");
+        server_.emplace("Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset 3>" + number + " 2>/dev/null");
         ASSERT_TRUE(eventually([&] { return test::bytes_of(number).find('\n') != std::string::npos; }))
             << "Xvfb does not start";
         display_ = "DISPLAY=:" + test::bytes_of(number).substr(0, test::bytes_of(number).size() - 1) + " ";
