@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <compare>
 #include <cstdint>
+
 #include <glm/vec3.hpp>
 
 namespace lucarne::octree {
@@ -43,8 +44,8 @@ struct NodeKey {
     }
 };
 
-/// A point's place in the root cube, 32 bits of fixed point an axis: exact enough for sampling, the same for every
-/// chunk and level, and the one rule for which node's cube a point is in.
+/// A point's place in the root cube, 32 bits of fixed point an axis: exact enough for sampling, the same for
+/// every chunk and level, and the one rule for which node's cube a point is in.
 struct Place {
     uint32_t x = 0, y = 0, z = 0;
 

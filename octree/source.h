@@ -45,8 +45,8 @@ struct NodeData {
 /// What a source is as a whole.
 struct SourceHeader {
     io::Schema schema;
-    Cube root;                     ///< the root node's cube
-    glm::dvec3 min{0.0}, max{0.0}; ///< tight bounds of the points
+    Cube root;                      ///< the root node's cube
+    glm::dvec3 min{0.0}, max{0.0};  ///< tight bounds of the points
     uint64_t points = 0;
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
