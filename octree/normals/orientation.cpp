@@ -16,8 +16,9 @@ namespace {
 
 constexpr float kParallel = 0.7f;  ///< |n.n'| from which no turn of the surface is assumed
 constexpr size_t kGrades = 512;    ///< of doubt, for the counting sort of edges
+constexpr float kSteep = 0.5f;     ///< squared sine of an offset's angle to a plane: 45 degrees
+constexpr float kSmooth = 0.1f;    ///< doubt up to which a single edge is trusted: 25 degrees
 constexpr size_t kVotesPerPair = 256;
-constexpr float kClearlyUp = 0.3f;  ///< |n.z| of a topmost point that can be told from a wall's
 
 bool has_normal(const glm::vec3& n) {
     return n != glm::vec3(0.0f);
@@ -30,6 +31,7 @@ struct SortedEdges {
     std::vector<uint16_t> grade;  ///< of each slot: doubt in steps, kOpposite
     static constexpr uint16_t kNone = 0xffff, kOpposite = 0x8000;
     bool opposite(uint32_t slot) const { return grade[slot] & kOpposite; }
+    float doubt(uint32_t slot) const { return static_cast<float>(grade[slot] & ~kOpposite) / (kGrades - 1); }
 };
 
 SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& surface) {
@@ -48,6 +50,7 @@ SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& 
                 if (j < i && std::find(edges[j].begin(), edges[j].end(), i) != edges[j].end()) continue;
                 const glm::vec3 offset(neighbours.position(j) - neighbours.position(i));
                 const Agreement a = agreement(surface.normals[i], surface.normals[j], offset);
+                if (a.doubt >= 1) continue;
                 grade = static_cast<uint16_t>(a.doubt * (kGrades - 1));
                 if (a.opposite) grade |= SortedEdges::kOpposite;
             }
@@ -63,17 +66,17 @@ SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& 
     return sorted;
 }
 
-uint64_t pair_key(uint32_t a, uint32_t b) {
-    return static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
-
 }  // namespace
 
 Agreement agreement(const glm::vec3& normal, const glm::vec3& other, const glm::vec3& offset) {
     float same = glm::dot(normal, other);
     const float length2 = glm::dot(offset, offset);
-    if (std::abs(same) < kParallel && length2 > 0)
-        same -= 2.0f * glm::dot(normal, offset) * glm::dot(other, offset) / length2;
+    const float rise = glm::dot(normal, offset), other_rise = glm::dot(other, offset);
+    if (std::abs(same) < kParallel) {
+        if (length2 > 0) same -= 2.0f * rise * other_rise / length2;
+    } else if (std::max(rise * rise, other_rise * other_rise) > kSteep * length2) {
+        return {same < 0, 1.0f};
+    }
     return {same < 0, std::clamp(1.0f - std::abs(same), 0.0f, 1.0f)};
 }
 
@@ -89,9 +92,19 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
             orientation.anchored = true;
         }
     const SortedEdges sorted = sorted_edges(neighbours, surface);
-    for (const uint32_t slot : sorted.slots)
-        forest.unite(slot / kSiteEdges, surface.edges[slot / kSiteEdges][slot % kSiteEdges],
-                     sorted.opposite(slot));
+    const auto target = [&](uint32_t slot) { return surface.edges[slot / kSiteEdges][slot % kSiteEdges]; };
+    const auto crease = std::find_if(sorted.slots.begin(), sorted.slots.end(),
+                                     [&](uint32_t slot) { return sorted.doubt(slot) > kSmooth; });
+    for (const uint32_t slot : std::span(sorted.slots.begin(), crease))
+        forest.unite(slot / kSiteEdges, target(slot), sorted.opposite(slot));
+    SignVotes votes;
+    for (const uint32_t slot : std::span(crease, sorted.slots.end())) {
+        const auto a = forest.find(slot / kSiteEdges), b = forest.find(target(slot));
+        if (a.node == b.node) continue;
+        votes.add(a.node, b.node, sorted.opposite(slot) != (a.opposite != b.opposite),
+                  1.0f - sorted.doubt(slot));
+    }
+    votes.unite(forest);
 
     orientation.components.assign(sites, 0);
     std::unordered_map<uint32_t, uint32_t> numbers;  // component by root
@@ -118,20 +131,17 @@ void OrientationMerger::add_empty() {
 void OrientationMerger::add(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
                             const ChunkOrientation& orientation) {
     const uint32_t base = first_component_.back();
-    Component fresh;
-    fresh.top = -std::numeric_limits<double>::infinity();
-    components_.resize(components_.size() + orientation.count, fresh);
+    components_.resize(components_.size() + orientation.count);
     components_[base].anchored = orientation.anchored;
-    for (uint32_t site = 0; site < surface.normals.size(); ++site) {
-        if (!has_normal(surface.normals[site])) continue;
-        auto& component = components_[base + orientation.components[site]];
-        const double z = neighbours.position(site).z;
-        if (z > component.top) {
-            component.top = z;
-            component.top_normal = surface.normals[site].z;
-        }
-        component.normal_sum += surface.normals[site].z * surface.areas[site];
-    }
+    const auto each = [&](auto&& visit) {
+        for (uint32_t site = 0; site < surface.normals.size(); ++site)
+            if (has_normal(surface.normals[site]))
+                visit(components_[base + orientation.components[site]].shell, site);
+    };
+    each([&](Shell& shell, uint32_t site) { shell.extend(neighbours.position(site)); });
+    each([&](Shell& shell, uint32_t site) {
+        shell.add(neighbours.position(site), surface.normals[site], surface.areas[site]);
+    });
     hear(neighbours, surface, orientation);
     tell(surface, orientation);
     add_empty();  // closes this chunk's range
@@ -153,7 +163,7 @@ void OrientationMerger::hear(const ChunkNeighbours& neighbours, const ChunkSurfa
         if (!has_normal(surface.normals[site])) continue;
         const Agreement a = agreement(message.normal, surface.normals[site], message.offset);
         const uint32_t component = first_component_.back() + orientation.components[site];
-        votes_[pair_key(message.component, component)] += a.opposite ? a.doubt - 1.0 : 1.0 - a.doubt;
+        votes_.add(message.component, component, a.opposite, 1.0 - a.doubt);
     }
 }
 
@@ -189,28 +199,12 @@ std::vector<std::vector<int8_t>> OrientationMerger::signs() const {
     SignedForest forest(count + 1);  // the last stands for the stations
     for (uint32_t c = 0; c < count; ++c)
         if (components_[c].anchored) forest.unite(c, count, false);
-    std::vector<std::pair<uint64_t, double>> votes(votes_.begin(), votes_.end());
-    std::sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-        const double x = std::abs(a.second), y = std::abs(b.second);
-        return x != y ? x > y : a.first < b.first;
-    });
-    for (const auto& [pair, vote] : votes)
-        forest.unite(static_cast<uint32_t>(pair >> 32), static_cast<uint32_t>(pair), vote < 0);
+    votes_.unite(forest);
 
-    struct Whole {
-        double top = -std::numeric_limits<double>::infinity();
-        double top_normal = 0, normal_sum = 0;
-    };
-    std::unordered_map<uint32_t, Whole> wholes;  // by root, as the root is turned
+    std::unordered_map<uint32_t, Shell> wholes;  // by root, as the root is turned
     for (uint32_t c = 0; c < count; ++c) {
         const auto root = forest.find(c);
-        auto& whole = wholes[root.node];
-        const double sign = root.opposite ? -1 : 1;
-        if (components_[c].top > whole.top) {
-            whole.top = components_[c].top;
-            whole.top_normal = sign * components_[c].top_normal;
-        }
-        whole.normal_sum += sign * components_[c].normal_sum;
+        wholes[root.node].join(components_[c].shell, root.opposite);
     }
     const auto stations = forest.find(count);
     std::vector<std::vector<int8_t>> signs(first_component_.size() - 1);
@@ -219,15 +213,9 @@ std::vector<std::vector<int8_t>> OrientationMerger::signs() const {
         signs[chunk].assign(std::max(1u, last - first), 1);
         for (uint32_t c = first; c < last; ++c) {
             const auto root = forest.find(c);
-            bool turn = root.opposite;
-            if (root.node == stations.node) {
-                turn = turn != stations.opposite;
-            } else {
-                const Whole& whole = wholes[root.node];
-                const double up =
-                    std::abs(whole.top_normal) > kClearlyUp ? whole.top_normal : whole.normal_sum;
-                turn = turn != (up < 0);
-            }
+            const bool whole =
+                root.node == stations.node ? stations.opposite : wholes[root.node].inside_out();
+            const bool turn = root.opposite != whole;
             signs[chunk][c - first] = turn ? -1 : 1;
         }
     }

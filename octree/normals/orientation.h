@@ -2,12 +2,13 @@
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "octree/normals/chunk_surface.h"
+#include "octree/normals/shell.h"
+#include "octree/normals/signed_forest.h"
 
 namespace lucarne::octree {
 
@@ -16,9 +17,11 @@ struct Agreement {
     bool opposite = false;  ///< one of them must be turned
     float doubt = 1.0f;     ///< 1 - |agreement|: the cost of the edge in the spanning tree, 0 to 1
 };
-/// Nearly parallel normals are compared as they are. Where the surface turns between the two points, one
-/// normal is first mirrored in the plane half-way between them, so that going round a sharp edge costs
-/// nothing and keeps the outside outside (Xie, Wang, Hua, Qin, Kaufman 2003: the symmetric propagation).
+/// Nearly parallel normals are compared as they are, unless one point lies over the other: the two faces of a
+/// thin wall and the noise of one face look alike there, and no witness (doubt 1) is better than a false one.
+/// Where the surface turns between the points, one normal is first mirrored in the plane half-way between
+/// them, so that going round a sharp edge costs nothing and keeps the outside outside (Xie, Wang, Hua, Qin,
+/// Kaufman 2003).
 Agreement agreement(const glm::vec3& normal, const glm::vec3& other, const glm::vec3& offset);
 
 /// The orientation of one chunk's sites among themselves.
@@ -28,7 +31,8 @@ struct ChunkOrientation {
     bool anchored = false;             ///< component 0 is turned toward the stations already
 };
 
-/// Hands orientation on along a minimum spanning forest of the neighbourhood graph and turns
+/// Hands orientation on along a minimum spanning forest of the neighbourhood graph: edge by edge on smooth
+/// surfaces; between these by the votes of all edges, since at creases a single edge is a poor witness. Turns
 /// `surface.normals` accordingly: consistent within each component. `toward[site]` is +1 where the normal is
 /// known to point toward its station as it is, -1 where it must be turned, 0 where nothing is known.
 ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& surface,
@@ -58,9 +62,7 @@ class OrientationMerger {
         glm::vec3 normal, offset;
     };
     struct Component {
-        double top = 0;        ///< height of its topmost point
-        float top_normal = 0;  ///< the normal's z there
-        float normal_sum = 0;  ///< of all normals' z, weighted by area
+        Shell shell;
         bool anchored = false;
     };
     void hear(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
@@ -70,7 +72,7 @@ class OrientationMerger {
     std::vector<std::vector<Message>> inboxes_;
     std::vector<uint32_t> first_component_;  ///< of each chunk added so far, and one more
     std::vector<Component> components_;
-    std::unordered_map<uint64_t, double> votes_;  ///< by pair of components: positive: the same way
+    SignVotes votes_;  ///< between components
 };
 
 }  // namespace lucarne::octree

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -46,6 +48,29 @@ class SignedForest {
         Link(uint32_t p = 0, bool o = false) : parent(p), opposite(o) {}
     };
     std::vector<Link> links_;
+};
+
+/// Votes of many weak witnesses on how pairs of nodes are turned, and the maximum spanning forest of the
+/// outcome.
+class SignVotes {
+ public:
+    /// `weight` > 0.
+    void add(uint32_t a, uint32_t b, bool opposite, double weight) {
+        votes_[static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b)] += opposite ? -weight : weight;
+    }
+    /// Joins nodes by their votes, the clearest first.
+    void unite(SignedForest& forest) const {
+        std::vector<std::pair<uint64_t, double>> votes(votes_.begin(), votes_.end());
+        std::sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
+            const double x = std::abs(a.second), y = std::abs(b.second);
+            return x != y ? x > y : a.first < b.first;
+        });
+        for (const auto& [pair, vote] : votes)
+            forest.unite(static_cast<uint32_t>(pair >> 32), static_cast<uint32_t>(pair), vote < 0);
+    }
+
+ private:
+    std::unordered_map<uint64_t, double> votes_;
 };
 
 }  // namespace lucarne::octree
