@@ -137,6 +137,22 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
     EXPECT_EQ(io::testing::read_bytes(folder / "taken.luc"), "mine");
 }
 
+TEST(ConvertFaults, NeedNoHandleForEveryInput) {
+    const TempFolder folder;
+    ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "a.las")).code, 0);
+    std::string inputs;
+    for (int i = 0; i < 60; ++i) inputs += quoted(folder / "a.las") + " ";
+    rlimit before{}, few{};
+    ::getrlimit(RLIMIT_NOFILE, &before);
+    few = before;
+    few.rlim_cur = 30;  // inherited by the program
+    ::setrlimit(RLIMIT_NOFILE, &few);
+    const auto outcome = lucarne("convert --normals none " + inputs + " -o " + quoted(folder / "a.luc"));
+    ::setrlimit(RLIMIT_NOFILE, &before);
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_NE(outcome.text.find("60000 points"), std::string::npos) << outcome.text;
+}
+
 TEST(ConvertFaults, RejectEveryBadSharedScanOrConvertIt) {
     const auto data = io::testing::shared_data();
     if (data.empty()) GTEST_SKIP() << "no shared scans here";

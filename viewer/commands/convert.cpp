@@ -24,6 +24,44 @@ struct ConvertOptions {
     std::string memory = "2G", json;
 };
 
+/// A scan that is open only while it is read, so that thousands of inputs do not need thousands of handles.
+class ClosedScan final : public io::PointSource {
+ public:
+    static Result<std::unique_ptr<io::PointSource>> create(const std::string& path) {
+        LUCARNE_ASSIGN(const auto scan, io::open_scan(path));
+        return std::unique_ptr<io::PointSource>(new ClosedScan(path, scan->schema(), scan->info()));
+    }
+    const io::Schema& schema() const override { return schema_; }
+    const io::ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<io::PointReader>> open() const override {
+        LUCARNE_ASSIGN(auto scan, io::open_scan(path_));
+        if (scan->schema() != schema_) return rejected(path_, "changed while it was read");
+        LUCARNE_ASSIGN(auto reader, scan->open());
+        return std::make_unique<Reader>(std::move(scan), std::move(reader));
+    }
+
+ private:
+    class Reader final : public io::PointReader {
+     public:
+        Reader(std::unique_ptr<io::PointSource> scan, std::unique_ptr<io::PointReader> reader)
+            : scan_(std::move(scan)), reader_(std::move(reader)) {}
+        Result<size_t> read(io::PointBatch& batch, size_t most) override {
+            return reader_->read(batch, most);
+        }
+        uint64_t dropped() const override { return reader_->dropped(); }
+
+     private:
+        std::unique_ptr<io::PointSource> scan_;
+        std::unique_ptr<io::PointReader> reader_;
+    };
+    ClosedScan(std::string path, io::Schema schema, io::ScanInfo info)
+        : path_(std::move(path)), schema_(std::move(schema)), info_(std::move(info)) {}
+
+    std::string path_;
+    io::Schema schema_;
+    io::ScanInfo info_;
+};
+
 Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report) {
     nlohmann::json stages = nlohmann::json::array();
     for (const auto& stage : report.stages)
@@ -44,7 +82,7 @@ Result<void> convert(ConvertOptions options) {
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
     std::vector<std::unique_ptr<io::PointSource>> sources;
     for (const auto& input : options.inputs) {
-        LUCARNE_ASSIGN(auto source, io::open_scan(input));
+        LUCARNE_ASSIGN(auto source, ClosedScan::create(input));
         build.inputs.push_back(source.get());
         sources.push_back(std::move(source));
     }
