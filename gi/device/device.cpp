@@ -68,7 +68,10 @@ Result<std::unique_ptr<Device>> Device::current() {
                         epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
     GLint64 bytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
-    info.max_buffer_bytes = static_cast<uint64_t>(bytes);
+    GLint texels = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    info.max_buffer_bytes =
+        std::min(static_cast<uint64_t>(bytes), uint64_t{16} * static_cast<uint64_t>(texels));
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -155,16 +158,28 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(id_, other.id_);
     std::swap(bytes_, other.bytes_);
+    std::swap(textures_, other.textures_);
     return *this;
 }
 
 Buffer::~Buffer() {
+    for (const uint32_t texture : textures_)
+        if (texture) glDeleteTextures(1, &texture);
     if (id_) glDeleteBuffers(1, &id_);
     if (device_) device_->state_->used -= bytes_;
 }
 
 void Buffer::bind(uint32_t binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
+
+void Buffer::bind_texels(uint32_t unit, TexelView view) const {
+    uint32_t& texture = textures_[static_cast<size_t>(view)];
+    if (!texture) {
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &texture);
+        glTextureBuffer(texture, view == TexelView::one_word ? GL_R32UI : GL_RGBA32UI, id_);
+    }
+    glBindTextureUnit(unit, texture);
 }
 
 void Buffer::upload(size_t offset, std::span<const std::byte> data) {

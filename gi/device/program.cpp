@@ -5,6 +5,12 @@
 #include "gi/device/device.h"
 
 namespace lucarne::gi {
+namespace {
+
+constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                                 GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+
+}  // namespace
 
 Program::Program(uint32_t id) : id_(id) {
     GLint local[3] = {1, 1, 1};
@@ -81,14 +87,14 @@ void Program::dispatch(uint32_t x, uint32_t y, uint32_t z) const {
     }
     glUseProgram(id_);
     glDispatchCompute(groups[0], groups[1], groups[2]);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glMemoryBarrier(kAllReads);
 }
 
 void Program::dispatch_indirect(const Buffer& groups, size_t offset) const {
     glUseProgram(id_);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
     glDispatchComputeIndirect(static_cast<GLintptr>(offset));
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    glMemoryBarrier(kAllReads);
 }
 
 }  // namespace lucarne::gi

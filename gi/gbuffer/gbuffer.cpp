@@ -2,15 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <glm/geometric.hpp>
 
+#include "gi/gbuffer/large.h"
+
 namespace lucarne::gi {
 namespace {
-
-constexpr uint32_t kLargeQueue = 65535;  // discs; the least that OpenGL promises of groups in x
-constexpr uint32_t kLargeGroups = 4;     // that share the rows of one large disc
-constexpr uint32_t kLargeHeader = 4;     // words before the queue
 
 void set_view(const Program& program, const CameraView& view) {
     const auto axis = [&](std::string_view name, const glm::vec3& v, float w) {
@@ -36,25 +35,31 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     LUCARNE_TRY(device.reserve(target.texels, pixels * sizeof(GBufferTexel), "G-buffer"));
     LUCARNE_TRY(device.reserve(target.ids, pixels * sizeof(uint32_t), "G-buffer"));
     LUCARNE_TRY(device.reserve(target.keys, pixels * sizeof(uint32_t), "G-buffer"));
-    LUCARNE_TRY(device.reserve(target.large, (kLargeHeader + kLargeQueue) * sizeof(uint32_t), "G-buffer"));
-    LUCARNE_ASSIGN(const Program* splat, device.program("gi/gbuffer/splat.comp"));
-    LUCARNE_ASSIGN(const Program* splat_large, device.program("gi/gbuffer/splat_large.comp"));
+    LUCARNE_TRY(
+        device.reserve(target.large, sizeof(LargeHeader) + kLargeQueue * sizeof(uint32_t), "G-buffer"));
+    LUCARNE_ASSIGN(const Program* plan, device.program("gi/gbuffer/plan_large.comp"));
     LUCARNE_ASSIGN(const Program* resolve, device.program("gi/gbuffer/resolve.comp"));
     target.keys.clear(UINT32_MAX);
     target.ids.clear(kNoSurfel);
+    target.large.clear(0);
     cut.bind();
     target.keys.bind(3);
+    target.keys.bind_texels(3, TexelView::one_word);
     target.ids.bind(4);
     target.large.bind(5);
     target.texels.bind(6);
-    for (const Program* program : {splat, splat_large, resolve}) set_view(*program, view);
-    for (const uint32_t id_pass : {0u, 1u}) {
-        target.large.upload_all(std::vector<uint32_t>{0, kLargeGroups, 1, 0});
-        splat->set("id_pass", id_pass);
-        splat_large->set("id_pass", id_pass);
+    plan->set("blocks", cut.blocks());
+    for (const Defines& defines : {Defines{}, Defines{{"LUCARNE_ID_PASS", "1"}}}) {
+        LUCARNE_ASSIGN(const Program* splat, device.program("gi/gbuffer/splat.comp", defines));
+        LUCARNE_ASSIGN(const Program* large, device.program("gi/gbuffer/splat_large.comp", defines));
+        LUCARNE_ASSIGN(const Program* overflow, device.program("gi/gbuffer/splat_overflow.comp", defines));
+        for (const Program* program : {splat, large, overflow}) set_view(*program, view);
         splat->dispatch(cut.blocks() * kBlockSurfels);
-        splat_large->dispatch_indirect(target.large);
+        plan->dispatch(1);
+        large->dispatch_indirect(target.large, offsetof(LargeHeader, queue_groups));
+        overflow->dispatch_indirect(target.large, offsetof(LargeHeader, overflow_groups));
     }
+    set_view(*resolve, view);
     resolve->dispatch(static_cast<uint32_t>(pixels));
     return {};
 }

@@ -1,26 +1,91 @@
-// One invocation a surfel: draws small discs pixel by pixel and queues large ones for splat_large.comp.
+// One invocation a surfel: draws small discs pixel by pixel and queues the others for splat_large.comp.
+// LUCARNE_ID_PASS: the second of the two passes, see take_pixel.
 layout(local_size_x = 256) in;
 #include "gi/gbuffer/splat.glsl"
 
-const int kLargePixels = 256;
+// A small disc in the picture, to first order about its centre (what is left out is a share radius/depth of the
+// disc): over pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth
+// has the gradient `slope`.
+struct Ellipse {
+    vec2 centre;  // in pixels, their centres at whole numbers
+    float xx, xy, yy;
+    vec2 slope;  // m a pixel
+};
+
+Ellipse project(Disc disc) {
+    vec2 scale = pixels_per_tangent();
+    vec2 tangent = disc.centre.xy / disc.centre.z;
+    Ellipse e;
+    e.centre = tangent * scale + 0.5 * vec2(view_width, view_height) - 0.5;
+    float facing = dot(disc.normal, vec3(tangent, 1.0));
+    if (abs(facing) < 1e-4) facing = 1e-4;
+    vec2 step = disc.centre.z / scale;  // m a pixel at the centre's depth
+    e.slope = -step * disc.normal.xy / facing;
+    vec3 along_x = vec3(e.slope.x * tangent + vec2(step.x, 0.0), e.slope.x);
+    vec3 along_y = vec3(e.slope.y * tangent + vec2(0.0, step.y), e.slope.y);
+    float inverse = 1.0 / max(disc.radius * disc.radius, 1e-12);
+    e.xx = dot(along_x, along_x) * inverse;
+    e.xy = 2.0 * dot(along_x, along_y) * inverse;
+    e.yy = dot(along_y, along_y) * inverse;
+    return e;
+}
+
+float ellipse_distance2(Ellipse e, vec2 d) { return d.x * (e.xx * d.x + e.xy * d.y) + e.yy * d.y * d.y; }
+
+// The order of the disc at an offset; see disc_key.
+uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
+    float nearest = max(disc.centre.z - disc.extent, view_forward.w);
+    precise float z = clamp(disc.centre.z + e.slope.x * d.x + e.slope.y * d.y, nearest, disc.centre.z + disc.extent);
+    precise float key = z + disc.push * min(ellipse_distance2(e, d), 1.0);
+    return floatBitsToUint(key);
+}
+
+void draw_small(Disc disc, uint id) {
+    Ellipse e = project(disc);
+    vec2 home = floor(e.centre + 0.5);
+    float determinant = max(e.xx * e.yy - 0.25 * e.xy * e.xy, 1e-12);
+    vec2 reach = min(sqrt(vec2(e.yy, e.xx) / determinant), vec2(kSmallRadius + 1.0));
+    vec2 low = max(min(ceil(e.centre - reach), home), vec2(0.0));
+    vec2 high = min(max(floor(e.centre + reach), home), vec2(view_width, view_height) - 1.0);
+    if (low.x > high.x || low.y > high.y) return;
+    float columns = high.x - low.x + 1.0;
+    // Up to 32 pixels are tested, then those that it takes are written: llvmpipe writes one lane after the other, and
+    // few lanes take the same place in the loop. Loops test at their end, since llvmpipe runs a body that no lane
+    // enters.
+    vec2 pixel = low;
+    do {
+        vec2 start = pixel;
+        uint taken = 0u, bit = 1u;
+        do {
+            vec2 d = pixel - e.centre;
+            bool covered = ellipse_distance2(e, d) <= 1.0 || pixel == home;
+            if (covered && takes_pixel(pixel, ellipse_key(disc, e, d))) taken |= bit;
+            pixel = pixel.x < high.x ? vec2(pixel.x + 1.0, pixel.y) : vec2(low.x, pixel.y + 1.0);
+            bit <<= 1;
+        } while (bit != 0u && pixel.y <= high.y);
+        do {
+            if (taken == 0u) break;
+            float column = start.x - low.x + float(findLSB(taken));
+            taken &= taken - 1u;
+            float row = floor((column + 0.5) / columns);
+            vec2 chosen = vec2(low.x + column - row * columns, start.y + row);
+            take_pixel(chosen, ellipse_key(disc, e, chosen - e.centre), id);
+        } while (taken != 0u);
+    } while (pixel.y <= high.y);
+}
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
     uint item;
     PackedSurfel surfel;
     Disc disc;
-    ivec4 box;
-    ivec2 home;
-    if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc) || !disc_box(disc, box, home)) return;
-    ivec2 size = box.zw - box.xy + 1;
-    if (size.x * size.y > kLargePixels) {
-        uint place = atomicAdd(large_count, 1u);
-        if (place < uint(large_ids.length())) {
-            large_ids[place] = id;
-            atomicMax(large_groups[0], place + 1u);
-            return;
-        }
+    if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc)) return;
+    if (is_small(disc)) {
+        draw_small(disc, id);
+        return;
     }
-    for (int y = box.y; y <= box.w; ++y)
-        for (int x = box.x; x <= box.z; ++x) take_pixel(disc, id, ivec2(x, y), home);
+#ifndef LUCARNE_ID_PASS  // the queue serves both passes
+    uint place = atomicAdd(large.count, 1u);
+    if (place < kLargeQueue) large_ids[place] = id;
+#endif
 }

@@ -1,22 +1,44 @@
-// What the two splatting kernels share: the targets, and how a disc takes a pixel.
+// What the splatting kernels share: the targets, and how a disc takes a pixel. Two passes of 32 bits each, for want of
+// 64-bit atomics: the first leaves the nearest key in each pixel, the second (LUCARNE_ID_PASS) the smallest id of those
+// that have it.
 #include "gi/gbuffer/disc.glsl"
+#include "gi/gbuffer/large.h"
 
 layout(std430, binding = 3) buffer Keys { uint keys[]; };
 layout(std430, binding = 4) buffer Ids { uint ids[]; };
 layout(std430, binding = 5) buffer Large {
-    uint large_groups[3];  // of the indirect dispatch that draws the queue
-    uint large_count;      // of discs that asked for a place
+    LargeHeader large;
     uint large_ids[];
 };
+layout(binding = 3) uniform usamplerBuffer key_texels;  // the keys again; perhaps not the latest in the first pass
 
-uniform uint id_pass;  // 0: the nearest key a pixel; 1: the smallest id among those with that key
+// Discs of a larger radius, in pixels, are drawn by a workgroup each.
+const float kSmallRadius = 8.0;
+bool is_small(Disc disc) {
+    vec2 pixels = disc.radius * pixels_per_tangent();
+    return max(pixels.x, pixels.y) <= kSmallRadius * disc.centre.z;
+}
 
-void take_pixel(Disc disc, uint id, ivec2 pixel, ivec2 home) {
+uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
+
+bool takes_pixel(vec2 pixel, uint key) {
+    uint held = texelFetch(key_texels, int(pixel_index(pixel))).x;
+#ifdef LUCARNE_ID_PASS
+    return key == held;
+#else
+    return key < held;
+#endif
+}
+
+void take_pixel(vec2 pixel, uint key, uint id) {
+#ifdef LUCARNE_ID_PASS
+    atomicMin(ids[pixel_index(pixel)], id);
+#else
+    atomicMin(keys[pixel_index(pixel)], key);
+#endif
+}
+
+void take_large_pixel(Disc disc, uint id, ivec2 pixel, ivec2 home) {
     uint key = disc_key(disc, pixel_tangent(vec2(pixel)), pixel == home);
-    uint at = uint(pixel.y) * view_width + uint(pixel.x);
-    if (id_pass == 0u) {
-        if (key < keys[at]) atomicMin(keys[at], key);
-    } else if (key != kNoKey && key == keys[at]) {
-        atomicMin(ids[at], id);
-    }
+    if (key != kNoKey && takes_pixel(vec2(pixel), key)) take_pixel(vec2(pixel), key, id);
 }

@@ -12,5 +12,5 @@ void main() {
     if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc) || !disc_box(disc, box, home)) return;
     for (int y = box.y + int(gl_WorkGroupID.y); y <= box.w; y += int(gl_NumWorkGroups.y))
         for (int x = box.x + int(gl_LocalInvocationID.x); x <= box.z; x += 64)
-            take_pixel(disc, id, ivec2(x, y), home);
+            take_large_pixel(disc, id, ivec2(x, y), home);
 }

@@ -49,9 +49,9 @@ Surfel unpack(const std::vector<CutItem>& items, const CutItem& item, const Pack
 }  // namespace
 
 void DeviceCut::bind() const {
-    pool_->bind(0);
-    items_.bind(1);
-    blocks_buffer_.bind(2);
+    pool_->bind_texels(0, TexelView::four_words);
+    items_.bind_texels(1, TexelView::four_words);
+    blocks_buffer_.bind_texels(2, TexelView::four_words);
 }
 
 Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
@@ -128,7 +128,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
     std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
     std::vector<CutItem> items;
-    std::vector<glm::uvec2> blocks;
+    std::vector<CutBlock> blocks;
     uint64_t surfels = 0;
     for (const CutEntry& entry : sorted) {
         const auto resident = resident_.find(entry.node);
@@ -138,7 +138,10 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         const auto parent = item_of.find(info.parent);
         if (info.parent != octree::kNoNode && parent == item_of.end()) continue;
         const auto index = static_cast<uint32_t>(items.size());
-        if (parent != item_of.end()) items[parent->second].child[info.key.octant()] = static_cast<int>(index);
+        if (parent != item_of.end()) {
+            items[parent->second].child[info.key.octant()] = static_cast<int>(index);
+            items[parent->second].inner = 1;
+        }
         item_of.emplace(entry.node, index);
         const octree::Cube cube = source.header().root.of(info.key);
         CutItem item{};
@@ -147,14 +150,14 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         item.first = resident->second.first;
         item.count = std::min(entry.count, resident->second.count);
         item.area_floor = sane_floor(info, item.count, unit, item.size);
-        item.first_block = static_cast<uint32_t>(blocks.size());
         std::fill(std::begin(item.child), std::end(item.child), -1);
-        for (uint32_t at = 0; at < item.count; at += kBlockSurfels) blocks.emplace_back(index, at);
+        for (uint32_t at = 0; at < item.count; at += kBlockSurfels)
+            blocks.push_back({index, item.first + at, std::min(item.count - at, kBlockSurfels), 0});
         surfels += item.count;
         items.push_back(item);
     }
     LUCARNE_TRY(device.reserve(cut.items_, items.size() * sizeof(CutItem), "cut"));
-    LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(glm::uvec2), "cut"));
+    LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(CutBlock), "cut"));
     cut.items_.upload_all(items);
     cut.blocks_buffer_.upload_all(blocks);
     cut.pool_ = &buffer_;

@@ -36,7 +36,7 @@ class DeviceCut {
  public:
     uint32_t surfels() const { return surfels_; }  ///< points drawn
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
-    /// Binds pool (0), items (1), blocks (2, uvec2). gi/shared/cut.glsl declares them.
+    /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
     void bind() const;
 
  private:

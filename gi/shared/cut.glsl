@@ -1,26 +1,32 @@
-// The surfels of a cut: bindings 0 to 2, which DeviceCut::bind sets, and what reads them.
+// The surfels of a cut and what reads them. DeviceCut::bind binds pool, items and blocks, as texels of four words:
+// see Buffer::bind_texels for why.
 #include "octree/footprint.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
-layout(std430, binding = 0) readonly buffer CutPool { PackedSurfel cut_pool[]; };
-layout(std430, binding = 1) readonly buffer CutItems { CutItem cut_items[]; };
-layout(std430, binding = 2) readonly buffer CutBlocks { uvec2 cut_blocks[]; };
+layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
+layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (first, count, floor, inner), children
+layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
 
-// Finds surfel `id` of the cut; false where the id lies in the gap behind a node's last surfel. Workgroups of
+// Finds surfel `id` of the cut; false where the id lies in the gap behind a block's last surfel. Workgroups of
 // kBlockSurfels invocations, one a block, meet one item each.
 bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
-    uvec2 block = cut_blocks[id / kBlockSurfels];
-    uint place = block.y + id % kBlockSurfels;
+    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
+    uint place = id % kBlockSurfels;
     item = block.x;
-    if (place >= cut_items[item].count) return false;
-    surfel = cut_pool[cut_items[item].first + place];
+    if (place >= block.z) return false;
+    uvec4 words = texelFetch(cut_pool, int(block.y + place));
+    surfel = PackedSurfel(words.x, words.y, words.z, words.w);
     return true;
 }
 
+// The item's cube: origin, and its side (m).
+vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int(4u * item))); }
+
 // Metres, relative to the local origin.
 vec3 surfel_position(uint item, PackedSurfel surfel) {
-    return cut_items[item].origin + cut_items[item].size * surfel_fractions(surfel.a, surfel.b);
+    vec4 cube = cut_item_cube(item);
+    return cube.xyz + cube.w * surfel_fractions(surfel.a, surfel.b);
 }
 
 bool surfel_has_normal(PackedSurfel surfel) { return (surfel.d & kSurfelHasNormal) != 0u; }
@@ -28,18 +34,22 @@ vec3 surfel_normal(PackedSurfel surfel) { return decode_octahedral(surfel.c); }
 
 // The floor of the deepest item of the cut around the surfel: only surfels of ancestors look further than once.
 float surfel_area_floor(uint item, PackedSurfel surfel) {
-    for (uint depth = 0u; depth < kOctantLevels; ++depth) {
-        int child = cut_items[item].child[surfel_octant(surfel.a, surfel.b, depth)];
+    uvec4 facts = texelFetch(cut_items, int(4u * item + 1u));
+    for (uint depth = 0u; facts.w != 0u && depth < kOctantLevels; ++depth) {
+        uint octant = surfel_octant(surfel.a, surfel.b, depth);
+        uvec4 children = texelFetch(cut_items, int(4u * item + 2u + (octant >> 2)));
+        int child = int(children[octant & 3u]);
         if (child < 0) break;
         item = uint(child);
+        facts = texelFetch(cut_items, int(4u * item + 1u));
     }
-    return cut_items[item].area_floor;
+    return uintBitsToFloat(facts.z);
 }
 
 // Disc radius (m) and share of the surface (m^2).
 float cut_surfel_radius(uint item, PackedSurfel surfel) {
-    return surfel_radius(surfel_own_area(surfel.b, cut_items[item].size), surfel_area_floor(item, surfel));
+    return surfel_radius(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));
 }
 float cut_surfel_area(uint item, PackedSurfel surfel) {
-    return surfel_area(surfel_own_area(surfel.b, cut_items[item].size), surfel_area_floor(item, surfel));
+    return surfel_area(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));
 }

@@ -4,6 +4,7 @@
 
 #ifdef __cplusplus
 #include <cstdint>
+
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 namespace lucarne::gi {
@@ -22,25 +23,32 @@ struct PackedSurfel {
 };
 const uint kSurfelHasNormal = 0x40000000u;
 
-// One node of a cut. A surfel's position is origin + size * fraction; metres, relative to the frame's local origin.
+// One node of a cut. A surfel's position is origin + size * fraction; metres, relative to the frame's local
+// origin.
 struct CutItem {
     vec3 origin;
     float size;
     uint first;        // of its surfels in the pool
     uint count;        // prefix in use
     float area_floor;  // m^2, at that prefix
-    uint first_block;  // of its blocks in the cut's block list
+    uint inner;        // 1: some child is in the cut, 0: it is the deepest node around its surfels
     int child[8];      // the cut's item in each octant, -1 for none
 };
 
-// Surfels are processed in blocks of kBlockSurfels: block b of a cut is item blocks[b].x from surfel blocks[b].y on.
-// A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone, never
-// on what else is resident, so that ties broken by id are the same on every run.
+// Surfels are processed in blocks of up to kBlockSurfels, each of one item.
+// A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone,
+// never on what else is resident, so that ties broken by id are the same on every run.
+struct CutBlock {
+    uint item;
+    uint first;  // of its surfels in the pool
+    uint count;
+    uint pad;
+};
 const uint kBlockSurfels = 256u;
 const uint kNoSurfel = 0xffffffffu;
 
 #ifdef __cplusplus
-static_assert(sizeof(PackedSurfel) == 16 && sizeof(CutItem) == 64);
+static_assert(sizeof(PackedSurfel) == 16 && sizeof(CutItem) == 64 && sizeof(CutBlock) == 16);
 
 /// A surfel as the host sees it (the reference engine, tests).
 struct Surfel {
