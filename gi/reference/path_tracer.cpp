@@ -14,6 +14,7 @@ namespace {
 
 constexpr uint32_t kRouletteFrom = 4;  // bounces that every path may take before chance ends it
 constexpr float kLargestSurvival = 0.95f;
+constexpr float kMostShift = 4.0f;  // radii: beyond that the ray grazes a plane that is hardly the surface
 
 }  // namespace
 
@@ -21,8 +22,9 @@ struct PathTracer::Vertex {
     glm::vec3 position;
     glm::vec3 normal;  // toward where the path came from
     glm::vec3 out;     // likewise, along the ray
-    glm::vec3 origin;  // of rays that leave
+    glm::vec3 origin;  // of rays that leave, a radius above
     glm::vec3 emission;
+    float radius;
     Reflectance surface;
 };
 
@@ -38,6 +40,7 @@ PathTracer::Vertex PathTracer::vertex(const Start& start) const {
             start.viewer,
             offset_origin(start.position, start.normal, start.radius),
             glm::vec3(material.emission.x, material.emission.y, material.emission.z),
+            start.radius,
             make_reflectance(material, start.albedo)};
 }
 
@@ -79,11 +82,19 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
         const Surfel& surfel = surfels_.surfels()[*hit];
         const glm::vec3 out = -scattered->direction;
         const float side = glm::dot(surfel.normal, out);
-        // The plane's own equation is more exact than Embree's distance along the ray.
         if (side == 0) break;
-        const float distance = glm::dot(surfel.normal, at.origin - surfel.position) / side;
-        at = vertex({at.origin + scattered->direction * distance, side > 0 ? surfel.normal : -surfel.normal,
+        // The planes' own equation is more exact than Embree's distance.
+        const float lifted = glm::dot(surfel.normal, at.origin - surfel.position) / side;
+        const float straight = glm::dot(surfel.normal, at.position - surfel.position) / side;
+        const float radius = at.radius;
+        const glm::vec3 from = at.position;
+        at = vertex({at.origin + scattered->direction * lifted, side > 0 ? surfel.normal : -surfel.normal,
                      out, surfel.albedo, surfel.radius, surfel.material});
+        // The ray started a radius above its surface to get clear of it, and would see everything from a
+        // radius nearer. So what it met is lit where the line from the surface itself meets that plane; rays
+        // go on from what was hit, so that none gets out through a corner.
+        if (straight > 0 && std::abs(straight - lifted) < kMostShift * radius)
+            at.position = from + scattered->direction * straight;
         if (counts(bounce)) sum += throughput * own_light(at);
     }
     return sum;

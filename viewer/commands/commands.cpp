@@ -4,6 +4,7 @@
 
 namespace lucarne::viewer {
 
+void add_compare(CLI::App& app, Command& chosen);
 void add_convert(CLI::App& app, Command& chosen);
 void add_export(CLI::App& app, Command& chosen);
 void add_fly(CLI::App& app, Command& chosen);
@@ -14,8 +15,9 @@ void add_verify(CLI::App& app, Command& chosen);
 void add_view(CLI::App& app, Command& chosen);
 
 std::span<const AddCommand> commands() {
-    static constexpr std::array<AddCommand, 8> kAll = {add_view,     add_convert, add_render, add_fly,
-                                                       add_generate, add_info,    add_verify, add_export};
+    static constexpr std::array<AddCommand, 9> kAll = {add_view,   add_convert,  add_render,
+                                                       add_fly,    add_generate, add_info,
+                                                       add_verify, add_export,   add_compare};
     return kAll;
 }
 
