@@ -21,7 +21,9 @@ namespace {
 
 using octree::ResidencyEvent;
 
-constexpr size_t kNodesAFrame = 64;  // uploaded in a frame that does not wait, so that it stays short
+// A frame that does not wait takes nodes in for this share of the time that the last one took, and a step at least:
+// it stays about as short, and slow frames do not keep a picture waiting for its nodes.
+constexpr double kUploadShare = 0.25;
 constexpr size_t kNodesAtOnce = 64;  // packed in parallel before they are uploaded
 constexpr double kFocusCells = 32;   // the light cut's focus moves in steps of 1/32 of the root cube
 
@@ -68,6 +70,7 @@ struct Pipeline::State {
     void start_stream();
     void choose_cuts(const FrameRequest& request);
     Result<void> stream(bool wait);
+    Result<bool> take_arrivals(bool wait);
     Result<bool> apply(std::span<const ResidencyEvent> events);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
@@ -96,6 +99,7 @@ struct Pipeline::State {
         true;  // scene, settings, budgets or engine: cuts are chosen anew, the average starts again
 
     FrameRequest last;
+    double last_seconds = 0;  // that the last frame took
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
     gi::Buffer sample, mean, picture;  // radiance of this frame, of the average; RGBA8
@@ -160,6 +164,17 @@ Result<bool> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
     return true;
 }
 
+/// What has arrived, all of it with `wait`. False as in apply().
+Result<bool> Pipeline::State::take_arrivals(bool wait) {
+    const auto start = std::chrono::steady_clock::now();
+    for (;;) {
+        const auto events = residency->poll(wait ? SIZE_MAX : kNodesAtOnce);
+        LUCARNE_ASSIGN(const bool applied, apply(events));
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+        if (!applied || wait || events.empty() || spent.count() > kUploadShare * last_seconds) return applied;
+    }
+}
+
 /// Brings the pool closer to the chosen cuts, or with `wait` as close as the caps allow.
 Result<void> Pipeline::State::stream(bool wait) {
     std::vector<const octree::Cut*> wanted = {&view.chosen, &light_cut.chosen};
@@ -168,8 +183,7 @@ Result<void> Pipeline::State::stream(bool wait) {
     for (int round = 0; round < 2; ++round) {
         residency->want(wanted);
         if (wait) residency->wait();
-        const auto events = residency->poll(wait ? SIZE_MAX : kNodesAFrame);
-        LUCARNE_ASSIGN(const bool applied, apply(events));
+        LUCARNE_ASSIGN(const bool applied, take_arrivals(wait));
         if (applied) break;
         start_stream();
     }
@@ -357,7 +371,8 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     LUCARNE_TRY(state.finish(request));
     state.last = request;
     state.changed = false;
-    return state.stats(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return state.stats(state.last_seconds);
 }
 
 }  // namespace lucarne::viewer

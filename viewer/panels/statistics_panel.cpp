@@ -38,7 +38,7 @@ void passes_table(const FrameStats& stats) {
 }  // namespace
 
 void draw_statistics_panel(ViewModel& model) {
-    const float width = ImGui::GetFontSize() * 19;
+    const float width = ImGui::GetFontSize() * 22;
     ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 8, 8), ImGuiCond_FirstUseEver,
                             ImVec2(1, 0));
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, FLT_MAX));
@@ -48,7 +48,7 @@ void draw_statistics_panel(ViewModel& model) {
             const FrameStats& stats = picture.stats;
             ImGui::Text("%.1f ms a picture, %u x %u%s", stats.seconds * 1e3, picture.size.width,
                         picture.size.height, picture.moving ? ", moving" : "");
-            ImGui::Text("cuts %.1f %% complete, %llu nodes on their way", stats.complete() * 100,
+            ImGui::Text("cuts %.1f %% complete, %llu nodes to come", stats.complete() * 100,
                         static_cast<unsigned long long>(stats.nodes_pending));
             ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
             ImGui::Text("loaded %s, device %s", bytes_text(stats.bytes_loaded).c_str(),
