@@ -27,7 +27,7 @@ constexpr float kIsolated = 0.75f;
 /// the neighbours to their own 2nd is about 2 within a surface, 3 on its edge, and 4 along the lines of the
 /// most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
-constexpr float kSparser = 5.0f;
+constexpr float kSparser = 7.0f;  // not one of 200,000 points of a random pattern
 /// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
@@ -56,8 +56,7 @@ bool stands_apart(std::span<const glm::vec3> near) {
     if (their_reach2(near, near.size() - 1) > limit && their_reach2(near, kOwnRank) > limit) return false;
     size_t denser = 0;
     for (size_t i = 1; i < near.size(); ++i) denser += their_reach2(near, i) < limit;
-    return 3 * denser >
-           2 * (near.size() - 1);  // half would call one random point in 7000 apart, this none in 200000
+    return 2 * denser >= near.size() - 1;
 }
 
 float deviation_of(const Plane& plane, size_t points) {
