@@ -99,7 +99,8 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
     const auto assemble = [&](const std::shared_ptr<Built>& built) {
         if (error.any()) return;
         const uint64_t count = store.chunks()[built->chunk].count;
-        const bool whole = built->tree.overflow_first == count;  // else its rest is read when its parent is there
+        const bool whole =
+            built->tree.overflow_first == count;  // else its rest is read when its parent is there
         progress.add(count);
         if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
             error.report(built->chunk, std::move(done).error());
@@ -144,7 +145,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
     const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
     const NodeLimits limits(inputs.schema().stride + added);
-    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, threads};
+    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
     LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, work));
 
     BuildReport report;

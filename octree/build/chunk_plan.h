@@ -18,8 +18,9 @@ struct Chunk {
 /// How a build shares out `--memory`.
 struct MemoryPlan {
     struct Work {
-        uint32_t record = 0;  ///< bytes of a record in the cache
-        size_t leaf = 0;      ///< most points of a leaf
+        uint32_t record = 0;   ///< bytes of a record in the cache
+        size_t leaf = 0;       ///< most points of a leaf
+        bool normals = false;  ///< normals or areas are estimated: that stage needs more at the least
         unsigned threads = 1;
     };
     /// Errors: too little memory for any work.

@@ -146,11 +146,11 @@ TEST(SurfaceBuild, KeepsTheInputsNormalsAndEstimatesAreasOnly) {
 TEST(SurfaceBuild, IsTheSameFileForAnyThreads) {
     const TempFolder folder;
     const auto source = sphere(150'000);
-    ASSERT_TRUE(converted(source, folder / "1.luc", NormalsMode::automatic, 1, uint64_t{48} << 20));
+    ASSERT_TRUE(converted(source, folder / "1.luc", NormalsMode::automatic, 1, uint64_t{64} << 20));
     const std::string reference = io::testing::read_bytes(folder / "1.luc");
     for (const unsigned threads : {2u, 4u}) {
         const auto name = folder / (std::to_string(threads) + ".luc");
-        ASSERT_TRUE(converted(source, name, NormalsMode::automatic, threads, uint64_t{48} << 20));
+        ASSERT_TRUE(converted(source, name, NormalsMode::automatic, threads, uint64_t{64} << 20));
         EXPECT_TRUE(io::testing::read_bytes(name) == reference) << threads << " threads";
     }
 }

@@ -122,7 +122,8 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->type_name("auto|keep|estimate|none")
         ->default_str("auto");
     command
-        ->add_option("--memory", options->memory, "Cap on memory, however large the input is (16M or more)")
+        ->add_option("--memory", options->memory,
+                     "Cap on memory, however large the input is (64M or more; 16M without normals)")
         ->capture_default_str()
         ->type_name("BYTES");
     command->add_option("--threads", options->build.threads, "0: all cores")
