@@ -98,6 +98,7 @@ json scan_json(const io::ScanInfo& scan) {
             {"format", scan.format},
             {"declared_points", scan.declared_points},
             {"metres_per_unit", scan.metres_per_unit},
+            {"color_bits", scan.color_bits},
             {"stations", std::move(stations)},
             {"details", scan.details}};
 }
@@ -108,6 +109,8 @@ io::ScanInfo scan_of(const json& value) {
     scan.format = value.at("format").get<std::string>();
     scan.declared_points = value.at("declared_points").get<uint64_t>();
     scan.metres_per_unit = number(value.at("metres_per_unit"));
+    scan.color_bits = value.value("color_bits", scan.color_bits);
+    require(scan.color_bits == 0 || scan.color_bits == 8 || scan.color_bits == 16, "colours of an unknown width");
     for (const auto& s : value.at("stations"))
         scan.stations.push_back({s.at("id").get<uint32_t>(), vector_of(s.at("position"))});
     scan.details = value.at("details").get<std::string>();
