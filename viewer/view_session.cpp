@@ -180,6 +180,7 @@ Result<void> ViewSession::run() {
         send_request();
         if (shot_) LUCARNE_TRY(worker_.error());
     }
+    window_.hide();
     return {};
 }
 

@@ -92,6 +92,11 @@ void Window::wake() {
     glfwPostEmptyEvent();
 }
 
+void Window::hide() {
+    glfwHideWindow(window_);
+    glfwPollEvents();
+}
+
 bool Window::closing() const {
     return glfwWindowShouldClose(window_);
 }

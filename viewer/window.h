@@ -46,6 +46,8 @@ class Window {
     /// What was drawn, RGBA8 of framebuffer()'s size, row 0 on top. Between draw() and swap().
     std::vector<std::byte> capture() const;
     void swap();
+    /// Off the screen at once, though a picture may still have to be finished before the program ends.
+    void hide();
 
  private:
     Window() = default;
