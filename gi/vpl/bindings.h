@@ -6,16 +6,20 @@ namespace lucarne::gi::vpl {
 
 // Storage bindings of this room's shaders; 0 to 2 are the cut's.
 inline constexpr uint32_t kBindMaterials = 3;
-inline constexpr uint32_t kBindGBuffer = 4;   // camera's or light's texels
-inline constexpr uint32_t kBindClusters = 5;
-inline constexpr uint32_t kBindConstants = 6;  // FrameConstants
-inline constexpr uint32_t kBindPoints = 7;    // Halton points
+inline constexpr uint32_t kBindGBuffer = 4;  // camera's or light's texels
+inline constexpr uint32_t kBindCasters = 5;
+inline constexpr uint32_t kBindPoints = 7;  // Halton points
 inline constexpr uint32_t kBindImportance = 8;
-inline constexpr uint32_t kBindLights = 9;    // VplLight[]
+inline constexpr uint32_t kBindLights = 9;  // VplLight[]
 inline constexpr uint32_t kBindAtlas = 10;
 inline constexpr uint32_t kBindCoarse = 11;
-inline constexpr uint32_t kBindDiffuse = 12;  // irradiance from the VPLs, a pixel
-inline constexpr uint32_t kBindSpecular = 13; // radiance by the receiver's lobe, a pixel
+inline constexpr uint32_t kBindQueue = 11;
+inline constexpr uint32_t kBindDiffuse = 12;   // irradiance from the VPLs, a pixel
+inline constexpr uint32_t kBindSpecular = 13;  // radiance by the receiver's lobe, a pixel
 inline constexpr uint32_t kBindRadiance = 14;
+
+/// VPLs come in runs of so many, the last one filled up with dead ones: enter.comp tries a run in one
+/// dispatch.
+inline constexpr uint32_t kRunMaps = 32;
 
 }  // namespace lucarne::gi::vpl

@@ -48,7 +48,7 @@ Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
         if (!(cosines > 0.0 && light_cosine > 0.0)) continue;  // also the dead
         float distance2 = dot(offset, offset);
         if (!vpl_sees(i, light_normal.xyz, offset, sqrt(distance2), receiver.normal)) continue;
-        float geometry = cosines * light_cosine / (distance2 * (distance2 + position.w / kPi));
+        float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, position.w / kPi)));
         vec4 diffuse = lights[i].diffuse;
         vec3 arriving = diffuse.xyz;
 #ifdef LUCARNE_GLOSSY

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "io/core/random.h"
 
@@ -20,17 +21,19 @@ inline double radical_inverse(uint32_t base, uint64_t index) {
     return value;
 }
 
-/// The place of a point of [0, 1)^2 along a Z-order curve: neighbours on the curve are neighbours in the square.
+/// The place of a point of [0, 1)^2 along a Z-order curve: neighbours on the curve are neighbours in the
+/// square.
 inline uint32_t curve_position(const glm::vec2& point) {
     uint32_t position = 0;
     const auto x = static_cast<uint32_t>(point.x * 65536), y = static_cast<uint32_t>(point.y * 65536);
-    for (uint32_t bit = 0; bit < 16; ++bit) position |= (x >> bit & 1) << 2 * bit | (y >> bit & 1) << (2 * bit + 1);
+    for (uint32_t bit = 0; bit < 16; ++bit)
+        position |= (x >> bit & 1) << 2 * bit | (y >> bit & 1) << (2 * bit + 1);
     return position;
 }
 
-/// `count` points of the Halton sequence in bases 2 and 3 (Halton 1960), moved on the torus by a random vector that
-/// follows from `seed` and `frame` (Cranley and Patterson 1976): every frame samples anew, every run the same.
-/// Sorted along a curve, so that runs of them are clusters and every n-th is an even sample.
+/// `count` points of the Halton sequence in bases 2 and 3 (Halton 1960), moved on the torus by a random
+/// vector that follows from `seed` and `frame` (Cranley and Patterson 1976): every frame samples anew, every
+/// run the same. Sorted along a curve, so that runs of them are clusters and every n-th is an even sample.
 inline std::vector<glm::vec2> halton_points(uint32_t count, uint64_t seed, uint64_t frame) {
     Random random(seed, frame);
     const double shift_x = random.uniform(), shift_y = random.uniform();

@@ -8,34 +8,30 @@ layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/gbuffer.glsl"
-#include "gi/shared/spot.h"
-#include "gi/vpl/constants.h"
 #include "gi/vpl/importance.glsl"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 4) readonly buffer LightGBuffer { GBufferTexel light_texels[]; };
-layout(std430, binding = 6) readonly buffer Constants { FrameConstants constants; };
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
     if (at.x >= importance_side || at.y >= importance_side) return;
-    CameraView view = constants.light_view;
     vec2 value = vec2(0.0);
-    if (at.x < view.width && at.y < view.height) {
-        GBufferTexel texel = light_texels[at.y * view.width + at.x];
+    if (at.x < light_view.width && at.y < light_view.height) {
+        GBufferTexel texel = light_texels[at.y * light_view.width + at.x];
         // The cone's edge crosses texels: the mean of centre and corners, and lit where any of them is.
         float intensity = 0.0;
         for (uint i = 0u; i < 5u; ++i) {
             vec2 offset = i == 4u ? vec2(0.5) : vec2(i & 1u, i >> 1);
-            vec3 away = normalize(view_ray(view, vec2(at) + offset));
-            intensity += 0.2 * luminance(spot_intensity(constants.spot, away));
+            vec3 away = normalize(view_ray(light_view, vec2(at) + offset));
+            intensity += 0.2 * luminance(spot_intensity(spot, away));
         }
         if (texel.depth > 0.0 && intensity > 0.0) {
             Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
             float lobe = 0.5 * r.ks * (r.exponent + 2.0) * sqrt(3.0 / (2.0 * r.exponent + 3.0));
-            value = vec2(intensity * ray_solid_angle(view, vec2(at) + 0.5) * (luminance(r.kd) + lobe), 1.0);
+            value = vec2(intensity * ray_solid_angle(vec2(at) + 0.5) * (luminance(r.kd) + lobe), 1.0);
         }
     }
     importance[at.y * importance_side + at.x] = value;

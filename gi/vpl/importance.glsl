@@ -5,10 +5,13 @@
 // below; all levels lie one after the other in one buffer.
 
 #include "gi/shared/gbuffer.glsl"
+#include "gi/shared/spot.h"
 
 layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
+uniform CameraView light_view;
+uniform SpotLight spot;
 
 // The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
 // surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).
@@ -20,10 +23,11 @@ uint importance_level(uint level) {  // where a level begins
     return first;
 }
 
-// Solid angle of one pixel of a pinhole view about the point `at` (pixels): dA cos^3 at unit depth, sr.
-float ray_solid_angle(CameraView view, vec2 at) {
-    float pixel_area = 4.0 * length(view.right.xyz) * length(view.up.xyz) / (float(view.width) * float(view.height));
-    vec3 ray = view_ray(view, at);
+// Solid angle of one pixel of the light's view about the point `at` (pixels): dA cos^3 at unit depth, sr.
+float ray_solid_angle(vec2 at) {
+    float pixels = float(light_view.width) * float(light_view.height);
+    float pixel_area = 4.0 * length(light_view.right.xyz) * length(light_view.up.xyz) / pixels;
+    vec3 ray = view_ray(light_view, at);
     float cosine = inversesqrt(dot(ray, ray));
     return pixel_area * cosine * cosine * cosine;
 }

@@ -1,3 +1,5 @@
+#include "gi/vpl/thinning.glsl"
+
 // The parabolic map of a VPL's hemisphere (Brabec, Annen, Seidel 2002) and the layout of the atlas of them.
 //
 // In the VPL's frame (z its normal) direction w has the map coordinates (u, v) = w.xy / (1 + w.z): the stereographic
@@ -11,15 +13,12 @@ uniform uint map_side;  // texels along a side of one VPL's map; maps lie one af
 // 8 bits hold the radius of the surfel instead (2^(code/8 - 16) m), which leaves the distance 15 bits of mantissa.
 const uint kNothing = 0xffffffffu;
 
-uint pack_map_texel(float distance_m, float radius) {
-    uint code = uint(clamp(8.0 * (log2(radius) + 16.0) + 0.5, 0.0, 254.0));
-    return (floatBitsToUint(distance_m) & 0xffffff00u) | code;
+uint map_radius_code(float radius) { return uint(clamp(8.0 * (log2(radius) + 16.0) + 0.5, 0.0, 254.0)); }
+uint pack_map_texel(float distance_m, uint radius_code) {
+    return (floatBitsToUint(distance_m) & 0xffffff00u) | radius_code;
 }
 float map_distance(uint texel) { return uintBitsToFloat(texel & 0xffffff00u); }
 float map_radius(uint texel) { return exp2(float(texel & 0xffu) * 0.125 - 16.0); }
-
-// Surfels are thinned to splats of this angle (radius over distance) as seen from the VPL; see splat.comp.
-uniform float splat_angle;
 
 float splat_radius(float surfel_radius, float distance_m) { return max(surfel_radius, splat_angle * distance_m); }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <span>
+
+#include <glm/vec2.hpp>
 
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
@@ -15,10 +16,10 @@ struct Seeds {
     Buffer lights;      ///< VplLight[points]
 };
 
-/// Places one VPL a point of `points` on what the light sees: importance map, mip chain, hierarchical warping.
-/// Needs bound: materials (3) and frame constants (6). `light_gbuffer` has the size of the constants' light view.
-/// Errors: no device memory, a shader that fails.
-Result<void> seed_lights(Device& device, const GBuffer& light_gbuffer, std::span<const glm::vec2> points,
-                         Seeds& target);
+/// Places one VPL a point of `points` on what `spot` sees, which `seen` holds (rasterized with spot_view()):
+/// importance map, mip chain, hierarchical warping. The buffer of lights is filled up with dead ones to a
+/// whole run. `materials` is what upload_materials made. Errors: no device memory, a shader that fails.
+Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const GBuffer& seen,
+                         const Buffer& materials, std::span<const glm::vec2> points, Seeds& target);
 
 }  // namespace lucarne::gi::vpl

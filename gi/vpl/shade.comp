@@ -9,9 +9,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main() {
     uint pane = gl_GlobalInvocationID.z;
     uvec2 pixel = gl_GlobalInvocationID.xy * interleave + uvec2(pane % interleave, pane / interleave);
-    CameraView view = constants.camera;
-    if (pixel.x >= view.width || pixel.y >= view.height) return;
-    uint index = pixel.y * view.width + pixel.x;
+    if (pixel.x >= camera.width || pixel.y >= camera.height) return;
+    uint index = pixel.y * camera.width + pixel.x;
     GBufferTexel texel = texels[index];
     Gathered gathered = Gathered(vec3(0.0), vec3(0.0));
     if (texel.depth > 0.0) gathered = gather_pane(pixel_receiver(pixel, texel), pane);

@@ -12,19 +12,10 @@ struct Panes {
     Buffer specular;  ///< vec4, radiance by the receiver's lobe; one texel where nothing is glossy
 };
 
-/// Shades every pixel of the camera's G-buffer by its pane's VPLs. Needs bound: materials (3), frame constants (6).
-/// `glossy` says whether any material has a specular lobe. Errors: no device memory, a shader that fails.
-Result<void> shade_panes(Frame& frame, const Seeds& seeds, const ShadowMaps& maps, bool glossy, Panes& target);
-
-/// Filters the panes into one picture and writes frame.radiance: indirect light if `indirect`, direct light,
-/// emission and background if `direct`.
-struct MergeInput {
-    const Seeds* seeds = nullptr;  ///< with `maps` and `panes`: the indirect light; null: none
-    const ShadowMaps* maps = nullptr;
-    const Panes* panes = nullptr;
-    bool glossy = false;
-    bool direct = true;
-};
-Result<void> merge_panes(Frame& frame, const MergeInput& input);
+/// Shades every pixel of the camera's G-buffer by its pane's VPLs, filters the panes into one picture and
+/// writes the indirect light to frame.radiance. `materials` is what upload_materials made; `glossy` says
+/// whether any of them has a specular lobe. Errors: no device memory, a shader that fails.
+Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
+                         bool glossy, Panes& target);
 
 }  // namespace lucarne::gi::vpl

@@ -2,24 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
+
 #include <fmt/format.h>
-#include <numbers>
 
 #include "gi/shared/surfel.h"
 #include "gi/vpl/bindings.h"
+#include "gi/vpl/vpl_light.h"
 
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr uint32_t kSideStep = 8;  // so that three levels of 2 x 2 blocks never cross a map's border
-constexpr double kSplatTexels = 1.3;  // radius of the thinned splats
+constexpr uint32_t kSideStep = 8;           // so that three levels of 2 x 2 blocks never cross a map's border
+constexpr double kSplatTexels = 1.3;        // radius of the thinned splats
 constexpr uint32_t kNothing = 0xffffffffu;  // parabolic.glsl
-constexpr uint32_t kClusterLights = 8;      // clusters.glsl
+constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
+constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);  // queue.glsl
+constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
+constexpr uint32_t kQueuePairs =
+    2 << 20;  // 16 MiB; a run of an atlas of 2048 x 2048 for 256 VPLs has some 450 000
 
 void set_layout(const Program& program, const AtlasLayout& layout) {
     program.set("map_side", layout.side);
     program.set("maps", layout.maps);
     program.set("splat_angle", layout.splat_angle);
+}
+
+struct IdRange {
+    uint32_t first, count;
+};
+
+/// The VPLs that enter.comp tries next, as uniforms (see there).
+void set_run(const Program& enter, std::span<const VplLight> lights, uint32_t first) {
+    std::vector<float> positions, normals;
+    for (const VplLight& l : lights.subspan(first, kRunMaps)) {
+        positions.insert(positions.end(), {l.position.x, l.position.y, l.position.z, 0.0f});
+        normals.insert(normals.end(), {l.normal.x, l.normal.y, l.normal.z, 0.0f});
+    }
+    enter.set("first_map", first);
+    enter.set_block("run_position", positions);
+    enter.set_block("run_normal", normals);
 }
 
 Result<void> pull_push(Device& device, const ShadowMaps& maps) {
@@ -39,11 +62,52 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     return {};
 }
 
+/// Draws the surfels of the range into the run of maps that is set in `enter`. A range with more pairs than
+/// the queue holds (large maps close to surfaces) is drawn in halves; a single surfel has kRunMaps at most.
+void splat_range(const Program& enter, const Program& draw, IdRange range, Buffer& queue) {
+    queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
+    enter.set("first_id", range.first);
+    enter.set("id_end", range.first + range.count);
+    enter.dispatch(range.count);
+    const uint32_t pairs = queue.download_all<uint32_t>(1)[0];
+    if (pairs > kQueuePairs) {
+        const uint32_t half = range.count / 2;
+        splat_range(enter, draw, {range.first, half}, queue);
+        splat_range(enter, draw, {range.first + half, range.count - half}, queue);
+        return;
+    }
+    draw.dispatch(pairs);
+}
+
+Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buffer& lights, uint32_t seed,
+                   ShadowMaps& target) {
+    LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
+    LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
+    LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp"));
+    cut.bind();
+    lights.bind(kBindLights);
+    target.casters.bind(kBindCasters);
+    target.atlas.bind(kBindAtlas);
+    target.queue.bind(kBindQueue);
+    casters->dispatch(ids);
+    set_layout(*draw, target.layout);
+    set_layout(*enter, target.layout);
+    enter->set("seed", seed);
+    const uint32_t runs = (target.layout.maps + kRunMaps - 1) / kRunMaps;
+    const auto host_lights = lights.download_all<VplLight>(size_t{runs} * kRunMaps);
+    for (uint32_t run = 0; run < runs; ++run) {
+        set_run(*enter, host_lights, run * kRunMaps);
+        splat_range(*enter, *draw, {0, ids}, target.queue);
+    }
+    return {};
+}
+
 }  // namespace
 
 size_t AtlasLayout::coarse_texels() const {
     size_t sum = 0;
-    for (uint32_t level = 1; level <= levels; ++level) sum += size_t{maps} * (side >> level) * (side >> level);
+    for (uint32_t level = 1; level <= levels; ++level)
+        sum += size_t{maps} * (side >> level) * (side >> level);
     return sum;
 }
 
@@ -54,8 +118,9 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     const double texels = static_cast<double>(atlas) * atlas;
     layout.side = static_cast<uint32_t>(std::sqrt(texels / maps)) / kSideStep * kSideStep;
     if (layout.side == 0)
-        return bad_arguments("vpl", fmt::format("an atlas of {0} x {0} texels is too small for {1} VPLs", atlas, maps),
-                             "raise --atlas or lower --vpls");
+        return bad_arguments(
+            "vpl", fmt::format("an atlas of {0} x {0} texels is too small for {1} VPLs", atlas, maps),
+            "raise --atlas or lower --vpls");
     // A map shows 2 pi sr in pi/4 side^2 texels: the mean texel is as wide as a square of that solid angle.
     const double texel_angle = std::sqrt(8.0) / layout.side;
     layout.splat_angle = static_cast<float>(kSplatTexels * texel_angle);
@@ -63,28 +128,18 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     return layout;
 }
 
-Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights, const AtlasLayout& layout,
-                              uint32_t seed, PassTimes& times, ShadowMaps& target) {
-    LUCARNE_ASSIGN(const Program* cluster, device.program("gi/vpl/cluster.comp"));
-    LUCARNE_ASSIGN(const Program* splat, device.program("gi/vpl/splat.comp"));
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights,
+                              const AtlasLayout& layout, uint32_t seed, PassTimes& times,
+                              ShadowMaps& target) {
+    const uint32_t ids = cut.blocks() * kBlockSurfels;
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
-    const uint32_t cluster_count = (layout.maps + kClusterLights - 1) / kClusterLights;
-    LUCARNE_TRY(device.reserve(target.clusters, cluster_count * 4 * sizeof(float), "clusters of VPLs"));
+    LUCARNE_TRY(device.reserve(target.casters, size_t{ids} * kCasterBytes, "ISM casters"));
+    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
     target.layout = layout;
     times.begin("ISM splat");
     target.atlas.clear(kNothing);
-    lights.bind(kBindLights);
-    target.clusters.bind(kBindClusters);
-    set_layout(*cluster, layout);
-    cluster->dispatch(cluster_count);
-    if (cut.blocks() > 0) {
-        cut.bind();
-        target.atlas.bind(kBindAtlas);
-        set_layout(*splat, layout);
-        splat->set("seed", seed);
-        splat->dispatch(cut.blocks() * kBlockSurfels);
-    }
+    if (ids > 0) LUCARNE_TRY(splat(device, cut, ids, lights, seed, target));
     times.end();
     times.begin("ISM pull-push");
     LUCARNE_TRY(pull_push(device, target));

@@ -18,20 +18,21 @@ struct AtlasLayout {
     size_t coarse_texels() const;  ///< of the levels above 0, in all
 };
 
-/// An atlas of about `atlas` x `atlas` texels for `maps` VPLs. Errors (arguments): no VPLs, or so many that a map
-/// would have fewer than 8 x 8 texels.
+/// An atlas of about `atlas` x `atlas` texels for `maps` VPLs. Errors (arguments): no VPLs, or so many that a
+/// map would have fewer than 8 x 8 texels.
 Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps);
 
 /// The shadow maps of all VPLs. Binding 10 when bound.
 struct ShadowMaps {
     AtlasLayout layout;
     Buffer atlas, coarse;
-    Buffer clusters;  ///< of VPLs (clusters.glsl)
+    Buffer casters, queue;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
-/// Draws `cut` into the maps of `lights` (VplLight[layout.maps]) and closes the holes between the splats. Which
-/// surfels enter which maps follows from their ids and `seed`. Errors: no device memory, a shader that fails.
-Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights, const AtlasLayout& layout,
-                              uint32_t seed, PassTimes& times, ShadowMaps& target);
+/// Draws `cut` into the maps of `lights` (VplLight[layout.maps]) and closes the holes between the splats.
+/// Which surfels enter which maps follows from their ids and `seed`. Errors: no device memory, a shader that
+/// fails.
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights,
+                              const AtlasLayout& layout, uint32_t seed, PassTimes& times, ShadowMaps& target);
 
 }  // namespace lucarne::gi::vpl

@@ -8,12 +8,15 @@ namespace lucarne::gi::vpl {
 using vec4 = glm::vec4;
 #endif
 
-// It keeps the flux that arrives and the direction it comes from, and is shaded with the whole BRDF of its surface:
-// radiance L(w) = flux * f(incident, w) over its footprint. A light with a zero normal is dead: nothing was hit.
+// It keeps the flux that arrives and the direction it comes from, and is shaded with the whole BRDF of its
+// surface: radiance L(w) = flux * f(incident, w) over its footprint. A light with a zero normal is dead:
+// nothing was hit.
 struct VplLight {
-    vec4 position;  // m, relative to the local origin; w: footprint A, the share of the surface it stands for, m^2
+    vec4 position;  // m, relative to the local origin; w: footprint A, the share of the surface it stands
+                    // for, m^2
     vec4 normal;    // unit, on the lit side; w: ks, specular intensity of its surface
-    vec4 diffuse;   // flux * kd / pi: the diffuse radiant intensity along the normal, W/sr; w: n, Phong exponent
+    vec4 diffuse;   // flux * kd / pi: the diffuse radiant intensity along the normal, W/sr; w: n, Phong
+                    // exponent
     vec4 flux;      // incident, W
     vec4 incident;  // unit, toward where the flux comes from
 };

@@ -9,8 +9,6 @@
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
 #include "gi/shared/surfel_code.h"
-#include "gi/vpl/bindings.h"
-#include "gi/vpl/constants.h"
 #include "gi/vpl/seeding.h"
 #include "gi/vpl/vpl_light.h"
 
@@ -26,14 +24,20 @@ inline LightView downward_spot(uint32_t resolution, float half_angle, float cos_
     const float t = std::tan(half_angle);
     LightView v;
     v.spot = {glm::vec4(0, 0, 0, std::cos(half_angle)), glm::vec4(0, 0, -1, cos_inner), glm::vec4(intensity)};
-    v.view = {glm::vec4(0, 0, 0, .001f), glm::vec4(0, 0, -1, 0), glm::vec4(t, 0, 0, 0),
-              glm::vec4(0, t, 0, 0),     resolution,             resolution,
-              0,                         0};
+    v.view = {glm::vec4(0, 0, 0, .001f),
+              glm::vec4(0, 0, -1, 0),
+              glm::vec4(t, 0, 0, 0),
+              glm::vec4(0, t, 0, 0),
+              resolution,
+              resolution,
+              0,
+              0};
     return v;
 }
 
 inline glm::vec3 ray_of(const CameraView& view, float x, float y) {
-    const float u = 2 * x / static_cast<float>(view.width) - 1, v = 2 * y / static_cast<float>(view.height) - 1;
+    const float u = 2 * x / static_cast<float>(view.width) - 1,
+                v = 2 * y / static_cast<float>(view.height) - 1;
     return glm::vec3(view.right.x * u, -view.up.y * v, -1);
 }
 
@@ -59,12 +63,8 @@ inline Result<std::vector<VplLight>> seed_on(Device& device, const LightView& li
     gbuffer.texels.upload_all(texels);
     LUCARNE_ASSIGN(Buffer material_buffer, device.buffer(materials.size() * sizeof(Material), "materials"));
     material_buffer.upload_all(materials);
-    LUCARNE_ASSIGN(Buffer constants, device.buffer(sizeof(FrameConstants), "constants"));
-    constants.upload_all(std::vector<FrameConstants>{{light.view, light.view, light.spot, glm::vec4(0.0f)}});
-    material_buffer.bind(kBindMaterials);
-    constants.bind(kBindConstants);
     Seeds seeds;
-    LUCARNE_TRY(seed_lights(device, gbuffer, points, seeds));
+    LUCARNE_TRY(seed_lights(device, light.spot, light.view, gbuffer, material_buffer, points, seeds));
     return seeds.lights.download_all<VplLight>(points.size());
 }
 

@@ -1,9 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 #include "gi/vpl/halton.h"
 #include "tests/gi/vpl/light_view.h"
@@ -35,9 +35,11 @@ class VplSeeding : public ::testing::Test {
 /// The mean luminance intensity over a texel as the importance map takes it: centre and corners.
 double texel_intensity(const LightView& light, uint32_t x, uint32_t y) {
     double sum = 0;
-    for (const auto& [dx, dy] : std::array<std::pair<float, float>, 5>{{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {.5, .5}}}) {
+    for (const auto& [dx, dy] :
+         std::array<std::pair<float, float>, 5>{{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {.5, .5}}}) {
         const glm::vec3 ray = ray_of(light.view, static_cast<float>(x) + dx, static_cast<float>(y) + dy);
-        const double cosine = -glm::normalize(ray).z, outer = light.spot.position.w, inner = light.spot.direction.w;
+        const double cosine = -glm::normalize(ray).z, outer = light.spot.position.w,
+                     inner = light.spot.direction.w;
         const double t = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
         sum += t * t * (3 - 2 * t) / 5;
     }
@@ -62,8 +64,8 @@ double total_flux(const std::vector<VplLight>& lights) {
 
 TEST(VplHalton, radicalInversesMirrorTheDigits) {
     EXPECT_DOUBLE_EQ(radical_inverse(2, 0), 0);
-    EXPECT_DOUBLE_EQ(radical_inverse(2, 6), 3 / 8.);      // 110 -> .011
-    EXPECT_DOUBLE_EQ(radical_inverse(3, 5), 7 / 9.);      // 12 -> .21
+    EXPECT_DOUBLE_EQ(radical_inverse(2, 6), 3 / 8.);          // 110 -> .011
+    EXPECT_DOUBLE_EQ(radical_inverse(3, 5), 7 / 9.);          // 12 -> .21
     EXPECT_DOUBLE_EQ(radical_inverse(3, 1000), 760 / 2187.);  // 1101001 -> .1001011
 }
 
@@ -75,7 +77,8 @@ TEST(VplHalton, everyCellOfAGridGetsItsShareForAnySeedAndFrame) {
             ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
             ++counts[static_cast<size_t>(p.x * 4) + 4 * static_cast<size_t>(p.y * 4)];
         }
-        for (const int count : counts) EXPECT_NEAR(count, 64, 8);  // a random set strays by 8 in one of three cells
+        for (const int count : counts)
+            EXPECT_NEAR(count, 64, 8);  // a random set strays by 8 in one of three cells
     }
     EXPECT_NE(halton_points(4, 7, 0)[3], halton_points(4, 7, 1)[3]);
     EXPECT_NE(halton_points(4, 7, 0)[3], halton_points(4, 8, 0)[3]);
@@ -120,7 +123,8 @@ TEST_F(VplSeeding, warpedIndependentPointsFollowTheImportanceByChiSquare) {
             lit.push_back(intensity > 0);
         }
     std::vector<glm::vec2> points;
-    for (size_t i = 0; i < kPoints; ++i) points.emplace_back(random.uniform() * .9999999, random.uniform() * .9999999);
+    for (size_t i = 0; i < kPoints; ++i)
+        points.emplace_back(random.uniform() * .9999999, random.uniform() * .9999999);
 
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     const double lit_sum = std::accumulate(lit.begin(), lit.end(), 0.0);
@@ -132,7 +136,8 @@ TEST_F(VplSeeding, warpedIndependentPointsFollowTheImportanceByChiSquare) {
         ASSERT_NE(l.normal, glm::vec4(0.0f)) << "no point may fall where there is no light";
         const float u = l.position.x / -l.position.z / light.view.right.x;
         const float v = -l.position.y / -l.position.z / light.view.up.y;
-        const auto x = static_cast<size_t>((u * .5f + .5f) * kSide), y = static_cast<size_t>((v * .5f + .5f) * kSide);
+        const auto x = static_cast<size_t>((u * .5f + .5f) * kSide),
+                   y = static_cast<size_t>((v * .5f + .5f) * kSide);
         ASSERT_LT(y * kSide + x, counts.size());
         ++counts[y * kSide + x];
     }
@@ -179,7 +184,8 @@ TEST_F(VplSeeding, lightsLieOnTheSurfaceFaceTheSpotAndStandForTheirShareOfIt) {
         footprints += l.position.w;
     }
     const double disc = std::numbers::pi * std::pow(2 * std::tan(.5), 2);
-    EXPECT_NEAR(footprints, disc, .1 * disc);  // the faint rim is sampled seldom, by footprints that are large
+    EXPECT_NEAR(footprints, disc,
+                .1 * disc);  // the faint rim is sampled seldom, by footprints that are large
 }
 
 TEST_F(VplSeeding, shinySurfacesGetMoreLightsThanDullOnesOfTheSameReflectance) {
@@ -193,14 +199,16 @@ TEST_F(VplSeeding, shinySurfacesGetMoreLightsThanDullOnesOfTheSameReflectance) {
     const std::vector<Material> materials{{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)},
                                           {glm::vec4(0, 0, 0, .5), glm::vec4(0, 0, 0, 100)}};
     int dull = 0, shiny = 0;
-    for (const VplLight& l : seed(light, floor, halton_points(512, 1, 0), materials)) ++(l.position.x < 0 ? dull : shiny);
+    for (const VplLight& l : seed(light, floor, halton_points(512, 1, 0), materials))
+        ++(l.position.x < 0 ? dull : shiny);
     EXPECT_GT(shiny, 3 * dull);
 }
 
 TEST_F(VplSeeding, whatSeesNoLightHasNoLights) {
     const LightView dark = downward_spot(32, .5f, .9f, 0), lit = downward_spot(32, .5f, .9f, 1);
     const std::vector<GBufferTexel> floor(32 * 32, floor_texel(2, .5f)), nothing(32 * 32);
-    for (const auto& lights : {seed(dark, floor, halton_points(16, 1, 0)), seed(lit, nothing, halton_points(16, 1, 0))})
+    for (const auto& lights :
+         {seed(dark, floor, halton_points(16, 1, 0)), seed(lit, nothing, halton_points(16, 1, 0))})
         for (const VplLight& l : lights) {
             EXPECT_EQ(l.normal, glm::vec4(0.0f));
             EXPECT_EQ(l.flux, glm::vec4(0.0f));
@@ -211,7 +219,8 @@ TEST_F(VplSeeding, brokenDepthsGiveNoLightsThatAreNotFinite) {
     const LightView light = downward_spot(32, .5f, .9f, 1);
     std::vector<GBufferTexel> floor(32 * 32, floor_texel(2, .5f));
     for (size_t i = 0; i < floor.size(); i += 3) floor[i].depth = std::numeric_limits<float>::quiet_NaN();
-    for (size_t i = 1; i < floor.size(); i += 3) floor[i].normal = encode_octahedral(glm::vec3(1, 0, 0));  // edge on
+    for (size_t i = 1; i < floor.size(); i += 3)
+        floor[i].normal = encode_octahedral(glm::vec3(1, 0, 0));  // edge on
     for (const VplLight& l : seed(light, floor, halton_points(256, 1, 0)))
         for (const glm::vec4& v : {l.position, l.normal, l.diffuse, l.flux, l.incident})
             EXPECT_TRUE(std::isfinite(v.x + v.y + v.z + v.w));
