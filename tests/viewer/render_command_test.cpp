@@ -1,0 +1,238 @@
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "gi/compare/metrics.h"
+#include "io/image/image.h"
+#include "tests/viewer/program.h"
+
+namespace lucarne {
+namespace {
+
+using test::bytes_of, test::Outcome;
+
+const std::string kScene = std::string(" --scene ") + LUCARNE_SOURCE_DIR + "/data/scenes/cornell.json";
+
+class RenderCommand : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<test::TemporaryFolder>();
+        cache_ = test::make_cornell(*folder_);
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static std::string at(const std::string& name) { return *folder_ / name; }
+    /// Renders the cache small and quickly.
+    static Outcome render(const std::string& output, const std::string& arguments = "",
+                          const std::string& size = "64x48") {
+        return test::lucarne("render " + cache_ + " -o " + at(output) + kScene + " --overwrite --size " +
+                             size + " " + arguments);
+    }
+    static io::Image exr(const std::string& name) {
+        auto image = io::read_exr(at(name));
+        EXPECT_TRUE(image) << image.error().line();
+        return image ? *image : io::Image{};
+    }
+    static nlohmann::json json(const std::string& name) { return nlohmann::json::parse(bytes_of(at(name))); }
+
+    static std::unique_ptr<test::TemporaryFolder> folder_;
+    static std::string cache_;
+};
+std::unique_ptr<test::TemporaryFolder> RenderCommand::folder_;
+std::string RenderCommand::cache_;
+
+TEST_F(RenderCommand, WritesAPngThatShowsTheScene) {
+    const Outcome ran = render("direct.png", "--engine direct --exposure -2");
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    const auto picture = io::read_png(at("direct.png"));
+    ASSERT_TRUE(picture) << picture.error().line();
+    EXPECT_EQ(picture->width, 64u);
+    EXPECT_EQ(picture->height, 48u);
+    // The red wall is on the left, the green one on the right.
+    const auto sum = [&](uint32_t from, uint32_t to, int channel) {
+        double total = 0;
+        for (uint32_t y = 18; y < 34; ++y)
+            for (uint32_t x = from; x < to; ++x)
+                total += picture->bytes[3 * (y * 64 + x) + static_cast<size_t>(channel)];
+        return total;
+    };
+    EXPECT_GT(sum(8, 18, 0), 1.5 * sum(8, 18, 1));
+    EXPECT_GT(sum(46, 56, 1), 1.5 * sum(46, 56, 0));
+}
+
+TEST_F(RenderCommand, SamePixelsEveryRunForEveryEngine) {
+    for (const std::string engine : {"direct", "vpl", "reference"}) {
+        const std::string arguments = "--engine " + engine + " --preset preview --seed 7";
+        ASSERT_EQ(render("a.exr", arguments).code, 0);
+        ASSERT_EQ(render("b.exr", arguments).code, 0);
+        EXPECT_EQ(exr("a.exr").pixels, exr("b.exr").pixels) << engine;
+    }
+}
+
+TEST_F(RenderCommand, ExrHoldsRadianceThatExposureDoesNotTouch) {
+    ASSERT_EQ(render("dark.exr", "--engine direct --exposure -5").code, 0);
+    ASSERT_EQ(render("bright.exr", "--engine direct --exposure 5").code, 0);
+    EXPECT_EQ(exr("dark.exr").pixels, exr("bright.exr").pixels);
+    ASSERT_EQ(render("dark.png", "--engine direct --exposure -5").code, 0);
+    ASSERT_EQ(render("bright.png", "--engine direct --exposure 5").code, 0);
+    EXPECT_NE(bytes_of(at("dark.png")), bytes_of(at("bright.png")));
+}
+
+TEST_F(RenderCommand, BouncesOneByOneAddUpToThePicture) {
+    const std::string reference = "--engine reference --samples 8 ";
+    ASSERT_EQ(render("both.exr", reference + "--bounces 1").code, 0);
+    ASSERT_EQ(render("first.exr", reference + "--only-bounce 0").code, 0);
+    ASSERT_EQ(render("second.exr", reference + "--only-bounce 1").code, 0);
+    const auto both = exr("both.exr"), first = exr("first.exr"), second = exr("second.exr");
+    for (size_t i = 0; i < both.pixels.size(); ++i)
+        EXPECT_NEAR(both.pixels[i].x, first.pixels[i].x + second.pixels[i].x,
+                    1e-5f + 1e-5f * both.pixels[i].x)
+            << i;
+}
+
+TEST_F(RenderCommand, MoreFramesAreAveragedAndLessNoisy) {
+    const std::string arguments =
+        "--engine reference --only-bounce 1 --samples 4 --json " + at("figures.json");
+    ASSERT_EQ(render("one.exr", arguments).code, 0);
+    const double one = json("figures.json")["standard_error"];
+    ASSERT_EQ(render("nine.exr", arguments + " --frames 9").code, 0);
+    const auto figures = json("figures.json");
+    const double nine = figures["standard_error"];
+    EXPECT_EQ(figures["frames"], 9);
+    EXPECT_NEAR(nine / one, 1.0 / 3, 0.05);
+    EXPECT_NE(exr("one.exr").pixels, exr("nine.exr").pixels);
+    EXPECT_NEAR(gi::mean_luminance(exr("one.exr").pixels), gi::mean_luminance(exr("nine.exr").pixels),
+                5 * one);
+}
+
+TEST_F(RenderCommand, FiguresNameEngineSizePointsAndPasses) {
+    ASSERT_EQ(render("p.png", "--engine direct --preset preview --json " + at("figures.json")).code, 0);
+    const auto figures = json("figures.json");
+    EXPECT_EQ(figures["engine"], "direct");
+    EXPECT_EQ(figures["preset"], "preview");
+    EXPECT_EQ(figures["size"], (std::vector<int>{64, 48}));
+    EXPECT_GT(figures["points"]["view"], 1000);
+    EXPECT_EQ(figures["cut_complete"], 1.0);
+    EXPECT_GT(figures["passes"].size(), 3u);
+    EXPECT_GT(figures["mean_luminance"], 0.0);
+}
+
+TEST_F(RenderCommand, PointsCapEveryCut) {
+    ASSERT_EQ(render("p.png", "--engine direct --points 1000 --json " + at("figures.json")).code, 0);
+    for (const auto& [cut, points] : json("figures.json")["points"].items()) EXPECT_LE(points, 1000) << cut;
+}
+
+TEST_F(RenderCommand, RawScanIsRenderedThroughATemporaryCacheThatGoes) {
+    ASSERT_EQ(test::lucarne("generate cornell --even --points 20k -o " + at("raw.ply")).code, 0);
+    const std::string temporary = at("temporary");
+    std::filesystem::create_directory(temporary);
+    const Outcome ran =
+        test::shell("TMPDIR=" + temporary + " " + LUCARNE_BINARY + " render " + at("raw.ply") + " -o " +
+                    at("raw.png") + kScene + " --engine direct --size 32x32");
+    EXPECT_EQ(ran.code, 0) << ran.output;
+    EXPECT_TRUE(std::filesystem::is_empty(temporary));
+}
+
+TEST_F(RenderCommand, WithoutASceneAnyCloudIsSeenAndLit) {
+    const Outcome ran =
+        test::lucarne("render " + cache_ + " -o " + at("plain.exr") + " --engine direct --size 48x48");
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    EXPECT_GT(gi::mean_luminance(exr("plain.exr").pixels), 0.0);
+}
+
+TEST_F(RenderCommand, CloudWithoutNormalsIsRenderedWithAWarning) {
+    ASSERT_EQ(test::lucarne("generate cornell --even --points 20k -o " + at("flat.ply")).code, 0);
+    ASSERT_EQ(test::lucarne("convert " + at("flat.ply") + " -o " + at("flat.luc") + " --normals none").code,
+              0);
+    for (const std::string engine : {"direct", "vpl", "reference"}) {
+        const Outcome ran = test::lucarne("render " + at("flat.luc") + " -o " + at("flat.exr") + kScene +
+                                          " --preset preview --size 32x32 --overwrite --engine " + engine);
+        EXPECT_EQ(ran.code, 0) << ran.output;
+        EXPECT_NE(ran.output.find("no normals"), std::string::npos);
+        const auto picture = exr("flat.exr");
+        EXPECT_TRUE(std::isfinite(gi::mean_luminance(picture.pixels))) << engine;
+    }
+}
+
+TEST_F(RenderCommand, BadArgumentsEndWithCode2AndSayWhatThereIs) {
+    const std::vector<std::pair<std::string, std::string>> cases = {{"--camera nowhere", "front"},
+                                                                    {"--engine magic", "reference"},
+                                                                    {"--preset best", "interactive"},
+                                                                    {"--interleave 3", "interleave"},
+                                                                    {"--bounces many", "bounces"},
+                                                                    {"--frames 0", "frames"},
+                                                                    {"--vpls 0", "vpls"},
+                                                                    {"--atlas 1000", "atlas"}};
+    for (const auto& [arguments, expected] : cases) {
+        const Outcome ran = render("never.png", arguments);
+        EXPECT_EQ(ran.code, 2) << arguments << ": " << ran.output;
+        EXPECT_NE(ran.output.find(expected), std::string::npos) << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(at("never.png")));
+    }
+    EXPECT_EQ(render("never.png", "", "12by8").code, 2);
+    EXPECT_EQ(render("picture.gif").code, 2);
+}
+
+TEST_F(RenderCommand, SceneWithAnUnknownKeyIsRejectedAtItsPlace) {
+    std::ofstream(at("bad.json")) << R"({"lights": [], "cameras": [{"name": "a", "positon": [0, 0, 0]}]})";
+    const Outcome ran =
+        test::lucarne("render " + cache_ + " -o " + at("never.png") + " --scene " + at("bad.json"));
+    EXPECT_EQ(ran.code, 3) << ran.output;
+    EXPECT_NE(ran.output.find("/cameras/0"), std::string::npos) << ran.output;
+    EXPECT_FALSE(std::filesystem::exists(at("never.png")));
+}
+
+TEST_F(RenderCommand, ExistingPictureIsKeptUnlessOverwriteIsSaid) {
+    std::ofstream(at("kept.png")) << "precious";
+    const Outcome ran =
+        test::lucarne("render " + cache_ + " -o " + at("kept.png") + kScene + " --size 16x16");
+    EXPECT_NE(ran.code, 0);
+    EXPECT_EQ(bytes_of(at("kept.png")), "precious");
+}
+
+TEST_F(RenderCommand, MachineWithoutOpenGLIsToldInOneLine) {
+    const Outcome ran = test::shell("__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent " LUCARNE_BINARY " render " +
+                                    cache_ + " -o " + at("never.png") + kScene);
+    EXPECT_EQ(ran.code, 1);
+    EXPECT_EQ(ran.output.rfind("lucarne: ", 0), 0u) << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_FALSE(std::filesystem::exists(at("never.png")));
+}
+
+TEST_F(RenderCommand, DamagedOrForeignInputIsRejected) {
+    std::ofstream(at("noise.luc")) << "LUCARNE? no.";
+    std::ofstream(at("empty.luc"));
+    std::filesystem::copy_file(cache_, at("cut.luc"), std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(at("cut.luc"), std::filesystem::file_size(cache_) / 2);
+    for (const std::string name : {"noise.luc", "empty.luc", "cut.luc"}) {
+        const Outcome ran = test::lucarne("render " + at(name) + " -o " + at("never.png") + kScene);
+        EXPECT_EQ(ran.code, 3) << name << ": " << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(at("never.png")));
+    }
+    EXPECT_NE(test::lucarne("render /nonexistent.luc -o " + at("never.png")).code, 0);
+}
+
+TEST_F(RenderCommand, CompareFindsNoDifferenceToItselfAndTheRightOneToAnother) {
+    ASSERT_EQ(render("x.exr", "--engine direct").code, 0);
+    const auto picture = exr("x.exr");
+    io::Image brighter = picture;
+    for (auto& pixel : brighter.pixels) pixel *= 1.1f;
+    ASSERT_TRUE(io::write_exr(at("y.exr"), brighter, true));
+    const auto compare = [&](const std::string& a, const std::string& b) {
+        const Outcome ran =
+            test::lucarne("compare " + at(a) + " " + at(b) + " --overwrite --json " + at("compare.json"));
+        EXPECT_EQ(ran.code, 0) << ran.output;
+        return json("compare.json");
+    };
+    EXPECT_EQ(compare("x.exr", "x.exr")["rel_mse"], 0.0);
+    EXPECT_NEAR(double(compare("y.exr", "x.exr")["luminance_error"]), 0.1, 1e-5);
+    ASSERT_EQ(render("small.exr", "--engine direct", "32x24").code, 0);
+    EXPECT_EQ(test::lucarne("compare " + at("small.exr") + " " + at("x.exr")).code, 3);
+}
+
+}  // namespace
+}  // namespace lucarne
