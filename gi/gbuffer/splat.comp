@@ -32,11 +32,12 @@ Ellipse project(Disc disc) {
 
 float ellipse_distance2(Ellipse e, vec2 d) { return d.x * (e.xx * d.x + e.xy * d.y) + e.yy * d.y * d.y; }
 
-// The order of the disc at an offset; see disc_key.
+// The order of the disc at an offset, see disc_key; at a pixel of its centre that it does not cover (seen edge-on, or
+// smaller than a pixel) that of its centre's depth.
 uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
-    float nearest = max(disc.centre.z - disc.extent, view_forward.w);
-    precise float z = clamp(disc.centre.z + e.slope.x * d.x + e.slope.y * d.y, nearest, disc.centre.z + disc.extent);
-    precise float key = z + disc.push * min(ellipse_distance2(e, d), 1.0);
+    precise float distance2 = ellipse_distance2(e, d);
+    precise float slope = e.slope.x * d.x + e.slope.y * d.y;
+    precise float key = disc.centre.z + (distance2 <= 1.0 ? slope + disc.push * distance2 : disc.push);
     return floatBitsToUint(key);
 }
 
