@@ -1,7 +1,7 @@
 #include "gi/device/shader_source.h"
 
 #include <algorithm>
-#include <regex>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -65,19 +65,20 @@ Result<ShaderSource> shader_source(std::string_view path, const Defines& defines
 }
 
 std::string readable_message(std::string_view log, const std::vector<std::string>& files) {
-    static const std::regex kPlace(R"(^(\d+)(?::(\d+)\(\d+\)|\((\d+)\))\s*:?\s*(.*)$)");
     std::string first;
     for (std::string_view rest = log; !rest.empty();) {
         const size_t end = std::min(rest.find('\n'), rest.size());
         const std::string line(rest.substr(0, end));
         rest.remove_prefix(std::min(end + 1, rest.size()));
         if (first.empty()) first = line;
-        std::smatch match;
-        if (line.find("error") == std::string::npos || !std::regex_match(line, match, kPlace)) continue;
-        const size_t file = std::stoul(match[1].str());
-        const std::string number = match[2].matched ? match[2].str() : match[3].str();
-        return fmt::format("{}:{}: {}", file < files.size() ? files[file] : match[1].str(), number,
-                           match[4].str());
+        unsigned file = 0, number = 0;
+        int mesa = 0, nvidia = 0;  // characters before the message, 0 where the line is not of the kind
+        if (std::sscanf(line.c_str(), "%u:%u(%*u): %n", &file, &number, &mesa) < 2 || !mesa)
+            std::sscanf(line.c_str(), "%u(%u) : %n", &file, &number, &nvidia);
+        const auto start = static_cast<size_t>(std::max(mesa, nvidia));
+        if (start == 0 || line.find("error", start) == std::string::npos) continue;
+        return fmt::format("{}:{}: {}", file < files.size() ? files[file] : std::to_string(file), number,
+                           line.substr(start));
     }
     return first.empty() ? "the compiler gave no reason" : first;
 }

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/registry.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/spot.h"
 #include "tests/gi/lit_scene.h"
@@ -68,8 +67,12 @@ TEST_F(DirectTest, SpotsEdgeLiesWhereItsConeEnds) {
             const glm::vec3 p = lit.position(x, y);
             const float r = std::hypot(p.x, p.y), d = std::hypot(r, kHeight);
             const float full = 0.5f / kPi * 30 * kHeight / (d * d * d), got = lit.at(x, y).x;
-            if (r > outer + 1e-3f) ASSERT_EQ(got, 0.0f) << r;
-            if (r < inner - 1e-3f) ASSERT_NEAR(got, full, full * 0.01f) << r;
+            if (r > outer + 1e-3f) {
+                ASSERT_EQ(got, 0.0f) << r;
+            }
+            if (r < inner - 1e-3f) {
+                ASSERT_NEAR(got, full, full * 0.01f) << r;
+            }
             if (r > inner + 0.02f && r < outer - 0.02f) {
                 ASSERT_LT(got, full);
                 ASSERT_GT(got, 0.0f);
@@ -136,7 +139,8 @@ TEST_F(DirectTest, CurvedNoisySurfaceHasNoAcneInTheLight) {
         for (uint32_t x = 0; x < 240; ++x) {
             const GBufferTexel& texel = lit.texels[y * 240 + x];
             // At the limb the camera sees the backs of discs that turn away from it; their light is shadowed.
-            if (texel.depth == 0 || glm::dot(decode_octahedral(texel.normal), lit.position(x, y)) < 0) continue;
+            if (texel.depth == 0 || glm::dot(decode_octahedral(texel.normal), lit.position(x, y)) < 0)
+                continue;
             const glm::vec3 to_light = glm::vec3(0, -4, 0) - lit.position(x, y);
             const float d2 = glm::dot(to_light, to_light);
             const float cosine = glm::dot(decode_octahedral(texel.normal), to_light) / std::sqrt(d2);
@@ -258,21 +262,6 @@ TEST(Spot, FluxOfASharpConeIsIntensityTimesSolidAngle) {
         flux += spot_intensity(spot, {std::sqrt(1 - cosine * cosine), 0, cosine}).x * 4 * M_PI / kSteps;
     }
     EXPECT_NEAR(flux, 2 * 2 * M_PI * (1 - std::cos(0.6)), 1e-3);
-}
-
-TEST(Registry, UnknownEngineIsAnErrorThatListsTheKnown) {
-    const auto engine = make_engine("radiosity");
-    ASSERT_FALSE(engine);
-    EXPECT_EQ(engine.error().kind, ErrorKind::arguments);
-    EXPECT_NE(engine.error().line().find("direct"), std::string::npos);
-}
-
-TEST(Registry, EveryEngineAnswersToItsName) {
-    for (const EngineEntry& entry : engines()) {
-        const auto engine = make_engine(entry.info.name);
-        ASSERT_TRUE(engine) << entry.info.name;
-        EXPECT_EQ((*engine)->info().name, entry.info.name);
-    }
 }
 
 }  // namespace
