@@ -29,7 +29,7 @@ float shadow_lift(vec3 position, float radius) {
     float caster_radius = texel_radius(light_texel(pixel));
     float caster_depth = light_texel(pixel).depth;
     if (caster_depth > 0.0 && abs(caster_depth - depth) < 4.0 * caster_radius) lift = max(lift, caster_radius);
-    return lift;
+    return lift * (1.0 + kRimPush);  // texel_blocks takes the margin off again
 }
 
 // True where the surface in this texel of the light's view stands between the light and the lifted point. Instead of
