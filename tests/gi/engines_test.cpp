@@ -1,4 +1,5 @@
 // Scenes whose light is known in closed form, and every engine held against them: one table for all.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -107,7 +108,13 @@ TEST_P(Engines, SealedDarkRoomStaysBlack) {
     scene.lights = {spot(glm::vec3(1, 1, 4), glm::vec3(1), 0.9f, 0.8f, 1e4f)};
     scene.camera = look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 64);
     scene.settings.samples = 16;
-    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
+    float brightest = 0;
+    size_t lit = 0;
+    for (const glm::vec4& pixel : render(scene).radiance) {
+        brightest = std::max({brightest, pixel.x, pixel.y, pixel.z});
+        if (pixel.x > 0 || pixel.y > 0 || pixel.z > 0) ++lit;
+    }
+    EXPECT_EQ(brightest, 0.0f) << lit << " pixels are lit";
 }
 
 TEST_P(Engines, EmissionIsSeenAsItIs) {
