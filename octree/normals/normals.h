@@ -28,9 +28,10 @@ class ChunkAccess {
     virtual Result<std::vector<int32_t>> stations(size_t chunk) const = 0;
 };
 
-/// What a chunk takes while it is worked on, bytes a point: chunks should be small enough that a few fit in
-/// NormalOptions::memory at a time (one is worked on even if it does not).
-inline constexpr uint64_t kNormalBytesPerPoint = 250;
+/// What a chunk takes while it is worked on, bytes a point (160 measured, and the reading of its records):
+/// chunks should be small enough that a few fit in NormalOptions::memory at a time (one is worked on even if
+/// it does not).
+inline constexpr uint64_t kNormalBytesPerPoint = 220;
 inline constexpr uint32_t kMostNormalNeighbours = 127;
 
 struct NormalOptions {

@@ -104,8 +104,12 @@ TEST(Normals, TinyCloudsGiveWhatTheyCan) {
     for (size_t count = 0; count < 20; ++count) {
         const Cloud cloud = plane(count);
         const Score s = score(cloud, estimate(cloud));
-        if (count < 4) EXPECT_EQ(s.marked, 1) << count;
-        if (count >= 8) EXPECT_LT(s.marked, 0.5) << count;
+        if (count < 4) {
+            EXPECT_EQ(s.marked, 1) << count;
+        }
+        if (count >= 8) {
+            EXPECT_LT(s.marked, 0.5) << count;
+        }
         EXPECT_TRUE(std::isfinite(s.area));
     }
 }
