@@ -27,6 +27,7 @@ float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per
 float local_floor(const std::vector<CutItem>& items, const CutItem* item, const PackedSurfel& surfel) {
     for (uint32_t depth = 0; depth < kOctantLevels; ++depth) {
         const int child = item->child[surfel_octant(surfel.a, surfel.b, depth)];
+        if (child == kWholeOctant) return 0.0f;
         if (child < 0) break;
         item = &items[static_cast<size_t>(child)];
     }
@@ -124,6 +125,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
                                   DeviceCut& cut) const {
     const auto nodes = source.nodes();
     const double unit = source.header().metres_per_unit;
+    const bool areas_known = source.header().schema.find(io::names::area) != nullptr;
     std::vector<CutEntry> sorted(entries.begin(), entries.end());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
     std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
@@ -150,7 +152,10 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         item.first = resident->second.first;
         item.count = std::min(entry.count, resident->second.count);
         item.area_floor = sane_floor(info, item.count, unit, item.size);
-        std::fill(std::begin(item.child), std::end(item.child), -1);
+        const bool whole = areas_known && item.count == info.count && info.child_mask != 0;
+        for (uint32_t octant = 0; octant < 8; ++octant)
+            item.child[octant] = whole && !(info.child_mask >> octant & 1) ? kWholeOctant : kCoarseOctant;
+        item.inner = whole && info.child_mask != 0xff;
         for (uint32_t at = 0; at < item.count; at += kBlockSurfels)
             blocks.push_back({index, item.first + at, std::min(item.count - at, kBlockSurfels), 0});
         surfels += item.count;

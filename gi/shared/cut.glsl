@@ -32,13 +32,15 @@ vec3 surfel_position(uint item, PackedSurfel surfel) {
 bool surfel_has_normal(PackedSurfel surfel) { return (surfel.d & kSurfelHasNormal) != 0u; }
 vec3 surfel_normal(PackedSurfel surfel) { return decode_octahedral(surfel.c); }
 
-// The floor of the deepest item of the cut around the surfel: only surfels of ancestors look further than once.
+// The floor of the deepest item of the cut around the surfel: only surfels of ancestors look further than once. A
+// stray point in the air has no deeper item around it and must not be drawn as large as its node's others stand apart.
 float surfel_area_floor(uint item, PackedSurfel surfel) {
     uvec4 facts = texelFetch(cut_items, int(4u * item + 1u));
     for (uint depth = 0u; facts.w != 0u && depth < kOctantLevels; ++depth) {
         uint octant = surfel_octant(surfel.a, surfel.b, depth);
         uvec4 children = texelFetch(cut_items, int(4u * item + 2u + (octant >> 2)));
         int child = int(children[octant & 3u]);
+        if (child == kWholeOctant) return 0.0;
         if (child < 0) break;
         item = uint(child);
         facts = texelFetch(cut_items, int(4u * item + 1u));

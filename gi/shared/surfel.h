@@ -31,9 +31,11 @@ struct CutItem {
     uint first;        // of its surfels in the pool
     uint count;        // prefix in use
     float area_floor;  // m^2, at that prefix
-    uint inner;        // 1: some child is in the cut, 0: it is the deepest node around its surfels
-    int child[8];      // the cut's item in each octant, -1 for none
+    uint inner;        // 1: some octant is to be looked up, 0: area_floor holds for all its surfels
+    int child[8];      // the cut's item in each octant, or one of the two below
 };
+const int kCoarseOctant = -1;  // the item's floor holds: its child there is not in the cut, or no more is known
+const int kWholeOctant = -2;   // the source has no child there and the item is drawn whole: full resolution, floor 0
 
 // Surfels are processed in blocks of up to kBlockSurfels, each of one item.
 // A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone,

@@ -77,7 +77,8 @@ Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources) {
 
 bool Unifier::has_normals(size_t input) const {
     const auto* normal = sources_[input]->schema().find(io::names::normal);
-    return normal && normal->type == ScalarType::f32 && normal->components == 3;
+    return normal && (normal->type == ScalarType::f32 || normal->type == ScalarType::f64) &&
+           normal->components == 3;
 }
 
 void Unifier::unify_positions() {

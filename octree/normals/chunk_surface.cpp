@@ -61,6 +61,11 @@ class SurfaceEstimator {
             offsets[i] = glm::vec3(neighbours_.position(nearest[i].index) - at);
         const auto sample = sample_surface(std::span(offsets).first(nearest.size()), area_count_,
                                            nearest.size() < asked, fitters_.local());
+        if (sample.deviation >= kNoPlane) {  // out in the air, whatever fewer neighbours said
+            deviations_[site] = kNoPlane;
+            surface_.areas[site] = sample.area;
+            return;
+        }
         if (!(sample.deviation < deviations_[site])) return;
         deviations_[site] = sample.deviation;
         surface_.normals[site] = sample.normal;

@@ -59,6 +59,16 @@ bool stands_apart(std::span<const glm::vec3> near) {
     return 2 * denser >= near.size() - 1;
 }
 
+/// The share that the neighbours of a point in the air have: what it is to be drawn with, having none of its
+/// own.
+float share_of_neighbours(std::span<const glm::vec3> near) {
+    std::array<float, kMostSampled> reaches;
+    for (size_t i = 1; i < near.size(); ++i) reaches[i - 1] = their_reach2(near, i);
+    const auto median = reaches.begin() + static_cast<ptrdiff_t>((near.size() - 1) / 2);
+    std::nth_element(reaches.begin(), median, reaches.begin() + static_cast<ptrdiff_t>(near.size() - 1));
+    return std::numbers::pi_v<float> * *median / kTheirRank;
+}
+
 float deviation_of(const Plane& plane, size_t points) {
     const double n = static_cast<double>(points);
     const double widest = plane.variances[2];
@@ -121,8 +131,11 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     if (offsets.size() < 4) return sample;
     const auto near = offsets.first(std::min(offsets.size(), area_count));
     const float reach2 = glm::dot(near.back(), near.back());
-    if (!whole_cloud && glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2) return sample;
-    if (!whole_cloud && stands_apart(near)) return sample;
+    const bool sees_from_afar = glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2;
+    if (!whole_cloud && near.size() > kTheirRank + 1 && (sees_from_afar || stands_apart(offsets))) {
+        sample.area = share_of_neighbours(offsets);
+        return sample;
+    }
 
     Plane plane = fitter.fit(offsets);
     std::array<float, kMostSampled> heights;
@@ -141,9 +154,10 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     sample.deviation = deviation_of(plane, used);
     // Noise that fills the ball leaves no disc to measure: then all neighbours count, not only the nearest.
     const bool thick = plane.variances[0] > kThick * kThick * reach2;
-    sample.area = static_cast<float>(sample.deviation < kPoorDeviation
-                                         ? area_of(thick ? offsets : near, first_normal, layer)
-                                         : std::numbers::pi * reach2 / static_cast<double>(near.size() - 1));
+    if (sample.deviation < kPoorDeviation)
+        sample.area = static_cast<float>(area_of(thick ? offsets : near, first_normal, layer));
+    else  // a blob has no disc either, and a stray point must not get that of the empty space around it
+        sample.area = std::min(spacing * spacing, share_of_neighbours(offsets));
     return sample;
 }
 

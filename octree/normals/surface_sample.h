@@ -15,7 +15,7 @@ inline constexpr float kNoPlane = 1e9f;
 struct SurfaceSample {
     glm::vec3 normal{0.0f};      ///< unit, sign arbitrary; zero where there is no plane at all
     float deviation = kNoPlane;  ///< standard error of the normal, radians
-    float area = 0.0f;           ///< the location's share of the surface; 0: unknown
+    float area = 0.0f;           ///< the location's share of the surface (in the air: its neighbours'); 0: unknown
 };
 
 /// A normal whose standard error is larger is asked from more neighbours (3 degrees: what millimetres of
