@@ -1,11 +1,17 @@
 #include "octree/build/surface_store.h"
 
-#include <map>
+#include <cmath>
+#include <mutex>
 
 #include <fmt/format.h>
 
 namespace lucarne::octree {
 namespace {
+
+constexpr float kAreaBins = 4;  ///< an octave
+/// A few points that hang in the air together have no plane, and a share that is that of the empty space
+/// around them: no picture wants it larger than the usual surfel.
+constexpr float kMostStray = 0.5f;
 
 /// The chunks and stations of a build as the estimator sees them.
 class Access final : public ChunkAccess {
@@ -76,11 +82,25 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     options.memory = settings.memory;
     options.threads = settings.threads;
     options.normals = settings.normals;
+    std::mutex mutex;
     const auto keep = [&](size_t chunk, ChunkNormals&& found) {
+        const std::lock_guard lock(mutex);
         return store.keep(chunk, access.point_count(chunk), found);
     };
     LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
+    if (settings.normals) store.limit_strays();
     return store;
+}
+
+void SurfaceStore::limit_strays() {
+    uint64_t known = 0, below = 0;
+    for (const auto& [bin, count] : areas_) known += count;
+    for (const auto& [bin, count] : areas_) {
+        below += count;
+        if (2 * below < known) continue;
+        most_stray_area_ = kMostStray * std::exp2(static_cast<float>(bin) / kAreaBins);  // of the median
+        return;
+    }
 }
 
 Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals& found) {
@@ -88,6 +108,7 @@ Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals
     for (size_t i = 0; i < count; ++i) {
         if (i < found.normals.size()) points[i].normal = found.normals[i];
         if (i < found.areas.size()) points[i].area = found.areas[i];
+        if (points[i].area > 0) ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
         if (i < found.components.size()) points[i].component = found.components[i];
     }
     return file_.write_at(first_[chunk] * sizeof(Point), std::as_bytes(std::span(points)));
@@ -98,6 +119,9 @@ Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64
     std::vector<Point> points(count);
     LUCARNE_TRY(
         file_.read_at((first_[chunk] + first) * sizeof(Point), std::as_writable_bytes(std::span(points))));
+    if (most_stray_area_ > 0)
+        for (auto& point : points)
+            if (point.normal == glm::vec3(0.0f)) point.area = std::min(point.area, most_stray_area_);
     if (chunk >= signs_.size()) return points;
     for (auto& point : points)
         if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+
 #include "octree/build/chunk_store.h"
 #include "octree/normals/normals.h"
 
@@ -32,11 +34,15 @@ class SurfaceStore {
         for (const auto& chunk : chunks.chunks()) first_.push_back(end_), end_ += chunk.count;
     }
     Result<void> keep(size_t chunk, uint64_t count, const ChunkNormals& found);
+    void limit_strays();
 
     ScratchFile file_;
     std::vector<uint64_t> first_;  ///< each chunk's first point
     uint64_t end_ = 0;
     OrientationSigns signs_;
+    /// Points by area, kAreaBins an octave: the whole cloud's, so that no limit depends on the chunks.
+    std::map<int, uint64_t> areas_;
+    float most_stray_area_ = 0;  ///< of a point without a plane
 };
 
 }  // namespace lucarne::octree
