@@ -17,22 +17,21 @@ struct Gathered {
     vec3 specular;    // W/(sr m^2) toward the viewer by the receiver's lobe
 };
 
-// Whether VPL `index` sees the receiver by its shadow map. Both are measured along the texel's central ray, the
-// receiver by its tangent plane, so that slanted surfaces do not shadow themselves. What lies lower over the
-// receiver's tangent plane than splats err is the receiver's own sheet.
+// Whether VPL `index` sees the receiver by its shadow map, `normal` being the receiver's. What the map holds in the
+// receiver's direction is a blocker if the receiver lies behind the blocker's plane, and the blocker before the
+// receiver's plane, both by more than splats err. A texel is coarse, and depths alone would let slanted surfaces and
+// the walls of a corner shadow each other over its whole width.
 bool vpl_sees(uint index, vec3 light_normal, vec3 offset, float distance_m, vec3 normal) {
     mat3 frame = frame_about(light_normal);
-    uvec2 texel = texel_at(map_coordinates(offset * frame / distance_m));
-    uint nearest = atlas[texel_index(index, texel)];
-    if (nearest == kNothing) return true;
-    vec2 uv = texel_centre(texel);
-    float height = -dot(normal, offset);                 // of the VPL over the receiver's plane
-    float slope = -dot(normal, frame * map_ray(uv));     // how fast the central ray falls toward it, times its length
-    float reach = distance_m;
-    if (slope > 0.0) reach = min(reach, height / slope * (1.0 + dot(uv, uv)));
-    float blocker = map_distance(nearest);
-    float over_plane = (reach - blocker) * height / distance_m;
-    return over_plane <= sheet_tolerance(map_radius(nearest), blocker);
+    vec3 receiver = offset * frame;
+    uvec2 at = texel_at(map_coordinates(receiver / distance_m));
+    uint nearest = atlas[texel_index(index, at)];
+    vec2 uv = texel_centre(at);
+    float blocker_distance = map_distance(nearest);
+    vec3 blocker = map_ray(uv) * (blocker_distance / (1.0 + dot(uv, uv)));
+    float tolerance = sheet_tolerance(map_radius(nearest), blocker_distance);
+    return nearest == kNothing || dot(normal * frame, blocker - receiver) <= tolerance ||
+           dot(map_normal(nearest), blocker - receiver) <= tolerance;
 }
 
 // Every `stride`-th VPL from `first` on. Each is a disc of area A rather than a point: G = cos cos' / (d^2 + A / pi), which is the

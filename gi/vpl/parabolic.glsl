@@ -1,3 +1,4 @@
+#include "gi/shared/surfel_code.h"
 #include "gi/vpl/thinning.glsl"
 
 // The parabolic map of a VPL's hemisphere (Brabec, Annen, Seidel 2002) and the layout of the atlas of them.
@@ -9,16 +10,28 @@ layout(std430, binding = 10) buffer Atlas { uint atlas[]; };
 
 uniform uint map_side;  // texels along a side of one VPL's map; maps lie one after the other
 
-// An atlas texel: the distance along the texel's central ray, a positive float whose bits sort like itself; its last
-// 8 bits hold the radius of the surfel instead (2^(code/8 - 16) m), which leaves the distance 15 bits of mantissa.
+// An atlas texel: distance along the texel's central ray | radius of the surfel | normal of its disc, 16 + 4 + 12 bits,
+// so that the least one is the nearest.
+//   distance: a float from 2^-16 to 2^16 m with 11 bits of mantissa (steps of .05 %)
+//   radius:   2^(code - 11) m
+//   normal:   octahedral, 2 x 6 bits (off by up to 2 degrees), in the VPL's frame, toward the VPL
 const uint kNothing = 0xffffffffu;
 
-uint map_radius_code(float radius) { return uint(clamp(8.0 * (log2(radius) + 16.0) + 0.5, 0.0, 254.0)); }
-uint pack_map_texel(float distance_m, uint radius_code) {
-    return (floatBitsToUint(distance_m) & 0xffffff00u) | radius_code;
+uint map_surface(float radius, vec3 normal) {
+    uint code = uint(clamp(log2(radius) + 11.5, 0.0, 15.0));
+    uvec2 steps = uvec2(unpackSnorm2x16(encode_octahedral(normal)) * 31.5 + 31.999);
+    return code << 12 | steps.y << 6 | steps.x;
 }
-float map_distance(uint texel) { return uintBitsToFloat(texel & 0xffffff00u); }
-float map_radius(uint texel) { return exp2(float(texel & 0xffu) * 0.125 - 16.0); }
+uint pack_map_texel(float distance_m, uint surface) {
+    float inside = clamp(distance_m, 1.6e-5, 65000.0);
+    return ((floatBitsToUint(inside) >> 12) - (111u << 11)) << 16 | surface;
+}
+float map_distance(uint texel) { return uintBitsToFloat(((texel >> 16) + (111u << 11)) << 12 | 0x800u); }
+float map_radius(uint texel) { return exp2(float(texel >> 12 & 15u) - 11.0); }
+vec3 map_normal(uint texel) {
+    vec2 p = (vec2(texel & 63u, texel >> 6 & 63u) - 31.5) / 31.5;
+    return decode_octahedral(packSnorm2x16(p));
+}
 
 float splat_radius(float surfel_radius, float distance_m) { return max(surfel_radius, splat_angle * distance_m); }
 

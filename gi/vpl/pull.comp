@@ -27,7 +27,7 @@ void main() {
             sum += map_distance(child[i]);
             ++support;
         }
-        value = support >= 3u ? pack_map_texel(sum / float(support), nearest & 0xffu) : kOpen;
+        value = support >= 3u ? pack_map_texel(sum / float(support), nearest & 0xffffu) : kOpen;
     }
     set_pyramid_texel(level, map, at, value);
 }

@@ -33,5 +33,5 @@ void main() {
         if (around[i] >= kOpen || map_distance(around[i]) > deepest) return;
         mean += weight[i] * map_distance(around[i]);
     }
-    set_pyramid_texel(level, map, at, pack_map_texel(mean, nearest & 0xffu));
+    set_pyramid_texel(level, map, at, pack_map_texel(mean, nearest & 0xffffu));
 }

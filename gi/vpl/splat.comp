@@ -36,7 +36,7 @@ void splat(uint map, Disc disc) {
 
     float offset = dot(disc.normal, disc.centre);
     float radius2 = disc.radius * disc.radius;
-    uint radius_code = map_radius_code(disc.surfel_radius);
+    uint surface = map_surface(disc.surfel_radius, offset > 0.0 ? -disc.normal : disc.normal);
     if (first.y > last.y) return;
     for (ivec2 at = first; at.x <= last.x;) {  // one loop for both axes: invocations with small discs wait less
         vec2 uv = texel_centre(uvec2(at));
@@ -46,7 +46,7 @@ void splat(uint map, Disc disc) {
         vec3 hit = t * ray;
         vec3 from_centre = hit - disc.centre;
         if (t > 0.0 && dot(from_centre, from_centre) <= radius2 && hit.z > disc.lowest)
-            atomicMin(atlas[texel_index(map, uvec2(at))], pack_map_texel(t * (1.0 + norm2), radius_code));
+            atomicMin(atlas[texel_index(map, uvec2(at))], pack_map_texel(t * (1.0 + norm2), surface));
         at = at.y < last.y ? ivec2(at.x, at.y + 1) : ivec2(at.x + 1, first.y);
     }
 }
