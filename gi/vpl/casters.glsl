@@ -8,7 +8,7 @@ layout(std430, binding = 5) buffer Casters { uvec4 caster_codes[]; };
 struct Caster {
     vec3 position;
     vec3 normal;   // unit; zero: the surfel has none
-    float radius;  // of its disc where every surfel enters; 0: there is no surfel of this id
+    float radius;  // of its disc; 0: there is no surfel of this id
 };
 
 // w: normal as two 12-bit octahedral coordinates (.05 degrees; 0: none) | radius << 24, 2^((code - 128) / 8) m.

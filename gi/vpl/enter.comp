@@ -27,10 +27,10 @@ void main() {
     if (id >= id_end) caster.radius = 0.0;
     // A surfel without a normal faces every VPL: |n.offset| is its distance.
     float no_normal = caster.normal == vec3(0.0) ? 1.0 : 0.0;
-    float scale = caster.radius * caster.radius / (splat_angle * splat_angle);
+    float scale = kThinnedCover * caster.radius * caster.radius / (splat_angle * splat_angle);
     uint random = hash(id ^ seed) + first_map * 0x9e3779b9u;
 
-// u < p, multiplied by the cube of the distance. Random numbers of one surfel for successive maps are golden-ratio
+// u < kThinnedCover q, multiplied by the cube of the distance. Random numbers of one surfel for successive maps are golden-ratio
 // steps apart: even over the maps, and for one map as random as the hash. What lies wholly behind the VPL's tangent
 // plane is of no use.
 #define LUCARNE_TRY_MAP(k)                                                                            \

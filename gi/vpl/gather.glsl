@@ -8,6 +8,7 @@ layout(std430, binding = 9) readonly buffer Lights { VplLight lights[]; };
 struct Receiver {
     vec3 position;
     vec3 normal;
+    float radius;    // of its surfel, m
     vec3 to_viewer;  // unit
     Reflectance reflectance;
 };
@@ -19,17 +20,18 @@ struct Gathered {
 
 // Whether VPL `index` sees the receiver by its shadow map, `normal` being the receiver's. What the map holds in the
 // receiver's direction is a blocker if the receiver lies behind the blocker's plane, and the blocker before the
-// receiver's plane, both by more than splats err. A texel is coarse, and depths alone would let slanted surfaces and
+// receiver's plane, both by more than the map can tell. A texel is coarse, and depths alone would let slanted surfaces and
 // the walls of a corner shadow each other over its whole width.
-bool vpl_sees(uint index, vec3 light_normal, vec3 offset, float distance_m, vec3 normal) {
+bool vpl_sees(uint index, vec3 light_normal, vec3 lifted, vec3 normal) {
     mat3 frame = frame_about(light_normal);
-    vec3 receiver = offset * frame;
-    uvec2 at = texel_at(map_coordinates(receiver / distance_m));
+    vec3 receiver = (lifted - light_normal * lights[index].incident.w) * frame;
+    if (receiver.z <= 0.0) return true;
+    uvec2 at = texel_at(map_coordinates(normalize(receiver)));
     uint nearest = atlas[texel_index(index, at)];
     vec2 uv = texel_centre(at);
     float blocker_distance = map_distance(nearest);
     vec3 blocker = map_ray(uv) * (blocker_distance / (1.0 + dot(uv, uv)));
-    float tolerance = sheet_tolerance(map_radius(nearest), blocker_distance);
+    float tolerance = map_tolerance(map_radius(nearest), blocker_distance);
     return nearest == kNothing || dot(normal * frame, blocker - receiver) <= tolerance ||
            dot(map_normal(nearest), blocker - receiver) <= tolerance;
 }
@@ -46,7 +48,7 @@ Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
         float light_cosine = dot(light_normal.xyz, offset);
         if (!(cosines > 0.0 && light_cosine > 0.0)) continue;  // also the dead
         float distance2 = dot(offset, offset);
-        if (!vpl_sees(i, light_normal.xyz, offset, sqrt(distance2), receiver.normal)) continue;
+        if (!vpl_sees(i, light_normal.xyz, offset + receiver.normal * receiver.radius, receiver.normal)) continue;
         float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, position.w / kPi)));
         vec4 diffuse = lights[i].diffuse;
         vec3 arriving = diffuse.xyz;

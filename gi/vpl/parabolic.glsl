@@ -35,11 +35,14 @@ vec3 map_normal(uint texel) {
 
 float splat_radius(float surfel_radius, float distance_m) { return max(surfel_radius, splat_angle * distance_m); }
 
-// How far a splat may lie off the surface that it stands for. A surfel strays by half its radius (scan noise; the
-// reference engine lifts its rays as much), and the disc of a splat that grew to stand for its neighbours errs by the
-// angle of its normal and by the surface's curvature: .05 R for 3 degrees, .05 R for a curvature radius of 10 R.
-float sheet_tolerance(float surfel_radius, float distance_m) {
-    return 0.5 * surfel_radius + 0.1 * splat_radius(surfel_radius, distance_m);
+// How far the disc of a splat that grew to stand for its neighbours may lie off their surface, over its radius: .05
+// for a normal that errs by 3 degrees, .05 for a surface curved with ten times its radius.
+const float kSheetTolerance = 0.1;
+
+// Surfaces nearer to each other than this are one to a map: as far as a splat errs, and as a texel is wide (2 pi sr
+// in pi/4 side^2 texels).
+float map_tolerance(float surfel_radius, float distance_m) {
+    return kSheetTolerance * splat_radius(surfel_radius, distance_m) + sqrt(8.0) / float(map_side) * distance_m;
 }
 
 // An orthonormal frame about a unit vector (Duff et al. 2017); columns: tangent, bitangent, normal.

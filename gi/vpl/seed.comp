@@ -36,7 +36,7 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, WarpedPoint warped) {
     vec3 offset = hit - light_view.origin.xyz;
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
     return VplLight(vec4(hit, footprint), vec4(normal, r.ks), vec4(flux * r.kd / kPi, r.exponent), vec4(flux, 0.0),
-                    vec4(-away, 0.0));
+                    vec4(-away, texel_radius(texel)));
 }
 
 void main() {

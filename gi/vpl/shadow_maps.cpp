@@ -37,7 +37,8 @@ struct IdRange {
 void set_run(const Program& enter, std::span<const VplLight> lights, uint32_t first) {
     std::vector<float> positions, normals;
     for (const VplLight& l : lights.subspan(first, kRunMaps)) {
-        positions.insert(positions.end(), {l.position.x, l.position.y, l.position.z, 0.0f});
+        const glm::vec4 centre = map_centre(l);
+        positions.insert(positions.end(), {centre.x, centre.y, centre.z, 0.0f});
         normals.insert(normals.end(), {l.normal.x, l.normal.y, l.normal.z, 0.0f});
     }
     enter.set("first_map", first);

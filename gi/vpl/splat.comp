@@ -53,15 +53,15 @@ void splat(uint map, Disc disc) {
 
 // The disc that `caster` becomes in the map of `light`; false where none of it can be hit.
 bool disc_over(VplLight light, Caster caster, out Disc disc) {
-    vec3 offset = caster.position - light.position.xyz;
+    vec3 offset = caster.position - map_centre(light);
     float distance2 = max(dot(offset, offset), 1e-12);
     float distance_m = sqrt(distance2);
     if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
-    float share = entry_share(caster.radius, distance2, abs(dot(caster.normal, offset)));
+    float share = splat_share(caster.radius, distance2, abs(dot(caster.normal, offset)));
     float radius = caster.radius * inversesqrt(min(share, 1.0));
     float cosine = dot(light.normal.xyz, caster.normal);
-    // What is nearly parallel to the VPL's surface and hardly above it is the VPL's own sheet.
-    float lowest = abs(cosine) > 0.5 ? sheet_tolerance(caster.radius, distance_m) : 0.0;
+    // What is nearly parallel to the VPL's surface and hardly above the map's centre is the VPL's own sheet.
+    float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
     float top = dot(light.normal.xyz, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
     mat3 frame = frame_about(light.normal.xyz);
     disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, lowest);

@@ -18,8 +18,21 @@ struct VplLight {
     vec4 diffuse;   // flux * kd / pi: the diffuse radiant intensity along the normal, W/sr; w: n, Phong
                     // exponent
     vec4 flux;      // incident, W
-    vec4 incident;  // unit, toward where the flux comes from
+    vec4 incident;  // unit, toward where the flux comes from; w: how far its shadow map's centre is lifted
+                    // off it, m
 };
+
+// Where the shadow map is drawn from: one radius above the surfel, as the reference engine's rays start,
+// above what noise and the rims of neighbouring discs put in its way.
+#ifdef __cplusplus
+inline vec4 map_centre(const VplLight& light) {
+    return light.position + light.normal * light.incident.w;
+}
+#else
+vec3 map_centre(VplLight light) {
+    return light.position.xyz + light.normal.xyz * light.incident.w;
+}
+#endif
 
 #ifdef __cplusplus
 static_assert(sizeof(VplLight) == 80);
