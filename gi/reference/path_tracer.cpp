@@ -100,10 +100,26 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
     return sum;
 }
 
+/// The G-buffer may take a disc's rim that sticks out a little behind another surface (kRimPush). Its rays
+/// have to start on the viewer's side of that surface, or the rims of a sealed room would be lit from
+/// outside.
+glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& start) const {
+    const auto hit = surfels_.nearest(origin, start.viewer);
+    if (!hit) return origin;
+    const Surfel& surfel = surfels_.surfels()[*hit];
+    const float side = glm::dot(surfel.normal, start.viewer);
+    if (side == 0) return origin;
+    const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
+    if (distance > 2 * std::max(start.radius, surfel.radius)) return origin;  // something else in front of it
+    return offset_origin(origin + start.viewer * distance, side > 0 ? surfel.normal : -surfel.normal,
+                         surfel.radius);
+}
+
 Estimate PathTracer::trace(const Start& start, uint64_t index) const {
     Estimate result;
     if (!(start.radius > 0)) return result;
-    const Vertex first = vertex(start);
+    Vertex first = vertex(start);
+    first.origin = before_what_hides(first.origin, start);
     const uint64_t key = mix64(mix64(settings_.seed, settings_.frame), index);
     const uint32_t samples = std::max(settings_.samples, 1u);
     const bool indirect = settings_.only_bounce < 0 ? settings_.bounces > 0 : settings_.only_bounce > 0;

@@ -58,6 +58,7 @@ class PathTracer {
     struct Vertex;
     Vertex vertex(const Start& start) const;
     bool counts(uint32_t bounce) const;
+    glm::vec3 before_what_hides(const glm::vec3& origin, const Start& start) const;
     glm::vec3 own_light(const Vertex& vertex) const;
     glm::vec3 path(const Vertex& first, Random& random) const;
 

@@ -91,7 +91,7 @@ TEST_F(GenerateCommand, EvenPlyHoldsExactlyThePointsOfTheStream) {
 }
 
 TEST_F(GenerateCommand, TheSameSeedGivesTheSameFile) {
-    for (const std::string& name : {"a.las", "b.las"})
+    for (const std::string name : {"a.las", "b.las"})
         ASSERT_EQ(lucarne("generate two-rooms -o " + path(name) + " --points 30k --seed 7").code, 0);
     ASSERT_EQ(lucarne("generate two-rooms -o " + path("c.las") + " --points 30k --seed 8").code, 0);
     EXPECT_EQ(bytes(path("a.las")), bytes(path("b.las")));
@@ -109,7 +109,7 @@ TEST_F(GenerateCommand, AnUnknownSceneIsAnsweredWithThoseThereAre) {
 }
 
 TEST_F(GenerateCommand, BadArgumentsLeaveNothingBehind) {
-    for (const std::string& bad : {"--points 5Q", "--points -3", "--points 0", "--noise -1", "--noise nan",
+    for (const std::string bad : {"--points 5Q", "--points -3", "--points 0", "--noise -1", "--noise nan",
                                    "--stations 2000", "--stations x", "--even --stations 2", "--seed x"}) {
         const auto outcome = lucarne("generate cornell -o " + path("a.las") + " " + bad);
         EXPECT_EQ(outcome.code, 2) << bad << ": " << outcome.text;
