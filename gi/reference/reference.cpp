@@ -39,10 +39,6 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
             // A half float may have become 0 or infinite: there is a surface all the same.
             start.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
             start.material = texel.material & 0xffffu;
-            // The G-buffer may take a disc's rim that sticks out behind the surface hiding it, by up to
-            // kRimPush of a radius: a wall's rim above the ceiling would see the light outside. Twice that,
-            // for unequal radii.
-            start.position += start.viewer * (2 * kRimPush * start.radius);
         }
     });
     return starts;
