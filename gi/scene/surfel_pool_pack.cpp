@@ -33,6 +33,17 @@ class Packer {
         scan_ = find(io::names::scan, 1);
     }
 
+    /// Scans without a camera often come with colour fields that were never filled: a node in which every colour is
+    /// zero has none.
+    void drop_empty_colours(const octree::NodeData& data) {
+        if (!color_) return;
+        const size_t stride = header_.schema.stride;
+        for (size_t at = color_->offset; at < data.records.size(); at += stride)
+            for (size_t i = 0; i < color_->bytes(); ++i)
+                if (data.records[at + i] != std::byte{0}) return;
+        color_ = nullptr;
+    }
+
     PackedSurfel pack(const std::byte* record) const {
         const glm::dvec3 position = io::position_of(header_.schema, record);
         const uint32_t scan = scan_ ? static_cast<uint32_t>(scalar(scan_, record)) : 0;
@@ -146,7 +157,8 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
                                        const octree::NodeData& data, const Scene& scene) {
     const size_t stride = header.schema.stride;
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
-    const Packer packer(header, node, scene);
+    Packer packer(header, node, scene);
+    packer.drop_empty_colours(data);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
     limit_areas(surfels);
     return surfels;

@@ -331,6 +331,15 @@ TEST(PackSurfels, ScanWithoutColourIsMidGrey) {
     EXPECT_NEAR(decode_albedo(records.pack(one_material())[0].d).y, 0.5f, 1e-3f);
 }
 
+TEST(PackSurfels, ColourFieldsNeverFilledAreNoColour) {
+    Records records;
+    records.add({101, 201, 301}, {0, 0, 0}, octree::kNoNormal, 0, 0, 0);
+    records.add({102, 202, 302}, {0, 0, 0}, octree::kNoNormal, 0, 0, 0);
+    EXPECT_NEAR(decode_albedo(records.pack(one_material())[1].d).y, 0.5f, 1e-3f);
+    records.add({103, 203, 303}, {0, 300, 0}, octree::kNoNormal, 0, 0, 0);  // one colour: black is black
+    EXPECT_EQ(decode_albedo(records.pack(one_material())[1].d).y, 0.0f);
+}
+
 TEST(PackSurfels, EachScansOwnWhiteCounts) {
     Records records;
     records.header.scans[1].color_bits = 8;  // 8-bit values in 16-bit fields
