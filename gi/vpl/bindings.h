@@ -8,6 +8,7 @@ namespace lucarne::gi::vpl {
 inline constexpr uint32_t kBindMaterials = 3;
 inline constexpr uint32_t kBindGBuffer = 4;  // camera's or light's texels
 inline constexpr uint32_t kBindCasters = 5;
+inline constexpr uint32_t kBindLarge = 6;
 inline constexpr uint32_t kBindPoints = 7;  // Halton points
 inline constexpr uint32_t kBindImportance = 8;
 inline constexpr uint32_t kBindLights = 9;  // VplLight[]

@@ -19,10 +19,10 @@ Gathered filter_panes(uvec2 pixel, Receiver receiver, float depth) {
     int n = int(interleave);
     float sigma_z = float(n) * depth * 2.0 * length(camera.up.xyz) / float(camera.height);
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+    uint missing = 0u;  // panes, a bit each: shaded after the loop, where few invocations wait for each other
     for (int i = 0; i < n * n; ++i) {
         ivec2 nearest = ivec2(pixel) + ivec2(i % n, i / n) - (n - 1) / 2;
         ivec2 outward = n * ivec2(nearest.x < int(pixel.x) ? 1 : -1, nearest.y < int(pixel.y) ? 1 : -1);
-        Gathered pane_light;
         bool found = false;
         for (int j = 0; j < 4 && !found; ++j) {
             ivec2 at = nearest + outward * ivec2(j & 1, j >> 1);
@@ -31,19 +31,18 @@ Gathered filter_panes(uvec2 pixel, Receiver receiver, float depth) {
             GBufferTexel texel = texels[index];
             found = texel.depth > 0.0 && alike(receiver, sigma_z, uvec2(at), texel) >= kLeastWeight;
             if (!found) continue;
-            pane_light.irradiance = diffuse_light[index].xyz;
+            sum.irradiance += diffuse_light[index].xyz;
 #ifdef LUCARNE_GLOSSY
-            pane_light.specular = specular_light[index].xyz;
-#else
-            pane_light.specular = vec3(0.0);
+            sum.specular += specular_light[index].xyz;
 #endif
         }
-        if (!found) {
-            ivec2 pane = (nearest + 2 * n) % n;
-            pane_light = gather_pane(receiver, uint(pane.y * n + pane.x));
-        }
-        sum.irradiance += pane_light.irradiance;
-        sum.specular += pane_light.specular;
+        ivec2 pane = (nearest + 2 * n) % n;
+        if (!found) missing |= 1u << (pane.y * n + pane.x);
+    }
+    for (; missing != 0u; missing &= missing - 1u) {
+        Gathered anew = gather_pane(receiver, uint(findLSB(missing)));
+        sum.irradiance += anew.irradiance;
+        sum.specular += anew.specular;
     }
     float panes = float(n * n);
     return Gathered(sum.irradiance / panes, sum.specular / panes);

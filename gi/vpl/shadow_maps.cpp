@@ -15,10 +15,12 @@ namespace lucarne::gi::vpl {
 namespace {
 
 constexpr uint32_t kSideStep = 8;           // so that three levels of 2 x 2 blocks never cross a map's border
-constexpr double kSplatTexels = 1.3;        // radius of the thinned splats
+constexpr double kSplatTexels = 1.5;        // radius of the thinned splats
 constexpr uint32_t kNothing = 0xffffffffu;  // parabolic.glsl
 constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
 constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);  // queue.glsl
+constexpr uint32_t kLargeDiscs = 65535;  // a workgroup each: the least that OpenGL promises of them
+constexpr uint32_t kLargeGroup = 16;     // local size of splat_large.comp
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 constexpr uint32_t kQueuePairs =
     2 << 20;  // 16 MiB; a run of an atlas of 2048 x 2048 for 256 VPLs has some 450 000
@@ -65,19 +67,25 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
 
 /// Draws the surfels of the range into the run of maps that is set in `enter`. A range with more pairs than
 /// the queue holds (large maps close to surfaces) is drawn in halves; a single surfel has kRunMaps at most.
-void splat_range(const Program& enter, const Program& draw, IdRange range, Buffer& queue) {
+struct SplatPrograms {
+    const Program *enter, *draw, *draw_large;
+};
+
+void splat_range(const SplatPrograms& splat, IdRange range, Buffer& queue) {
     queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
-    enter.set("first_id", range.first);
-    enter.set("id_end", range.first + range.count);
-    enter.dispatch(range.count);
+    splat.enter->set("first_id", range.first);
+    splat.enter->set("id_end", range.first + range.count);
+    splat.enter->dispatch(range.count);
     const uint32_t pairs = queue.download_all<uint32_t>(1)[0];
     if (pairs > kQueuePairs) {
         const uint32_t half = range.count / 2;
-        splat_range(enter, draw, {range.first, half}, queue);
-        splat_range(enter, draw, {range.first + half, range.count - half}, queue);
+        splat_range(splat, {range.first, half}, queue);
+        splat_range(splat, {range.first + half, range.count - half}, queue);
         return;
     }
-    draw.dispatch(pairs);
+    splat.draw->dispatch(pairs);
+    const uint32_t large = std::min(queue.download_all<uint32_t>(2)[1], kLargeDiscs);
+    splat.draw_large->dispatch(large * kLargeGroup);
 }
 
 Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buffer& lights, uint32_t seed,
@@ -85,20 +93,22 @@ Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buf
     LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp"));
+    LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp"));
+    const SplatPrograms programs{enter, draw, draw_large};
     cut.bind();
     lights.bind(kBindLights);
     target.casters.bind(kBindCasters);
     target.atlas.bind(kBindAtlas);
     target.queue.bind(kBindQueue);
+    target.large.bind(kBindLarge);
     casters->dispatch(ids);
-    set_layout(*draw, target.layout);
-    set_layout(*enter, target.layout);
+    for (const Program* program : {enter, draw, draw_large}) set_layout(*program, target.layout);
     enter->set("seed", seed);
     const uint32_t runs = (target.layout.maps + kRunMaps - 1) / kRunMaps;
     const auto host_lights = lights.download_all<VplLight>(size_t{runs} * kRunMaps);
     for (uint32_t run = 0; run < runs; ++run) {
         set_run(*enter, host_lights, run * kRunMaps);
-        splat_range(*enter, *draw, {0, ids}, target.queue);
+        splat_range(programs, {0, ids}, target.queue);
     }
     return {};
 }
@@ -137,6 +147,7 @@ Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
     LUCARNE_TRY(device.reserve(target.casters, size_t{ids} * kCasterBytes, "ISM casters"));
     LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.large, kLargeDiscs * sizeof(uint32_t), "ISM queue"));
     target.layout = layout;
     times.begin("ISM splat");
     target.atlas.clear(kNothing);

@@ -26,7 +26,7 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps);
 struct ShadowMaps {
     AtlasLayout layout;
     Buffer atlas, coarse;
-    Buffer casters, queue;  ///< scratch of splatting (casters.glsl, queue.glsl)
+    Buffer casters, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
 /// Draws `cut` into the maps of `lights` (VplLight[layout.maps]) and closes the holes between the splats.

@@ -1,0 +1,67 @@
+// A surfel as a disc in a VPL's shadow map, and how it takes the map's texels.
+//
+// Per texel the texel's central ray is intersected with the disc's plane: one flat depth a splat would shadow its own
+// surface.
+#include "gi/vpl/casters.glsl"
+#include "gi/vpl/parabolic.glsl"
+#include "gi/vpl/queue.glsl"
+
+struct Disc {
+    vec3 centre;  // in the VPL's frame, the VPL at the origin
+    vec3 normal;
+    float radius;
+    float surfel_radius;
+    float lowest;  // hits up to this height over the VPL's tangent plane do not count
+};
+
+// The disc that `caster` becomes in the map of `light`; false where none of it can be hit.
+bool disc_over(VplLight light, Caster caster, out Disc disc) {
+    vec3 offset = caster.position - map_centre(light);
+    float distance2 = max(dot(offset, offset), 1e-12);
+    float distance_m = sqrt(distance2);
+    if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
+    float share = splat_share(caster.radius, distance2, abs(dot(caster.normal, offset)));
+    float radius = caster.radius * inversesqrt(min(share, 1.0));
+    float cosine = dot(light.normal.xyz, caster.normal);
+    // What is nearly parallel to the VPL's surface and hardly above the map's centre is the VPL's own sheet.
+    float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
+    float top = dot(light.normal.xyz, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
+    mat3 frame = frame_about(light.normal.xyz);
+    disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, lowest);
+    return top > lowest;
+}
+
+// The texels whose centres the disc may cover, first to last; none where first exceeds last. The cone about the disc's
+// bounding sphere becomes a circle in the map, for the projection is stereographic.
+void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
+    float inverse = inversesqrt(dot(disc.centre, disc.centre));
+    float sine = min(disc.radius * inverse, 1.0);
+    // 0 where the cone holds the map's pole at infinity: then the circle is the whole map.
+    float opposite = disc.centre.z * inverse + sqrt(1.0 - sine * sine);
+    vec2 low = vec2(-1.0), high = vec2(1.0);
+    if (opposite > 0.0 && sine < 1.0) {
+        vec2 middle = disc.centre.xy * inverse / opposite;
+        float reach = sine / opposite;
+        low = max(middle - reach, low);
+        high = min(middle + reach, high);
+    }
+    first = max(ivec2(ceil((low * 0.5 + 0.5) * float(map_side) - 0.5)), ivec2(0));
+    last = min(ivec2(floor((high * 0.5 + 0.5) * float(map_side) - 0.5)), ivec2(map_side) - 1);
+}
+
+void take_texel(uint map, Disc disc, float offset, uint surface, ivec2 at) {
+    vec2 uv = texel_centre(uvec2(at));
+    float norm2 = dot(uv, uv);
+    vec3 ray = vec3(2.0 * uv, 1.0 - norm2);
+    float t = offset / dot(disc.normal, ray);
+    vec3 hit = t * ray;
+    vec3 from_centre = hit - disc.centre;
+    if (t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest)
+        atomicMin(atlas[texel_index(map, uvec2(at))], pack_map_texel(t * (1.0 + norm2), surface));
+}
+
+// What all texels of a disc share: dot(normal, centre), and the code of its surface.
+float disc_offset(Disc disc) { return dot(disc.normal, disc.centre); }
+uint disc_surface(Disc disc) {
+    return map_surface(disc.surfel_radius, disc_offset(disc) > 0.0 ? -disc.normal : disc.normal);
+}
