@@ -6,7 +6,8 @@ namespace lucarne::gi::vpl {
 
 // Storage bindings of this room's shaders; 0 to 2 are the cut's.
 inline constexpr uint32_t kBindMaterials = 3;
-inline constexpr uint32_t kBindGBuffer = 4;  // camera's or light's texels
+inline constexpr uint32_t kBindGBuffer = 4;   // camera's or light's texels
+inline constexpr uint32_t kBindLightIds = 5;  // of the surfels behind the light's texels
 inline constexpr uint32_t kBindCasters = 5;
 inline constexpr uint32_t kBindLarge = 6;
 inline constexpr uint32_t kBindPoints = 7;  // Halton points

@@ -7,11 +7,9 @@
 layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/shared/brdf.h"
-#include "gi/shared/gbuffer.glsl"
 #include "gi/vpl/importance.glsl"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 4) readonly buffer LightGBuffer { GBufferTexel light_texels[]; };
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
 

@@ -4,13 +4,12 @@
 // Level 0 has `importance_side` (a power of two) texels along a side; each level above sums 2 x 2 texels of the one
 // below; all levels lie one after the other in one buffer.
 
-#include "gi/shared/gbuffer.glsl"
+#include "gi/gbuffer/shadow.glsl"
 #include "gi/shared/spot.h"
 
 layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
-uniform CameraView light_view;
 uniform SpotLight spot;
 
 // The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black

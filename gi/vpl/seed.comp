@@ -3,12 +3,12 @@
 layout(local_size_x = 64) in;
 
 #include "gi/shared/brdf.h"
-#include "gi/shared/gbuffer.glsl"
+#include "gi/shared/cut.glsl"
 #include "gi/vpl/importance.glsl"
 #include "gi/vpl/vpl_light.h"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 4) readonly buffer LightGBuffer { GBufferTexel light_texels[]; };
+layout(std430, binding = 5) readonly buffer LightIds { uint light_ids[]; };
 layout(std430, binding = 7) readonly buffer Points { vec2 points[]; };
 layout(std430, binding = 9) writeonly buffer Lights { VplLight lights[]; };
 
@@ -20,22 +20,31 @@ const float kLeastCosine = 1e-3;
 // Infinitely far away, so that no surfel enters its shadow map.
 VplLight dead_light() { return VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)); }
 
-VplLight light_on(GBufferTexel texel, uvec2 pixel, WarpedPoint warped) {
-    vec3 centre = texel_position(light_view, pixel, texel);
-    vec3 normal = texel_normal(texel);
-    vec3 ray = view_ray(light_view, warped.at);
-    // Where the ray meets the texel's surfel; beside its disc the depth of the texel is the better guess.
-    vec3 hit = light_view.origin.xyz + ray * (dot(normal, centre - light_view.origin.xyz) / dot(normal, ray));
-    if (!(distance(hit, centre) <= texel_radius(texel))) hit = light_view.origin.xyz + ray * texel.depth;
+// Whether a surfel's centre is in the light. Where it is not, what the light sees of the surfel is the rim of a disc
+// that sticks out at an edge, perhaps out of a sealed room.
+float stands_clear(uint id, vec3 normal, float radius) {
+    uint item;
+    PackedSurfel surfel;
+    if (id == kNoSurfel || !cut_surfel(id, item, surfel)) return 1.0;
+    return spot_visibility(surfel_position(item, surfel), normal, radius);
+}
 
+// The VPL stands where the texel's central ray ended: anywhere else in the texel it might be behind what hides the
+// rest of the surfel from the light, inside a sealed room say.
+VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
+    vec3 position = texel_position(light_view, pixel, texel);
+    vec3 normal = texel_normal(texel);
+    vec2 centre = vec2(pixel) + 0.5;
+    vec3 ray = view_ray(light_view, centre);
     vec3 away = normalize(ray);
-    float density = warped.probability / ray_solid_angle(warped.at);  // 1/sr
+    float density = probability / ray_solid_angle(centre);  // 1/sr
     vec3 flux = spot_intensity(spot, away) / (float(light_count) * density);
     Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
     float cosine = max(-dot(normal, away), kLeastCosine);
-    vec3 offset = hit - light_view.origin.xyz;
+    vec3 offset = position - light_view.origin.xyz;
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
-    return VplLight(vec4(hit, footprint), vec4(normal, r.ks), vec4(flux * r.kd / kPi, r.exponent), vec4(flux, 0.0),
+    return VplLight(vec4(position, footprint), vec4(normal, r.ks), vec4(flux * r.kd / kPi, r.exponent),
+                    vec4(flux, stands_clear(light_ids[pixel.y * light_view.width + pixel.x], normal, texel_radius(texel))),
                     vec4(-away, texel_radius(texel)));
 }
 
@@ -48,7 +57,7 @@ void main() {
     uvec2 pixel = uvec2(warped.at);
     if (warped.probability > 0.0 && pixel.x < light_view.width && pixel.y < light_view.height) {
         GBufferTexel texel = light_texels[pixel.y * light_view.width + pixel.x];
-        if (texel.depth > 0.0) light = light_on(texel, pixel, warped);
+        if (texel.depth > 0.0) light = light_on(texel, pixel, warped.probability);
     }
     lights[index] = light;
 }

@@ -8,9 +8,39 @@
 #include "gi/vpl/vpl_light.h"
 
 namespace lucarne::gi::vpl {
+namespace {
 
-Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const GBuffer& seen,
-                         const Buffer& materials, std::span<const glm::vec2> points, Seeds& target) {
+float luminance(const glm::vec4& rgb) {
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+}
+
+/// VPLs that do not stand clear in the light (seed.comp) give their flux to the others: the sum stays what
+/// lands.
+void clear_rims(std::span<VplLight> lights) {
+    double all = 0, clear = 0;
+    for (const VplLight& l : lights) {
+        all += luminance(l.flux);
+        if (l.flux.w >= 1) clear += luminance(l.flux);
+    }
+    const float scale = clear > 0 ? static_cast<float>(all / clear) : 0.0f;
+    for (VplLight& l : lights) {
+        if (l.flux.w < 1) {
+            l = kDeadLight;
+            continue;
+        }
+        for (glm::vec4* flux : {&l.flux, &l.diffuse}) {
+            flux->x *= scale;
+            flux->y *= scale;
+            flux->z *= scale;
+        }
+    }
+}
+
+}  // namespace
+
+Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const DeviceCut& cut,
+                         const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
+                         Seeds& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/vpl/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/vpl/importance_mip.comp"));
     LUCARNE_ASSIGN(const Program* seed, device.program("gi/vpl/seed.comp"));
@@ -24,7 +54,9 @@ Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView
     LUCARNE_TRY(device.reserve(target.lights, padded * sizeof(VplLight), "virtual point lights"));
     target.points.upload(0, std::as_bytes(points));
 
+    cut.bind();
     seen.texels.bind(kBindGBuffer);
+    seen.ids.bind(kBindLightIds);
     materials.bind(kBindMaterials);
     target.points.bind(kBindPoints);
     target.importance.bind(kBindImportance);
@@ -41,6 +73,9 @@ Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView
     }
     seed->set("light_count", static_cast<uint32_t>(points.size()));
     seed->dispatch(padded);
+    target.host_lights = target.lights.download_all<VplLight>(padded);
+    clear_rims(target.host_lights);
+    target.lights.upload_all(target.host_lights);
     return {};
 }
 

@@ -1,25 +1,30 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
+#include "gi/vpl/vpl_light.h"
 
 namespace lucarne::gi::vpl {
 
 /// The VPLs of one bounce and what they are made from.
 struct Seeds {
-    Buffer importance;  ///< vec2 (weight, lit), all mip levels (importance.glsl)
-    Buffer points;      ///< vec2 in [0, 1)^2, one a VPL
-    Buffer lights;      ///< VplLight[points]
+    Buffer importance;                  ///< vec2 (weight, lit), all mip levels (importance.glsl)
+    Buffer points;                      ///< vec2 in [0, 1)^2, one a VPL
+    Buffer lights;                      ///< VplLight[points], filled up with dead ones to whole runs
+    std::vector<VplLight> host_lights;  ///< the same
 };
 
-/// Places one VPL a point of `points` on what `spot` sees, which `seen` holds (rasterized with spot_view()):
-/// importance map, mip chain, hierarchical warping. The buffer of lights is filled up with dead ones to a
-/// whole run. `materials` is what upload_materials made. Errors: no device memory, a shader that fails.
-Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const GBuffer& seen,
-                         const Buffer& materials, std::span<const glm::vec2> points, Seeds& target);
+/// Places one VPL a point of `points` on what `spot` sees of `cut`, which `seen` holds (rasterized with
+/// spot_view()): importance map, mip chain, hierarchical warping. The buffer of lights is filled up with dead
+/// ones to a whole run. `materials` is what upload_materials made. Errors: no device memory, a shader that
+/// fails.
+Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const DeviceCut& cut,
+                         const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
+                         Seeds& target);
 
 }  // namespace lucarne::gi::vpl

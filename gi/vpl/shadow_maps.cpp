@@ -88,7 +88,7 @@ void splat_range(const SplatPrograms& splat, IdRange range, Buffer& queue) {
     splat.draw_large->dispatch(large * kLargeGroup);
 }
 
-Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buffer& lights, uint32_t seed,
+Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Seeds& seeds, uint32_t seed,
                    ShadowMaps& target) {
     LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
@@ -96,7 +96,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buf
     LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp"));
     const SplatPrograms programs{enter, draw, draw_large};
     cut.bind();
-    lights.bind(kBindLights);
+    seeds.lights.bind(kBindLights);
     target.casters.bind(kBindCasters);
     target.atlas.bind(kBindAtlas);
     target.queue.bind(kBindQueue);
@@ -105,9 +105,8 @@ Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Buf
     for (const Program* program : {enter, draw, draw_large}) set_layout(*program, target.layout);
     enter->set("seed", seed);
     const uint32_t runs = (target.layout.maps + kRunMaps - 1) / kRunMaps;
-    const auto host_lights = lights.download_all<VplLight>(size_t{runs} * kRunMaps);
     for (uint32_t run = 0; run < runs; ++run) {
-        set_run(*enter, host_lights, run * kRunMaps);
+        set_run(*enter, seeds.host_lights, run * kRunMaps);
         splat_range(programs, {0, ids}, target.queue);
     }
     return {};
@@ -139,7 +138,7 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     return layout;
 }
 
-Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights,
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
                               const AtlasLayout& layout, uint32_t seed, PassTimes& times,
                               ShadowMaps& target) {
     const uint32_t ids = cut.blocks() * kBlockSurfels;
@@ -151,7 +150,7 @@ Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer
     target.layout = layout;
     times.begin("ISM splat");
     target.atlas.clear(kNothing);
-    if (ids > 0) LUCARNE_TRY(splat(device, cut, ids, lights, seed, target));
+    if (ids > 0) LUCARNE_TRY(splat(device, cut, ids, seeds, seed, target));
     times.end();
     times.begin("ISM pull-push");
     LUCARNE_TRY(pull_push(device, target));

@@ -4,6 +4,7 @@
 
 #include "gi/device/device.h"
 #include "gi/scene/surfel_pool.h"
+#include "gi/vpl/seeding.h"
 
 namespace lucarne::gi::vpl {
 
@@ -29,10 +30,10 @@ struct ShadowMaps {
     Buffer casters, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
-/// Draws `cut` into the maps of `lights` (VplLight[layout.maps]) and closes the holes between the splats.
+/// Draws `cut` into the maps of `seeds` and closes the holes between the splats.
 /// Which surfels enter which maps follows from their ids and `seed`. Errors: no device memory, a shader that
 /// fails.
-Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Buffer& lights,
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
                               const AtlasLayout& layout, uint32_t seed, PassTimes& times, ShadowMaps& target);
 
 }  // namespace lucarne::gi::vpl

@@ -78,13 +78,13 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const SpotLight& spot = frame.lights[0];
     frame.times.begin("VPL seeding");
-    LUCARNE_TRY(seed_lights(frame.device, spot, spot_view(spot, s.light_resolution), seen_[0], materials_,
+    LUCARNE_TRY(seed_lights(frame.device, spot, spot_view(spot, s.light_resolution),
+                            *frame.cuts.light_views[0], seen_[0], materials_,
                             halton_points(s.vpls, s.seed, frame.index), seeds_));
     frame.times.end();
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
     const auto salt = static_cast<uint32_t>(mix64(s.seed, frame.index));
-    LUCARNE_TRY(
-        draw_shadow_maps(frame.device, *frame.cuts.light, seeds_.lights, layout, salt, frame.times, maps_));
+    LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, salt, frame.times, maps_));
     return shade_panes(frame, materials_, seeds_, maps_, glossy(frame), panes_);
 }
 

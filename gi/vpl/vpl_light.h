@@ -17,7 +17,7 @@ struct VplLight {
     vec4 normal;    // unit, on the lit side; w: ks, specular intensity of its surface
     vec4 diffuse;   // flux * kd / pi: the diffuse radiant intensity along the normal, W/sr; w: n, Phong
                     // exponent
-    vec4 flux;      // incident, W
+    vec4 flux;      // incident, W; w: 1 where it stands clear in the light, else less (seeding.cpp)
     vec4 incident;  // unit, toward where the flux comes from; w: how far its shadow map's centre is lifted
                     // off it, m
 };
@@ -35,6 +35,10 @@ vec3 map_centre(VplLight light) {
 #endif
 
 #ifdef __cplusplus
+/// Infinitely far away, so that no surfel enters its shadow map.
+inline const VplLight kDeadLight{vec4(1e18f, 1e18f, 1e18f, 0.0f), vec4(0.0f), vec4(0.0f), vec4(0.0f),
+                                 vec4(0.0f)};
+
 static_assert(sizeof(VplLight) == 80);
 }  // namespace lucarne::gi::vpl
 #endif

@@ -11,6 +11,7 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/vpl/seeding.h"
 #include "gi/vpl/vpl_light.h"
+#include "tests/gi/surfel_cloud.h"
 
 namespace lucarne::gi::vpl::testing {
 
@@ -61,10 +62,15 @@ inline Result<std::vector<VplLight>> seed_on(Device& device, const LightView& li
     gbuffer.height = light.view.height;
     LUCARNE_ASSIGN(gbuffer.texels, device.buffer(texels.size() * sizeof(GBufferTexel), "light G-buffer"));
     gbuffer.texels.upload_all(texels);
+    LUCARNE_ASSIGN(gbuffer.ids, device.buffer(texels.size() * sizeof(uint32_t), "light ids"));
+    gbuffer.ids.clear(kNoSurfel);
     LUCARNE_ASSIGN(Buffer material_buffer, device.buffer(materials.size() * sizeof(Material), "materials"));
     material_buffer.upload_all(materials);
+    const SurfelCloud nothing(std::vector<Surfel>{});
+    LUCARNE_ASSIGN(const auto loaded, load_cloud(device, nothing));
     Seeds seeds;
-    LUCARNE_TRY(seed_lights(device, light.spot, light.view, gbuffer, material_buffer, points, seeds));
+    LUCARNE_TRY(
+        seed_lights(device, light.spot, light.view, loaded->cut, gbuffer, material_buffer, points, seeds));
     return seeds.lights.download_all<VplLight>(points.size());
 }
 
