@@ -11,13 +11,10 @@ layout(local_size_x = 256) in;
 uniform uint first_id, id_end, first_map, seed;
 uniform vec4 run_position[32], run_normal[32];  // of the VPLs first_map ...
 
-uint hash(uint x) {  // "lowbias32" (Wellons 2018)
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ x >> 16;
-}
+// Multiples of these, modulo 1 (of 2^32), are as even as multiples of a number can be, at every scale: their continued
+// fractions are all ones and all twos.
+const uint kIdStep = 2654435769u;   // golden ratio - 1
+const uint kMapStep = 1779033704u;  // square root of 2, - 1
 
 uint entered = 0u;  // bit k: the surfel enters map first_map + k
 
@@ -28,10 +25,10 @@ void main() {
     // A surfel without a normal faces every VPL: |n.offset| is its distance.
     float no_normal = caster.normal == vec3(0.0) ? 1.0 : 0.0;
     float scale = kThinnedCover * caster.radius * caster.radius / (splat_angle * splat_angle);
-    uint random = hash(id ^ seed) + first_map * 0x9e3779b9u;
+    uint random = seed + id * kIdStep + first_map * kMapStep;
 
-// u < kThinnedCover q, multiplied by the cube of the distance. Random numbers of one surfel for successive maps are golden-ratio
-// steps apart: even over the maps, and for one map as random as the hash. What lies wholly behind the VPL's tangent
+// u < kThinnedCover q, multiplied by the cube of the distance. The numbers u are even over the maps of a surfel, and over the
+// surfels of a map in the order of their ids, which is even itself (a node's prefix order): fewer holes than by chance. What lies wholly behind the VPL's tangent
 // plane is of no use.
 #define LUCARNE_TRY_MAP(k)                                                                            \
     {                                                                                                 \
@@ -40,7 +37,7 @@ void main() {
         float distance_m = sqrt(distance2);                                                           \
         float along = max(abs(dot(caster.normal, offset)), max(no_normal, kLeastSlant) * distance_m); \
         float height = dot(run_normal[k].xyz, offset);                               \
-        float u = float((random + (k) * 0x9e3779b9u) >> 8) / 16777216.0;                              \
+        float u = float((random + (k) * kMapStep) >> 8) / 16777216.0;                              \
         bool over = height > -caster.radius - kLargestSplat * splat_angle * distance_m;               \
         entered |= over && u * distance2 * distance_m < scale * along ? 1u << (k) : 0u;               \
     }

@@ -15,7 +15,7 @@ namespace lucarne::gi::vpl {
 namespace {
 
 constexpr uint32_t kSideStep = 8;           // so that three levels of 2 x 2 blocks never cross a map's border
-constexpr double kSplatTexels = 1.5;        // radius of the thinned splats
+constexpr double kSplatTexels = 1.6;        // radius of the thinned splats
 constexpr uint32_t kNothing = 0xffffffffu;  // parabolic.glsl
 constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
 constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);  // queue.glsl

@@ -16,7 +16,7 @@ const float kLargestSplat = 3.1623;  // 1 / sqrt(kLeastSlant), in splat_angle * 
 
 // Surfels' discs cover their surface 5 to 7 times (octree/footprint.h); those of the thinned need not: random discs
 // leave e^-C of the rays through, 2 % at 4, most of them holes of one texel that pull-push closes.
-const float kThinnedCover = 0.5;
+const float kThinnedCover = 0.75;
 
 // q. `along` is |dot(normal, offset)|.
 float splat_share(float radius, float distance2, float along) {

@@ -1,0 +1,168 @@
+// What the vpl engine claims beyond the table of tests/gi/engines_test.cpp.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "gi/compare/metrics.h"
+#include "tests/gi/analytic_frame.h"
+#include "tests/gi/on_device.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+using scenes::AnalyticScene, scenes::add_rectangle, scenes::look, scenes::material, scenes::spot;
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
+const glm::vec3 kWhite(.7f), kRed(.6f, .1f, .1f), kGreen(.1f, .5f, .1f);
+
+/// A room of 2 m, open in front (y = 0), with a block on the floor and a spot under the ceiling.
+AnalyticScene box_with_a_block() {
+    AnalyticScene scene;
+    auto& s = scene.surfels;
+    add_rectangle(s, kO, 2.0f * kX, 2.0f * kY, 120, kWhite);
+    add_rectangle(s, 2.0f * kZ, 2.0f * kY, 2.0f * kX, 120, kWhite);
+    add_rectangle(s, 2.0f * kY, 2.0f * kX, 2.0f * kZ, 120, kWhite);
+    add_rectangle(s, kO, 2.0f * kY, 2.0f * kZ, 120, kRed);
+    add_rectangle(s, 2.0f * kX, 2.0f * kZ, 2.0f * kY, 120, kGreen);
+    const glm::vec3 c(.6f, .7f, 0), u(.6f, .15f, 0), v(-.15f, .6f, 0), h(0, 0, .8f);
+    add_rectangle(s, c + h, u, v, 37, kWhite);
+    add_rectangle(s, c, u, h, 37, kWhite);
+    add_rectangle(s, c + v, h, u, 37, kWhite);
+    add_rectangle(s, c, h, v, 37, kWhite);
+    add_rectangle(s, c + u, v, h, 37, kWhite);
+    scene.lights = {spot(glm::vec3(1.2f, .9f, 1.9f), glm::vec3(1.1f, 1.1f, 0), .8f, .7f, 10)};
+    scene.camera = look(glm::vec3(1, -2, 1), glm::vec3(1, 1, 1), .5f, 64);
+    scene.settings.only_bounce = 1;
+    scene.settings.vpls = 256;
+    scene.settings.atlas = 2048;
+    scene.settings.interleave = 2;
+    scene.settings.samples = 64;
+    return scene;
+}
+
+class VplEngineTest : public OnDevice {
+ protected:
+    std::vector<glm::vec4> radiance(const AnalyticScene& scene, std::string_view engine = "vpl",
+                                    uint64_t index = 0) {
+        auto rendered = scenes::render(*device, engine, scene, index);
+        EXPECT_TRUE(rendered) << rendered.error().line();
+        return rendered ? rendered->radiance : std::vector<glm::vec4>{};
+    }
+    double mean(const AnalyticScene& scene, std::string_view engine = "vpl", uint64_t index = 0) {
+        return mean_luminance(radiance(scene, engine, index));
+    }
+};
+
+TEST_F(VplEngineTest, everyInterleaveGivesTheSameMeanLuminance) {
+    AnalyticScene scene = box_with_a_block();
+    scene.camera = look(glm::vec3(1, -2, 1), glm::vec3(1, 1, 1), .5f, 160);
+    scene.settings.interleave = 1;
+    const double whole = mean(scene);
+    for (const uint32_t n : {2u, 4u}) {
+        scene.settings.interleave = n;
+        EXPECT_NEAR(mean(scene) / whole, 1, .01) << n;  // without the factor n^2 it is 1/4 or 1/16
+    }
+}
+
+TEST_F(VplEngineTest, oneBounceAgreesWithTheReference) {
+    AnalyticScene scene = box_with_a_block();
+    const double truth = mean(scene, "reference");
+    EXPECT_NEAR(mean(scene) / truth, 1, .05);
+    scene.settings.vpls = 1024;
+    scene.settings.interleave = 1;
+    EXPECT_NEAR(mean(scene) / truth, 1, .04);
+}
+
+TEST_F(VplEngineTest, atlasSizeAndSeedHardlyChangeTheMean) {
+    AnalyticScene scene = box_with_a_block();
+    const double first = mean(scene);
+    scene.settings.seed = 2;
+    EXPECT_NEAR(mean(scene) / first, 1, .03);
+    scene.settings.atlas = 1024;
+    EXPECT_NEAR(mean(scene) / first, 1, .03);
+}
+
+TEST_F(VplEngineTest, framesSampleAnewAndTheirMeanIsNearerToTheReference) {
+    AnalyticScene scene = box_with_a_block();
+    scene.settings.samples = 1024;
+    const auto truth = radiance(scene, "reference");
+    const auto first = radiance(scene);
+    std::vector<glm::vec4> sum = first;
+    constexpr int kFrames = 8;
+    for (int i = 1; i < kFrames; ++i) {
+        const auto frame = radiance(scene, "vpl", static_cast<uint64_t>(i));
+        EXPECT_NE(frame, first);
+        for (size_t p = 0; p < sum.size(); ++p) sum[p] += frame[p];
+    }
+    double one = 0, many = 0;
+    for (size_t p = 0; p < sum.size(); ++p) {
+        one += std::pow(first[p].y - truth[p].y, 2);
+        many += std::pow(sum[p].y / kFrames - truth[p].y, 2);
+    }
+    EXPECT_LT(many, .8 * one);
+}
+
+TEST_F(VplEngineTest, glossyLobesAgreeWithTheReference) {
+    // Lobes that reflect the lit floor to the walls and the camera; diffuse light beside them.
+    AnalyticScene scene = box_with_a_block();
+    for (const float exponent : {10.0f, 100.0f}) {
+        scene.materials = {material(.5f, .4f, exponent, 0)};
+        scene.settings.interleave = 1;
+        scene.settings.vpls = 1024;
+        EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << exponent;
+    }
+}
+
+/// Two rooms of 2 m with walls of their own .2 m apart, light in the left one; the camera is in the right
+/// one.
+AnalyticScene two_rooms(bool open) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 120, kWhite);
+    auto right = scenes::closed_box(2, 120, kWhite);
+    for (Surfel& s : right) s.position.x += 2.2f;
+    scene.surfels.insert(scene.surfels.end(), right.begin(), right.end());
+    if (open)
+        std::erase_if(scene.surfels, [](const Surfel& s) {
+            return std::abs(s.normal.x) > .5f && s.position.x > 1 && s.position.x < 3 &&
+                   std::abs(s.position.y - 1) < .4f && s.position.z < 1.6f;
+        });
+    scene.lights = {spot(glm::vec3(.5f, 1, 1.8f), glm::vec3(.8f, 1, 0), .7f, .6f, 10)};
+    scene.camera = look(glm::vec3(2.5f, .2f, 1), glm::vec3(4, 1.4f, .8f), .8f, 64);
+    scene.settings.only_bounce = 1;
+    return scene;
+}
+
+TEST_F(VplEngineTest, lightPassesAnOpenDoorAndNoClosedOne) {
+    const double open = mean(two_rooms(true)), closed = mean(two_rooms(false));
+    AnalyticScene lit = two_rooms(false);
+    lit.camera = look(glm::vec3(.2f, .2f, 1), glm::vec3(2, 1.4f, .8f), .8f, 64);
+    EXPECT_NEAR(open / mean(two_rooms(true), "reference"), 1, .15);
+    EXPECT_LT(closed, .005 * open);
+    // Not 0: floors and walls of both rooms lie in one plane, and of the wall between them a map does not see
+    // what is within a texel of that plane.
+    EXPECT_LT(closed, 5e-4 * mean(lit));
+}
+
+TEST_F(VplEngineTest, surfelsWithoutNormalsGiveAFinitePicture) {
+    AnalyticScene scene = box_with_a_block();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (size_t i = 0; i < scene.surfels.size(); ++i)
+        if (i % 3 != 0) scene.surfels[i].normal = i % 3 == 1 ? kO : glm::vec3(nan);
+    for (const glm::vec4& pixel : radiance(scene)) ASSERT_TRUE(std::isfinite(pixel.x + pixel.y + pixel.z));
+}
+
+TEST_F(VplEngineTest, settingsItCannotKeepAreRefused) {
+    for (const auto& spoil :
+         {+[](EngineSettings& s) { s.interleave = 3; }, +[](EngineSettings& s) { s.vpls = 0; },
+          +[](EngineSettings& s) { s.atlas = 16; }}) {
+        AnalyticScene scene = box_with_a_block();
+        spoil(scene.settings);
+        const auto rendered = scenes::render(*device, "vpl", scene);
+        ASSERT_FALSE(rendered);
+        EXPECT_EQ(rendered.error().kind, ErrorKind::arguments);
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi::vpl

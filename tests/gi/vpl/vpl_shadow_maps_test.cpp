@@ -1,0 +1,219 @@
+// Shadow maps of VPLs placed by hand in small scenes of surfels.
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "gi/vpl/bindings.h"
+#include "gi/vpl/shadow_maps.h"
+#include "tests/gi/on_device.h"
+#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+constexpr uint32_t kEmpty = 0xffffffffu;
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+/// The maps on the host, read as parabolic.glsl writes them.
+struct Maps {
+    AtlasLayout layout;
+    std::vector<uint32_t> texels;
+
+    uint32_t at(uint32_t map, uint32_t x, uint32_t y) const {
+        return texels[(size_t{map} * layout.side + y) * layout.side + x];
+    }
+    static float distance(uint32_t texel) {
+        const uint32_t bits = ((texel >> 16) + (111u << 11)) << 12 | 0x800u;
+        float value;
+        std::memcpy(&value, &bits, sizeof value);
+        return value;
+    }
+    /// The unit direction of a texel's central ray, for a VPL that looks along +z; zero outside the
+    /// hemisphere.
+    glm::vec3 ray(uint32_t x, uint32_t y) const {
+        const auto coordinate = [&](uint32_t i) {
+            return (2 * static_cast<float>(i) + 1) / static_cast<float>(layout.side) - 1;
+        };
+        const float u = coordinate(x), v = coordinate(y), norm2 = u * u + v * v;
+        return norm2 >= 1 ? glm::vec3(0.0f) : glm::vec3(2 * u, 2 * v, 1 - norm2) / (1 + norm2);
+    }
+    /// Calls body(ray, texel) for every texel of a map's hemisphere.
+    template <class Body>
+    void each(uint32_t map, const Body& body) const {
+        for (uint32_t y = 0; y < layout.side; ++y)
+            for (uint32_t x = 0; x < layout.side; ++x)
+                if (const glm::vec3 w = ray(x, y); w != glm::vec3(0.0f)) body(w, at(map, x, y));
+    }
+};
+
+/// A VPL at the origin that looks along +z: there the map's frame is the world's.
+VplLight upward() {
+    VplLight light = kDeadLight;
+    light.position = {0, 0, 0, 0.01f};
+    light.normal = {0, 0, 1, 0};
+    return light;
+}
+
+class VplShadowMaps : public OnDevice {
+ protected:
+    /// `atlas` texels along a side, shared out among the lights.
+    Maps draw(const std::vector<Surfel>& surfels, std::vector<VplLight> lights, uint32_t atlas) {
+        Maps maps;
+        const auto layout = atlas_layout(atlas, static_cast<uint32_t>(lights.size()));
+        EXPECT_TRUE(layout);
+        maps.layout = *layout;
+        lights.resize((lights.size() + kRunMaps - 1) / kRunMaps * kRunMaps, kDeadLight);
+        Seeds seeds;
+        seeds.host_lights = lights;
+        seeds.lights = *device->buffer(lights.size() * sizeof(VplLight), "lights");
+        seeds.lights.upload_all(lights);
+        const SurfelCloud cloud(surfels);
+        auto loaded = load_cloud(*device, cloud);
+        EXPECT_TRUE(loaded) << loaded.error().line();
+        PassTimes times(*device);
+        ShadowMaps drawn;
+        const auto done = draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, 1, times, drawn);
+        EXPECT_TRUE(done) << done.error().line();
+        maps.texels = drawn.atlas.download_all<uint32_t>(layout->texels());
+        return maps;
+    }
+};
+
+/// A square of side 2 `half` at height z over the origin, facing down.
+std::vector<Surfel> ceiling(float z, float half, int n) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, glm::vec3(-half, -half, z), 2 * half * kY, 2 * half * kX, n,
+                          glm::vec3(0.5f));
+    return surfels;
+}
+
+TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
+    // A slanted wall: depths differ by half over one splat, which one depth a splat would get wrong by as
+    // much.
+    std::vector<Surfel> wall;
+    scenes::add_rectangle(wall, glm::vec3(-4, -4, 0), glm::vec3(8, 0, 4), glm::vec3(0, 8, 0), 400,
+                          glm::vec3(0.5f));
+    const glm::vec3 normal = glm::normalize(glm::vec3(-.5f, 0, 1));
+    size_t hits = 0;
+    const Maps maps = draw(wall, {upward()}, 128);
+    maps.each(0, [&](const glm::vec3& ray, uint32_t texel) {
+        if (texel == kEmpty) return;
+        const float truth = glm::dot(normal, glm::vec3(0, 0, 2)) / glm::dot(normal, ray);
+        const glm::vec3 hit = truth * ray;
+        if (std::max(std::abs(hit.x), std::abs(hit.y)) > 3.7f) return;  // rims
+        ++hits;
+        EXPECT_NEAR(Maps::distance(texel) / truth, 1, .01) << ray.x << " " << ray.y;
+    });
+    EXPECT_GT(hits, 5000u);
+}
+
+TEST_F(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
+    // Far finer than the map, so that all but a few surfels in a hundred are left out of it.
+    std::vector<Surfel> walls = ceiling(1, 3, 500);
+    const auto behind = ceiling(2, 6, 500);
+    walls.insert(walls.end(), behind.begin(), behind.end());
+    const Maps maps = draw(walls, std::vector<VplLight>(16, upward()), 256);
+    size_t rays = 0, through = 0;
+    for (uint32_t map = 0; map < 16; ++map)
+        maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
+            if (ray.z < .4f) return;  // the white wall ends at 18 degrees over the horizon
+            ++rays;
+            if (texel == kEmpty || Maps::distance(texel) * ray.z > 1.5f) ++through;
+        });
+    EXPECT_GT(rays, 15'000u);
+    EXPECT_LE(static_cast<double>(through), .001 * static_cast<double>(rays));
+}
+
+TEST_F(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
+    // A wall at height 2 with a door of 1 x 1 in its middle, ten texels wide in the map, and a far wall at 6.
+    std::vector<Surfel> open = ceiling(6, 12, 500);
+    for (const auto& [corner, u, v] : {std::tuple{glm::vec3(-4, -4, 2), 3.5f * kX, 8.0f * kY},
+                                       std::tuple{glm::vec3(.5f, -4, 2), 3.5f * kX, 8.0f * kY},
+                                       std::tuple{glm::vec3(-.5f, -4, 2), 1.0f * kX, 3.5f * kY},
+                                       std::tuple{glm::vec3(-.5f, .5f, 2), 1.0f * kX, 3.5f * kY}}) {
+        // Square cells of 2 cm in every piece.
+        std::vector<Surfel> piece;
+        const int nu = static_cast<int>(std::lround(glm::length(u) / .02f));
+        const int nv = static_cast<int>(std::lround(glm::length(v) / .02f));
+        for (int j = 0; j < nv; ++j)
+            for (int i = 0; i < nu; ++i)
+                piece.push_back({corner + u * ((static_cast<float>(i) + .5f) / static_cast<float>(nu)) +
+                                     v * ((static_cast<float>(j) + .5f) / static_cast<float>(nv)),
+                                 -kZ, glm::vec3(.5f), .015f, 4e-4f, 0});
+        open.insert(open.end(), piece.begin(), piece.end());
+    }
+    std::vector<Surfel> closed = open;
+    scenes::add_rectangle(closed, glm::vec3(-.5f, -.5f, 2), kY, kX, 50, glm::vec3(.5f));
+
+    const auto share_through = [&](const std::vector<Surfel>& scene, float half) {
+        const Maps maps = draw(scene, std::vector<VplLight>(16, upward()), 256);
+        size_t rays = 0, through = 0;
+        for (uint32_t map = 0; map < 16; ++map)
+            maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
+                const glm::vec3 at = ray * (2 / std::max(ray.z, .1f));
+                if (std::max(std::abs(at.x), std::abs(at.y)) > half) return;
+                ++rays;
+                if (Maps::distance(texel) * ray.z > 4) ++through;
+            });
+        EXPECT_GT(rays, 200u);
+        return static_cast<double>(through) / static_cast<double>(rays);
+    };
+    EXPECT_GT(share_through(open, .25f),
+              .99);  // the splats of the frame reach a texel and a half into the door
+    EXPECT_GT(share_through(open, .5f), .5);
+    EXPECT_LT(share_through(closed, .5f), .002);
+}
+
+TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
+    // Every second VPL is dead: its map stays empty whatever its neighbours in the buffer hold.
+    std::vector<VplLight> lights;
+    for (int i = 0; i < 16; ++i) lights.push_back(i % 2 ? kDeadLight : upward());
+    const Maps maps = draw(ceiling(1, 20, 1000), lights, 256);
+    for (uint32_t map = 0; map < 16; ++map) {
+        size_t rays = 0, filled = 0;
+        maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
+            if (map % 2) EXPECT_EQ(texel, kEmpty) << map;
+            if (ray.z < .1f) return;  // past the end of the ceiling
+            ++rays;
+            filled += texel != kEmpty;
+        });
+        if (map % 2 == 0) EXPECT_GT(filled, rays * 998 / 1000) << map;
+    }
+}
+
+TEST_F(VplShadowMaps, ownSurfaceAndWhatLiesBehindItAreNotDrawn) {
+    std::vector<Surfel> floor;
+    scenes::add_rectangle(floor, glm::vec3(-2, -2, 0), 4.0f * kX, 4.0f * kY, 200, glm::vec3(.5f));
+    scenes::add_rectangle(floor, glm::vec3(-2, -2, -1), 4.0f * kX, 4.0f * kY, 200, glm::vec3(.5f));
+    VplLight light = upward();
+    light.incident.w = .02f;
+    const Maps maps = draw(floor, {light}, 64);
+    maps.each(0, [&](const glm::vec3& ray, uint32_t texel) { EXPECT_EQ(texel, kEmpty) << ray.z; });
+}
+
+TEST_F(VplShadowMaps, atlasesAreSharedOutAndTooManyMapsAreRefused) {
+    const auto layout = atlas_layout(2048, 256);
+    ASSERT_TRUE(layout);
+    EXPECT_EQ(layout->side, 128u);
+    const auto odd = atlas_layout(2048, 300);
+    ASSERT_TRUE(odd);
+    EXPECT_LE(odd->texels(), size_t{2048} * 2048);
+    EXPECT_EQ(odd->side % 8, 0u);
+    for (const auto& refused : {atlas_layout(2048, 0), atlas_layout(64, 100)}) {
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, ErrorKind::arguments);
+    }
+}
+
+TEST_F(VplShadowMaps, sameMapsEveryRun) {
+    const auto room = scenes::closed_box(2, 100, glm::vec3(.5f));
+    VplLight light = upward();
+    light.position = {1, 1, .1f, .01f};
+    const std::vector<VplLight> lights(40, light);  // more than one run of maps
+    EXPECT_EQ(draw(room, lights, 256).texels, draw(room, lights, 256).texels);
+}
+
+}  // namespace
+}  // namespace lucarne::gi::vpl
