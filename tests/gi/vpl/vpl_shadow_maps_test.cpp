@@ -174,12 +174,15 @@ TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
     for (uint32_t map = 0; map < 16; ++map) {
         size_t rays = 0, filled = 0;
         maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
-            if (map % 2) EXPECT_EQ(texel, kEmpty) << map;
+            if (map % 2) {
+                EXPECT_EQ(texel, kEmpty) << map;
+                return;
+            }
             if (ray.z < .1f) return;  // past the end of the ceiling
             ++rays;
             filled += texel != kEmpty;
         });
-        if (map % 2 == 0) EXPECT_GT(filled, rays * 998 / 1000) << map;
+        EXPECT_GE(filled, rays * 998 / 1000) << map;
     }
 }
 
