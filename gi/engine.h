@@ -1,57 +1,62 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
+#include "gi/scene/environment.h"
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/camera.h"
+#include "gi/shared/light.h"
 #include "gi/shared/material.h"
 
 namespace lucarne::gi {
 
 /// Everything an engine can be told; presets (viewer/presets.h) fill it. Engines ignore what they do not use.
 struct EngineSettings {
-    uint32_t bounces = 1;          ///< indirect bounces; 0: direct light alone
-    int32_t only_bounce = -1;      ///< >= 0: just that bounce (0: direct light)
+    uint32_t bounces = 1;      ///< indirect bounces; 0: direct light alone
+    int32_t only_bounce = -1;  ///< >= 0: just that bounce (0: direct light)
     uint32_t vpls = 256;
-    uint32_t interleave = 4;       ///< 1, 2 or 4
-    uint32_t atlas = 2048;         ///< texels along a side of the ISM atlas
+    uint32_t interleave = 4;          ///< 1, 2 or 4
+    uint32_t atlas = 2048;            ///< texels along a side of the ISM atlas
     uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
-    uint32_t samples = 64;         ///< reference: paths a pixel
+    uint32_t samples = 64;            ///< reference: paths a pixel
     uint64_t seed = 1;
 
     bool operator==(const EngineSettings&) const = default;
 };
 
-/// The cuts of a frame. They may be the same object's content or differ: the view cut is what the camera sees, the
-/// light-view cut what lights[i] sees, the light cut covers everything that may bounce or block light.
+/// The cuts of a frame. They may be the same object's content or differ: the view cut is what the camera
+/// sees, the light-view cut what lights[i] sees, the light cut covers everything that may bounce or block
+/// light.
 struct FrameCuts {
     const DeviceCut* view = nullptr;
     std::vector<const DeviceCut*> light_views;  ///< one a light
     const DeviceCut* light = nullptr;
 };
 
-/// One picture to be lit. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused), row 0 on top; the engine writes all
-/// of it: direct and indirect light, emission, background where the G-buffer is empty.
+/// One picture to be lit. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused), row 0 on top; the engine
+/// writes all of it: direct and indirect light, emission, background where the G-buffer is empty.
 struct Frame {
     Device& device;
     const SurfelPool& pool;
     FrameCuts cuts;
     CameraView camera;
     const GBuffer& gbuffer;
-    std::vector<SpotLight> lights;
+    std::vector<Light> lights;
     std::vector<Material> materials;
     glm::vec3 background{0.0f};
     EngineSettings settings;
     uint64_t index = 0;  ///< of the frame: engines that accumulate take new samples for each
     Buffer& radiance;
     PassTimes& times;
+    const Environment* environment = nullptr;  ///< lights, and is seen in the place of `background`
 };
 
 struct EngineInfo {

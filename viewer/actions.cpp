@@ -148,7 +148,7 @@ void run_actions(ViewModel& model, std::span<const int> keys) {
 }
 
 void place_light_at_camera(ViewModel& model) {
-    gi::SceneSpot* light = model.selected_light();
+    gi::SceneLight* light = model.selected_light();
     if (!light) {
         model.message = "the scene has no light to place";
         return;
@@ -161,14 +161,14 @@ void place_light_at_camera(ViewModel& model) {
 }
 
 void aim_light(ViewModel& model, const glm::dvec3& target) {
-    gi::SceneSpot* light = model.selected_light();
+    gi::SceneLight* light = model.selected_light();
     if (!light || glm::distance(light->position, target) < 1e-6 * model.scene_size) return;
     light->target = target;
     model.scene_changed();
 }
 
 void shift_light(ViewModel& model, const glm::dvec2& shift) {
-    gi::SceneSpot* light = model.selected_light();
+    gi::SceneLight* light = model.selected_light();
     if (!light) return;
     const gi::SceneCamera camera = model.rig.camera();
     const double depth = std::max(std::abs(glm::dot(light->position - camera.position, model.rig.forward())),

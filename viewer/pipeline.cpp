@@ -21,8 +21,8 @@ namespace {
 
 using octree::ResidencyEvent;
 
-// A frame that does not wait takes nodes in for this share of the time that the last one took, and a step at least:
-// it stays about as short, and slow frames do not keep a picture waiting for its nodes.
+// A frame that does not wait takes nodes in for this share of the time that the last one took, and a step at
+// least: it stays about as short, and slow frames do not keep a picture waiting for its nodes.
 constexpr double kUploadShare = 0.25;
 constexpr size_t kNodesAtOnce = 64;  // packed in parallel before they are uploaded
 constexpr double kFocusCells = 32;   // the light cut's focus moves in steps of 1/32 of the root cube
@@ -129,8 +129,8 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     view.chosen = octree::view_cut(*source, eye, budgets.view, budgets.pixel_spacing);
     light_views.resize(scene.lights.size());
     for (size_t i = 0; i < light_views.size(); ++i)
-        light_views[i].chosen = octree::light_view_cut(
-            *source, octree_view(scene.lights[i], settings.light_resolution), budgets.light_view);
+        light_views[i].chosen =
+            light_view_cut(*source, scene.lights[i], settings.light_resolution, budgets.light_view);
     // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
     const auto& root = source->header().root;
     const double step = root.size / kFocusCells;
@@ -209,16 +209,26 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
     LUCARNE_TRY(gi::rasterize(device, view.drawn, camera, gbuffer));
     times.end();
     gi::FrameCuts cuts{&view.drawn, {}, &light_cut.drawn};
-    std::vector<gi::SpotLight> lights;
+    std::vector<gi::Light> lights;
     for (size_t i = 0; i < light_views.size(); ++i) {
         cuts.light_views.push_back(&light_views[i].drawn);
-        lights.push_back(spot_light(scene.lights[i], local));
+        lights.push_back(device_light(scene.lights[i], local));
     }
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials) materials.push_back(device_material(material));
-    gi::Frame frame{device,   pool,        cuts,      camera,
-                    gbuffer,  lights,      materials, glm::vec3(scene.background),
-                    settings, accumulated, sample,    times};
+    gi::Frame frame{device,
+                    pool,
+                    cuts,
+                    camera,
+                    gbuffer,
+                    lights,
+                    materials,
+                    glm::vec3(scene.background),
+                    settings,
+                    accumulated,
+                    sample,
+                    times,
+                    scene.environment.get()};
     LUCARNE_TRY(engine->prepare(frame));
     return engine->render(frame);
 }

@@ -40,7 +40,7 @@ struct ViewModel {
 
     /// Must follow every change of `scene`.
     void scene_changed() { ++scene_version; }
-    gi::SceneSpot* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
+    gi::SceneLight* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
     Result<void> choose_preset(std::string_view name);
 };
 

@@ -70,23 +70,62 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
     return result;
 }
 
-gi::SpotLight spot_light(const gi::SceneSpot& spot, const LocalFrame& frame) {
-    const Axes axes = look_at(spot.position, spot.target, {0, 0, 1});
-    const double half = std::clamp(spot.angle, 1e-3, kWidestAngle) / 2;
-    const double inner = half * (1 - std::clamp(spot.softness, 0.0, 1.0));
-    gi::SpotLight light{};
-    light.position = glm::vec4(frame.to_local(spot.position), static_cast<float>(std::cos(half)));
-    light.direction = glm::vec4(glm::vec3(axes.forward), static_cast<float>(std::cos(inner)));
-    light.intensity = glm::vec4(glm::vec3(spot.intensity), 0.0f);
+gi::Light device_light(const gi::SceneLight& from, const LocalFrame& frame) {
+    const Axes axes = look_at(from.position, from.target, from.up);
+    const auto length = [&](double v) { return static_cast<float>(v * frame.metres_per_unit); };
+    gi::Light light{};
+    light.kind = static_cast<uint32_t>(from.kind);
+    light.position = glm::vec4(frame.to_local(from.position), 0.0f);
+    light.direction = glm::vec4(glm::vec3(axes.forward), 0.0f);
+    light.strength = glm::vec4(glm::vec3(from.strength), 0.0f);
+    switch (from.kind) {
+        case gi::LightKind::spot: {
+            const double half = std::clamp(from.angle, 1e-3, kWidestAngle) / 2;
+            const double inner = half * (1 - std::clamp(from.softness, 0.0, 1.0));
+            light.position.w = static_cast<float>(std::cos(half));
+            light.direction.w = static_cast<float>(std::cos(inner));
+            break;
+        }
+        case gi::LightKind::directional:
+            light.direction.w = static_cast<float>(std::clamp(from.angular_radius, 0.0, M_PI_2));
+            break;
+        case gi::LightKind::rectangle: {
+            const glm::vec3 side(axes.right);
+            light.extent = glm::vec4(side * length(from.width / 2), length(from.height / 2));
+            break;
+        }
+        case gi::LightKind::disc:
+            light.extent.w = length(from.radius);
+            break;
+        case gi::LightKind::point:
+            break;
+    }
     return light;
 }
 
-octree::View octree_view(const gi::SceneSpot& spot, uint32_t resolution) {
-    const Axes axes = look_at(spot.position, spot.target, {0, 0, 1});
-    octree::View view =
-        make_view(spot.position, axes, std::tan(std::clamp(spot.angle, 1e-3, kWidestAngle) / 2), 1.0);
+octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
+                           uint64_t budget) {
+    const Axes axes = look_at(light.position, light.target, {0, 0, 1});
+    const auto& header = source.header();
+    octree::View view;
+    switch (light.kind) {
+        case gi::LightKind::spot:
+            view = make_view(light.position, axes, std::tan(std::clamp(light.angle, 1e-3, kWidestAngle) / 2),
+                             1.0);
+            break;
+        case gi::LightKind::directional: {
+            // From so far away that its rays are as good as parallel.
+            constexpr double kFarAway = 1e4;  // diagonals of the scan
+            const double diagonal = std::max(glm::length(header.max - header.min), 1e-3);
+            view = make_view((header.min + header.max) / 2.0 - axes.forward * (kFarAway * diagonal), axes,
+                             .5 / kFarAway, 1.0);
+            break;
+        }
+        default:  // they shine all around
+            return octree::light_cut(source, light.position, budget);
+    }
     view.width = view.height = resolution;
-    return view;
+    return octree::light_view_cut(source, view, budget);
 }
 
 gi::Material device_material(const gi::SceneMaterial& material) {

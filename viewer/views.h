@@ -4,8 +4,10 @@
 
 #include "gi/scene/scene.h"
 #include "gi/shared/camera.h"
+#include "gi/shared/light.h"
 #include "gi/shared/material.h"
 #include "io/core/options.h"
+#include "octree/source.h"
 #include "octree/stream/cut.h"
 
 namespace lucarne::viewer {
@@ -29,10 +31,12 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
 /// The same for choosing nodes, in world units.
 octree::View octree_view(const gi::SceneCamera& camera, ImageSize size);
 
-/// A scene's spot as engines take it, and its square view for choosing nodes, `resolution` texels along a
-/// side.
-gi::SpotLight spot_light(const gi::SceneSpot& spot, const LocalFrame& frame);
-octree::View octree_view(const gi::SceneSpot& spot, uint32_t resolution);
+/// A scene's light as engines take it.
+gi::Light device_light(const gi::SceneLight& light, const LocalFrame& frame);
+/// What it shines on, in at most `budget` points: by a view of `resolution` texels along a side for spots and
+/// directional lights, all around the others.
+octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
+                           uint64_t budget);
 
 gi::Material device_material(const gi::SceneMaterial& material);
 

@@ -14,6 +14,7 @@ class DirectEngine : public Engine {
     Result<void> prepare(Frame& frame) override {
         if (frame.cuts.light_views.size() < frame.lights.size())
             return failed("direct", "there are fewer light views than lights");
+        warn_of_lights_left_out(frame, "direct", said_);
         return upload_materials(frame.device, frame.materials, materials_);
     }
     Result<void> render(Frame& frame) override;
@@ -21,6 +22,7 @@ class DirectEngine : public Engine {
 
  private:
     Buffer materials_;
+    std::string said_;       // which lights are left out
     GBuffer light_gbuffer_;  // one light's after another
 };
 
@@ -33,7 +35,8 @@ Result<void> DirectEngine::render(Frame& frame) {
     LUCARNE_TRY(add_own_light(frame, materials_, false));
     frame.times.end();
     for (size_t i = 0; i < frame.lights.size(); ++i) {
-        const SpotLight& spot = frame.lights[i];
+        const Light& spot = frame.lights[i];
+        if (!casts_shadow_map(spot)) continue;
         frame.times.begin("light G-buffer");
         LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
                               spot_view(spot, frame.settings.light_resolution), light_gbuffer_));

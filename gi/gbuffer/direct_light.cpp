@@ -2,7 +2,10 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 #include "gi/gbuffer/uniforms.h"
+#include "io/core/log.h"
 
 namespace lucarne::gi {
 namespace {
@@ -37,8 +40,20 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, bool add) {
     return {};
 }
 
-Result<void> add_spot_light(Frame& frame, const Buffer& materials, const SpotLight& spot,
-                            const GBuffer& seen) {
+void warn_of_lights_left_out(const Frame& frame, std::string_view engine, std::string& said) {
+    static constexpr const char* kNames[] = {"spot", "point light", "directional light", "rectangle", "disc"};
+    std::string names;
+    for (const Light& light : frame.lights)
+        if (!casts_shadow_map(light))
+            names += fmt::format("{}a {}", names.empty() ? "" : ", ", kNames[light.kind]);
+    if (frame.environment) names += fmt::format("{}the environment", names.empty() ? "" : ", ");
+    if (names != said && !names.empty())
+        log::warn("{}: left out, since no shadow map can hold it: {}; --engine reference has it all", engine,
+                  names);
+    said = names;
+}
+
+Result<void> add_spot_light(Frame& frame, const Buffer& materials, const Light& spot, const GBuffer& seen) {
     LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/spot_light.comp"));
     frame.gbuffer.texels.bind(kCameraTexels);
     seen.texels.bind(kLightTexels);

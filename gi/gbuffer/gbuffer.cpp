@@ -64,7 +64,7 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     return {};
 }
 
-CameraView spot_view(const SpotLight& spot, uint32_t resolution) {
+CameraView spot_view(const Light& spot, uint32_t resolution) {
     const glm::vec3 forward(spot.direction.x, spot.direction.y, spot.direction.z);
     // Any frame about the axis will do; the helper axis is the one least along it.
     const glm::vec3 helper = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);

@@ -4,6 +4,7 @@
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
+#include "gi/shared/light.h"
 #include "gi/shared/material.h"
 
 namespace lucarne::gi {
@@ -23,6 +24,6 @@ struct GBuffer {
 Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target);
 
 /// The square view of a spot (apex at the light, field the full cone) for light G-buffer and shadow map.
-CameraView spot_view(const SpotLight& spot, uint32_t resolution);
+CameraView spot_view(const Light& spot, uint32_t resolution);
 
 }  // namespace lucarne::gi

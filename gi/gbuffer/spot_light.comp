@@ -2,13 +2,13 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/gbuffer/shadow.glsl"
 #include "gi/shared/brdf.h"
-#include "gi/shared/spot.h"
+#include "gi/shared/light.h"
 
 layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]; };
 layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
 uniform CameraView camera;
-uniform SpotLight spot;
+uniform Light spot;
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -19,7 +19,7 @@ void main() {
     vec3 position = texel_position(camera, pixel, texel);
     vec3 normal = texel_normal(texel);
     vec3 to_light;
-    vec3 irradiance = spot_irradiance(spot, position, normal, to_light);
+    vec3 irradiance = light_irradiance(spot, position, normal, to_light);
     if (irradiance == vec3(0.0)) return;
     float visible = spot_visibility(position, normal, texel_radius(texel));
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);

@@ -25,10 +25,12 @@ void set(const Program& program, std::string_view uniform, const CameraView& vie
     program.set(std::string(uniform).append(".height"), view.height);
 }
 
-void set(const Program& program, std::string_view uniform, const SpotLight& spot) {
-    set_member(program, uniform, ".position", spot.position);
-    set_member(program, uniform, ".direction", spot.direction);
-    set_member(program, uniform, ".intensity", spot.intensity);
+void set(const Program& program, std::string_view uniform, const Light& light) {
+    set_member(program, uniform, ".position", light.position);
+    set_member(program, uniform, ".direction", light.direction);
+    set_member(program, uniform, ".strength", light.strength);
+    set_member(program, uniform, ".extent", light.extent);
+    program.set(std::string(uniform).append(".kind"), light.kind);
 }
 
 }  // namespace lucarne::gi

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/reference/scatter.h"
-#include "gi/shared/spot.h"
+#include "gi/shared/light.h"
 #include "io/core/parallel.h"
 
 namespace lucarne::gi::reference {
@@ -28,7 +28,7 @@ struct PathTracer::Vertex {
     Reflectance surface;
 };
 
-PathTracer::PathTracer(const SurfelTracer& surfels, std::span<const SpotLight> lights,
+PathTracer::PathTracer(const SurfelTracer& surfels, std::span<const Light> lights,
                        std::span<const Material> materials, const PathSettings& settings)
     : surfels_(surfels), lights_(lights), materials_(materials), settings_(settings) {}
 
@@ -52,10 +52,14 @@ bool PathTracer::counts(uint32_t bounce) const {
 /// L0: emission and what the spots' light becomes here.
 glm::vec3 PathTracer::own_light(const Vertex& v) const {
     glm::vec3 sum = v.emission;
-    for (const SpotLight& light : lights_) {
+    for (const Light& light : lights_) {
         glm::vec3 in;
-        const glm::vec3 irradiance = spot_irradiance(light, v.position, v.normal, in);
-        if (irradiance == glm::vec3(0.0f) || surfels_.occluded(v.origin, glm::vec3(light.position))) continue;
+        const glm::vec3 irradiance = light_irradiance(light, v.position, v.normal, in);
+        if (light.kind > kDirectionalLight || irradiance == glm::vec3(0.0f)) continue;
+        const bool hidden = light.kind == kDirectionalLight
+                                ? surfels_.nearest(v.origin, in).has_value()
+                                : surfels_.occluded(v.origin, glm::vec3(light.position));
+        if (hidden) continue;
         sum += brdf(v.surface, v.normal, v.out, in) * irradiance;
     }
     return sum;

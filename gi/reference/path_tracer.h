@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/reference/surfel_tracer.h"
+#include "gi/shared/light.h"
 #include "gi/shared/material.h"
 #include "io/core/random.h"
 
@@ -44,7 +45,7 @@ class PathTracer {
  public:
     /// `materials` may be empty: then every surfel is a white-scaled diffuse one. All spans outlive the
     /// tracer.
-    PathTracer(const SurfelTracer& surfels, std::span<const SpotLight> lights,
+    PathTracer(const SurfelTracer& surfels, std::span<const Light> lights,
                std::span<const Material> materials, const PathSettings& settings);
 
     /// One estimate a start. The numbers follow from (seed, frame, start's index, path) alone, so that they
@@ -63,7 +64,7 @@ class PathTracer {
     glm::vec3 path(const Vertex& first, Random& random) const;
 
     const SurfelTracer& surfels_;
-    std::span<const SpotLight> lights_;
+    std::span<const Light> lights_;
     std::span<const Material> materials_;
     PathSettings settings_;
 };

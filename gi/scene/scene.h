@@ -1,23 +1,36 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "gi/scene/environment.h"
 #include "io/core/error.h"
 
 namespace lucarne::gi {
 
-/// The scene file, as data/README.md documents it: world coordinates in the scan's own unit, angles in radians.
-struct SceneSpot {
+/// In the order of the kinds of gi/shared/light.h.
+enum class LightKind : uint32_t { spot, point, directional, rectangle, disc };
+
+/// The scene file, as data/README.md documents it: world coordinates and lengths in the scan's own unit,
+/// angles in radians. What a light's kind does not use keeps its default.
+struct SceneLight {
+    LightKind kind = LightKind::spot;
     std::string name;
-    glm::dvec3 position{0.0}, target{0.0, 0.0, -1.0};
-    double angle = 1.0;      ///< full cone
-    double softness = 0.1;   ///< share of the half angle over which the edge fades, 0..1
-    glm::dvec3 intensity{1.0};  ///< W/sr
+    glm::dvec3 position{0.0},
+        target{0.0, 0.0, -1.0};    ///< directional: only the direction between them counts
+    glm::dvec3 strength{1.0};      ///< spot, point: W/sr; directional: W/m^2; rectangle, disc: W/(sr m^2)
+    double angle = 1.0;            ///< spot: full cone
+    double softness = 0.1;         ///< spot: share of the half angle over which the edge fades, 0..1
+    double angular_radius = 0;     ///< directional: of the cap of sky it comes from
+    double width = 1, height = 1;  ///< rectangle; its height runs along `up` as far as its plane lets it
+    glm::dvec3 up{0.0, 0.0, 1.0};
+    double radius = 1;  ///< disc
 };
 
 struct SceneMaterial {
@@ -40,20 +53,24 @@ struct SceneCamera {
 enum class ToneMap { filmic, reinhard, none };
 
 struct Scene {
-    std::vector<SceneSpot> lights;
+    std::vector<SceneLight> lights;
     std::vector<SceneMaterial> materials;  ///< never empty once loaded: [0] is the default
     std::vector<SceneCamera> cameras;
     std::optional<double> exposure_ev;  ///< stops; radiance is multiplied by 2^ev. Empty: automatic
     ToneMap tone_map = ToneMap::filmic;
-    glm::dvec3 background{0.0};         ///< radiance where no surfel is; seen by the camera only
+    glm::dvec3 background{0.0};  ///< radiance where no surfel is; seen by the camera only
+    std::shared_ptr<const Environment>
+        environment;  ///< lights, and is seen in the place of `background`; or none
 };
 
 /// Errors name the file and the place: the line for syntax, the JSON pointer for a wrong or unknown key.
 Result<Scene> load_scene(const std::filesystem::path& path);
-Result<Scene> parse_scene(std::string_view text, const std::string& name);
+/// Pictures are looked for in the scene file's folder, by parse_scene in `folder`.
+Result<Scene> parse_scene(std::string_view text, const std::string& name,
+                          const std::filesystem::path& folder = ".");
 
-/// What is used without a scene file: a camera that sees the whole box (world units) and one spot beside it, bright
-/// enough for a mid-grey picture at exposure 0, which is fixed.
+/// What is used without a scene file: a camera that sees the whole box (world units) and one spot beside it,
+/// bright enough for a mid-grey picture at exposure 0, which is fixed.
 Scene default_scene(const glm::dvec3& min, const glm::dvec3& max, double metres_per_unit = 1.0);
 
 }  // namespace lucarne::gi

@@ -6,6 +6,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "gi/scene/scene.h"
+#include "gi/scene/scene_lights.h"
+#include "gi/scene/scene_limits.h"
 #include "io/core/json.h"
 
 namespace lucarne::gi {
@@ -15,31 +17,7 @@ using glm::dvec3;
 
 // data/README.md states these limits.
 constexpr size_t kMostLights = 64, kMostMaterials = 255, kMostCameras = 1000;
-constexpr JsonRange kCoordinate{-1e9, 1e9}, kShare{0, 1}, kRadiance{0, 1e12}, kScale{0, 10};
-constexpr JsonRange kConeDegrees{.1, 170}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6};
-
-Result<SceneSpot> read_light(JsonObject light) {
-    SceneSpot spot;
-    LUCARNE_TRY(light.choice("type", {"spot"}));
-    LUCARNE_ASSIGN(spot.name, light.text("name", ""));
-    LUCARNE_ASSIGN(spot.position, light.vector("position", kCoordinate));
-    const bool by_direction = light.has("direction");
-    if (by_direction && light.has("target"))
-        return light.wrong("give a target or a direction, not both", "direction");
-    LUCARNE_ASSIGN(const dvec3 direction, light.vector("direction", kCoordinate, dvec3(0)));
-    spot.target = spot.position + direction;
-    if (!by_direction) {
-        LUCARNE_ASSIGN(spot.target, light.vector("target", kCoordinate));
-    }
-    if (spot.target == spot.position)
-        return light.wrong("the light points nowhere", by_direction ? "direction" : "target");
-    LUCARNE_ASSIGN(spot.angle, light.number("angle", kConeDegrees, 60));
-    spot.angle = glm::radians(spot.angle);
-    LUCARNE_ASSIGN(spot.softness, light.number("softness", kShare, .1));
-    LUCARNE_ASSIGN(spot.intensity, light.vector("intensity", kRadiance));
-    LUCARNE_TRY(light.finish());
-    return spot;
-}
+constexpr JsonRange kScale{0, 10}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6};
 
 Result<SceneMaterial> read_material(JsonObject object) {
     SceneMaterial material;
@@ -113,15 +91,22 @@ Result<void> read_exposure(JsonObject& root, Scene& scene) {
     return exposure->finish();
 }
 
-Result<Scene> read_scene(const nlohmann::json& document, const std::string& name) {
+Result<Scene> read_scene(const nlohmann::json& document, const std::string& name,
+                         const std::filesystem::path& folder) {
     LUCARNE_ASSIGN(JsonObject root, JsonObject::of(document, name));
     Scene scene;
     LUCARNE_TRY(read_exposure(root, scene));
     LUCARNE_ASSIGN(scene.background, root.vector("background", kRadiance, dvec3(0)));
+    LUCARNE_ASSIGN(const auto environment, root.object("environment"));
+    if (environment) {
+        if (root.has("background"))
+            return root.wrong("the environment is the background; leave this out", "background");
+        LUCARNE_ASSIGN(scene.environment, read_environment(*environment, folder));
+    }
     LUCARNE_ASSIGN(const auto lights, root.objects("lights", kMostLights));
-    for (const JsonObject& light : lights) {
-        LUCARNE_ASSIGN(SceneSpot spot, read_light(light));
-        scene.lights.push_back(std::move(spot));
+    for (const JsonObject& object : lights) {
+        LUCARNE_ASSIGN(SceneLight light, read_light(object));
+        scene.lights.push_back(std::move(light));
     }
     LUCARNE_TRY(read_materials(root, scene));
     LUCARNE_ASSIGN(const auto cameras, root.objects("cameras", kMostCameras));
@@ -138,14 +123,15 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
 
 }  // namespace
 
-Result<Scene> parse_scene(std::string_view text, const std::string& name) {
+Result<Scene> parse_scene(std::string_view text, const std::string& name,
+                          const std::filesystem::path& folder) {
     LUCARNE_ASSIGN(const nlohmann::json document, parse_json(text, name));
-    return read_scene(document, name);
+    return read_scene(document, name, folder);
 }
 
 Result<Scene> load_scene(const std::filesystem::path& path) {
     LUCARNE_ASSIGN(const nlohmann::json document, load_json(path));
-    return read_scene(document, path.string());
+    return read_scene(document, path.string(), path.parent_path());
 }
 
 Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) {
@@ -163,7 +149,7 @@ Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) 
     const double distance = radius / std::sin(kFov / 2);
     camera.position = centre + back * distance;
 
-    SceneSpot spot;
+    SceneLight spot;
     spot.name = "beside the camera";
     const dvec3 right = glm::normalize(cross(-back, camera.up)), up = cross(right, -back);
     spot.position = camera.position + (right * .35 + up * .35) * distance;
@@ -172,7 +158,7 @@ Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) 
     spot.angle = 2 * std::asin(std::min(.95, 1.1 * radius / from));
     // A surface of albedo .5 in the middle, lit at 45 degrees, leaves L = (.5 / pi) I cos(45) / d^2 = .18.
     const double metres = from * metres_per_unit;
-    spot.intensity = dvec3(.18 * M_PI / .5 * metres * metres / M_SQRT1_2);
+    spot.strength = dvec3(.18 * M_PI / .5 * metres * metres / M_SQRT1_2);
 
     Scene scene;
     scene.lights = {spot};

@@ -1,4 +1,4 @@
-// Materials and lights as the devices hold them (std430), shared by C++ and GLSL.
+// Materials as the devices hold them (std430), shared by C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_MATERIAL_H
 #define LUCARNE_GI_SHARED_MATERIAL_H
 
@@ -17,16 +17,8 @@ struct Material {
     vec4 emission;  // rgb radiance, W/(sr m^2); w: n, Phong exponent
 };
 
-// A spot: radiant intensity I(w) = intensity * soft edge, W/sr. The edge falls from 1 at cos_inner to 0 at
-// cos_outer as smoothstep of the cosine.
-struct SpotLight {
-    vec4 position;   // m, relative to the local origin; w: cos_outer (half the full angle)
-    vec4 direction;  // unit; w: cos_inner
-    vec4 intensity;  // rgb, W/sr
-};
-
 #ifdef __cplusplus
-static_assert(sizeof(Material) == 32 && sizeof(SpotLight) == 48);
+static_assert(sizeof(Material) == 32);
 }  // namespace lucarne::gi
 #endif
 #endif

@@ -5,12 +5,12 @@
 // below; all levels lie one after the other in one buffer.
 
 #include "gi/gbuffer/shadow.glsl"
-#include "gi/shared/spot.h"
+#include "gi/shared/light.h"
 
 layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
-uniform SpotLight spot;
+uniform Light spot;
 
 // The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
 // surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).

@@ -38,7 +38,7 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     vec3 ray = view_ray(light_view, centre);
     vec3 away = normalize(ray);
     float density = probability / ray_solid_angle(centre);  // 1/sr
-    vec3 flux = spot_intensity(spot, away) / (float(light_count) * density);
+    vec3 flux = light_intensity(spot, away) / (float(light_count) * density);
     Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
     float cosine = max(-dot(normal, away), kLeastCosine);
     vec3 offset = position - light_view.origin.xyz;

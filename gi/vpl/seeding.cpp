@@ -38,7 +38,7 @@ void clear_rims(std::span<VplLight> lights) {
 
 }  // namespace
 
-Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const DeviceCut& cut,
+Result<void> seed_lights(Device& device, const Light& spot, const CameraView& view, const DeviceCut& cut,
                          const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
                          Seeds& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/vpl/importance.comp"));

@@ -23,7 +23,7 @@ struct Seeds {
 /// spot_view()): importance map, mip chain, hierarchical warping. The buffer of lights is filled up with dead
 /// ones to a whole run. `materials` is what upload_materials made. Errors: no device memory, a shader that
 /// fails.
-Result<void> seed_lights(Device& device, const SpotLight& spot, const CameraView& view, const DeviceCut& cut,
+Result<void> seed_lights(Device& device, const Light& spot, const CameraView& view, const DeviceCut& cut,
                          const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
                          Seeds& target);
 

@@ -33,6 +33,7 @@ class VplEngine : public Engine {
     Panes panes_;
     bool indirect_ = false;  ///< the last frame had indirect light
     bool said_first_bounce_ = false, said_first_light_ = false;
+    std::string said_left_out_;
 };
 
 bool wants_direct(const EngineSettings& s) {
@@ -45,6 +46,11 @@ bool wants_indirect(const EngineSettings& s) {
 bool glossy(const Frame& frame) {
     return std::any_of(frame.materials.begin(), frame.materials.end(),
                        [](const Material& m) { return m.diffuse.w > 0; });
+}
+
+size_t first_spot(const Frame& frame) {
+    const auto found = std::find_if(frame.lights.begin(), frame.lights.end(), casts_shadow_map);
+    return static_cast<size_t>(found - frame.lights.begin());
 }
 
 const EngineInfo& VplEngine::info() const {
@@ -64,8 +70,10 @@ Result<void> VplEngine::prepare(Frame& frame) {
         log::warn("vpl: light beyond the first bounce is not computed");
         said_first_bounce_ = true;
     }
-    if (!said_first_light_ && frame.lights.size() > 1 && wants_indirect(s)) {
-        log::warn("vpl: indirect light comes from the first of {} lights alone", frame.lights.size());
+    warn_of_lights_left_out(frame, "vpl", said_left_out_);
+    if (!said_first_light_ && std::count_if(frame.lights.begin(), frame.lights.end(), casts_shadow_map) > 1 &&
+        wants_indirect(s)) {
+        log::warn("vpl: indirect light comes from the first spot alone");
         said_first_light_ = true;
     }
     return upload_materials(frame.device, frame.materials, materials_);
@@ -76,10 +84,11 @@ Result<void> VplEngine::prepare(Frame& frame) {
 /// panes.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
-    const SpotLight& spot = frame.lights[0];
+    const size_t first = first_spot(frame);
+    const Light& spot = frame.lights[first];
     frame.times.begin("VPL seeding");
     LUCARNE_TRY(seed_lights(frame.device, spot, spot_view(spot, s.light_resolution),
-                            *frame.cuts.light_views[0], seen_[0], materials_,
+                            *frame.cuts.light_views[first], seen_[first], materials_,
                             halton_points(s.vpls, s.seed, frame.index), seeds_));
     frame.times.end();
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
@@ -93,7 +102,8 @@ Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, true));
     for (size_t i = 0; i < frame.lights.size(); ++i)
-        LUCARNE_TRY(add_spot_light(frame, materials_, frame.lights[i], seen_[i]));
+        if (casts_shadow_map(frame.lights[i]))
+            LUCARNE_TRY(add_spot_light(frame, materials_, frame.lights[i], seen_[i]));
     frame.times.end();
     return {};
 }
@@ -102,10 +112,11 @@ Result<void> VplEngine::render(Frame& frame) {
     seen_.resize(frame.lights.size());
     frame.times.begin("light G-buffer");
     for (size_t i = 0; i < frame.lights.size(); ++i)
-        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
-                              spot_view(frame.lights[i], frame.settings.light_resolution), seen_[i]));
+        if (casts_shadow_map(frame.lights[i]))
+            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
+                                  spot_view(frame.lights[i], frame.settings.light_resolution), seen_[i]));
     frame.times.end();
-    indirect_ = wants_indirect(frame.settings) && !frame.lights.empty();
+    indirect_ = wants_indirect(frame.settings) && first_spot(frame) < frame.lights.size();
     if (indirect_)
         LUCARNE_TRY(light_indirectly(frame));
     else

@@ -56,7 +56,7 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
-Image decode(const InputFile& file) {
+Image decode(const InputFile& file, uint64_t most_pixels) {
     // The library allocates by the header's size: it must know the limit before it reads the header. The
     // setting is the library's own and the same every time.
     Imf::Header::setMaxImageSize(kLargestSide, kLargestSide);
@@ -66,8 +66,8 @@ Image decode(const InputFile& file) {
     const int64_t width = int64_t{window.max.x} - window.min.x + 1,
                   height = int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide ||
-        static_cast<uint64_t>(width * height) > kMostPixels)
-        throw std::runtime_error(fmt::format("it has {}x{} pixels", width, height));
+        static_cast<uint64_t>(width * height) > std::min(most_pixels, kMostPixels))
+        throw std::runtime_error(fmt::format("it has {}x{} pixels, which is too large", width, height));
 
     const Imf::ChannelList& channels = exr.header().channels();
     const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;
@@ -128,10 +128,10 @@ Result<void> write_exr(const std::filesystem::path& path, const Image& image, bo
     return file.commit();
 }
 
-Result<Image> read_exr(const std::filesystem::path& path) {
+Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels) {
     LUCARNE_ASSIGN(const auto file, InputFile::open(path));
     try {
-        return decode(file);
+        return decode(file, most_pixels);
     } catch (const std::exception& error) {
         return rejected(path.string(), fmt::format("is no usable EXR picture ({})", error.what()));
     }

@@ -31,8 +31,8 @@ inline constexpr uint64_t kMostPixels = uint64_t{1} << 26;
 Result<void> write_exr(const std::filesystem::path& path, const Image& image, bool overwrite,
                        bool alpha = false);
 /// Channels R, G, B or Y, and A where there is one, of any type; scan lines or tiles, the first part. Opacity
-/// is 1 where the file has none. Deep pictures and subsampled channels are rejected.
-Result<Image> read_exr(const std::filesystem::path& path);
+/// is 1 where the file has none. Deep pictures, subsampled channels and more than `most_pixels` are rejected.
+Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
 
 /// 8 bits RGB, tagged sRGB. The file appears whole or not at all.
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite);

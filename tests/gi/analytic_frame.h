@@ -73,7 +73,7 @@ class OneNode final : public octree::NodeSource {
 
 struct AnalyticScene {
     std::vector<Surfel> surfels;
-    std::vector<SpotLight> lights;
+    std::vector<Light> lights;
     std::vector<Material> materials;  ///< [0] is the default
     CameraView camera;
     EngineSettings settings;
@@ -95,7 +95,7 @@ inline CameraView look(const glm::vec3& eye, const glm::vec3& target, float tang
             0};
 }
 
-inline SpotLight spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
+inline Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
                       float intensity) {
     return {glm::vec4(position, std::cos(half_angle)),
             glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),

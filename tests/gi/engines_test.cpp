@@ -58,10 +58,10 @@ AnalyticScene floor_under_a_spot() {
 }
 
 /// kd/pi I cos / d^2: the reflected light of a spot's bright centre at a point of the floor.
-float lit_floor(const SpotLight& light, const glm::vec3& point) {
+float lit_floor(const Light& light, const glm::vec3& point) {
     const glm::vec3 to_light = glm::vec3(light.position) - point;
     const float d2 = glm::dot(to_light, to_light);
-    return 0.5f / kPi * light.intensity.x * to_light.z / std::sqrt(d2) / d2;
+    return 0.5f / kPi * light.strength.x * to_light.z / std::sqrt(d2) / d2;
 }
 
 TEST_P(Engines, SpotOnAFloorGivesTheIrradianceOfItsIntensity) {
@@ -77,7 +77,7 @@ TEST_P(Engines, SpotOnAFloorGivesTheIrradianceOfItsIntensity) {
 
 TEST_P(Engines, SheetBetweenLightAndFloorCastsItsShadowAndNoMore) {
     AnalyticScene scene = floor_under_a_spot();
-    const SpotLight light = scene.lights[0];
+    const Light light = scene.lights[0];
     const glm::vec3 above(0.7f, 0.9f, 1.6f);
     scenes::add_rectangle(scene.surfels, above - glm::vec3(.05f, .05f, 0), 0.1f * kX, 0.1f * kY, 8,
                           glm::vec3(0.5f));
@@ -141,7 +141,7 @@ AnalyticScene lit_corner() {
 
 /// Radiance of the floor at a point by quadrature over the wall.
 double floor_light(const AnalyticScene& scene, const glm::vec3& point) {
-    const SpotLight& light = scene.lights[0];
+    const Light& light = scene.lights[0];
     const glm::vec3 place(light.position), axis(light.direction);
     double irradiance = 0;
     for (const Surfel& s : scene.surfels) {
@@ -149,7 +149,7 @@ double floor_light(const AnalyticScene& scene, const glm::vec3& point) {
         const glm::vec3 to_light = place - s.position, to_point = point - s.position;
         const double l2 = glm::dot(to_light, to_light), r2 = glm::dot(to_point, to_point);
         if (-glm::dot(axis, to_light) / std::sqrt(l2) < light.position.w) continue;
-        const double incident = light.intensity.x * to_light.x / std::sqrt(l2) / l2;
+        const double incident = light.strength.x * to_light.x / std::sqrt(l2) / l2;
         irradiance += 0.6 / kPi * incident * to_point.x * -to_point.z / (r2 * r2) * s.area;
     }
     return 0.5 / kPi * irradiance;

@@ -8,7 +8,7 @@
 
 namespace lucarne::gi {
 
-inline SpotLight make_spot(const glm::vec3& from, const glm::vec3& to, float half_angle, float intensity,
+inline Light make_spot(const glm::vec3& from, const glm::vec3& to, float half_angle, float intensity,
                            float softness = 0.0f) {
     const glm::vec3 d = glm::normalize(to - from);
     return {{from.x, from.y, from.z, std::cos(half_angle)},
@@ -41,7 +41,7 @@ struct Lit {
 };
 
 struct LitOptions {
-    std::vector<SpotLight> lights;
+    std::vector<Light> lights;
     std::vector<Material> materials = {make_material()};
     glm::vec3 background{0.0f};
     EngineSettings settings;

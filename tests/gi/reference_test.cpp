@@ -108,7 +108,7 @@ TEST(Reference, PerpendicularSquaresExchangeTheirFormFactor) {
     EXPECT_NEAR(form_factor(emitter, receiver), 0.200044, 0.005 * 0.200044);
 }
 
-SpotLight spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
+Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
                float intensity) {
     return {glm::vec4(position, std::cos(half_angle)),
             glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
@@ -120,7 +120,7 @@ TEST(Reference, SpotLightFallsWithTheSquareOfDistanceAndTheCosine) {
     scenes::add_rectangle(floor, kO, kX, kY, 50, glm::vec3(0.5f));
     const auto tracer = tracer_of(floor);
     const glm::vec3 place(0.9f, 0.5f, 2.0f), point(0.3f, 0.4f, 0.0f);
-    const std::vector<SpotLight> lights = {spot(place, point, 0.5f, 0.4f, 10)};
+    const std::vector<Light> lights = {spot(place, point, 0.5f, 0.4f, 10)};
     const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
     const Start start{point, kZ, kZ, glm::vec3(0.5f), floor[0].radius, 0};
     const glm::vec3 to_light = place - point;
@@ -132,7 +132,7 @@ TEST(Reference, SpotLightFallsWithTheSquareOfDistanceAndTheCosine) {
 
 TEST(Reference, SpotLightEndsSmoothlyAtItsCone) {
     const auto tracer = tracer_of({});
-    const std::vector<SpotLight> lights = {spot(kZ, kO, std::atan(1.0f), 0.0f, 1)};
+    const std::vector<Light> lights = {spot(kZ, kO, std::atan(1.0f), 0.0f, 1)};
     const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
     const auto at = [&](float x) {
         return paths.trace({glm::vec3(x, 0, 0), kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x;
@@ -150,7 +150,7 @@ TEST(Reference, SheetCastsAShadowFromBothItsSides) {
         scenes::add_rectangle(sheet, glm::vec3(-.5f, -.5f, 1), flipped ? kY : kX, flipped ? kX : kY, 40,
                               glm::vec3(0.5f));
         const auto tracer = tracer_of(sheet);
-        const std::vector<SpotLight> lights = {spot(2.0f * kZ, kO, 0.7f, 0.6f, 10)};
+        const std::vector<Light> lights = {spot(2.0f * kZ, kO, 0.7f, 0.6f, 10)};
         const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
         EXPECT_EQ(paths.trace({kO, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x, 0.0f);
         EXPECT_GT(paths.trace({1.2f * kX, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x, 0.0f);
@@ -160,7 +160,7 @@ TEST(Reference, SheetCastsAShadowFromBothItsSides) {
 TEST(Reference, SealedDarkRoomIsBlackHoweverBrightTheLightOutside) {
     const auto surfels = scenes::closed_box(1, 40, glm::vec3(0.9f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<SpotLight> lights = {spot(glm::vec3(.5f, .5f, 3), glm::vec3(.5f), 1.0f, 0.9f, 1e6f),
+    const std::vector<Light> lights = {spot(glm::vec3(.5f, .5f, 3), glm::vec3(.5f), 1.0f, 0.9f, 1e6f),
                                            spot(glm::vec3(-2, .4f, .3f), glm::vec3(.5f), 1.0f, 0.9f, 1e6f)};
     const PathTracer paths(*tracer, lights, {}, {.bounces = 4, .samples = 32});
     const auto estimates = paths.trace(starts_on(kO, kX, kY, 32, surfels[0].radius, glm::vec3(0.9f)));
@@ -173,7 +173,7 @@ TEST(Reference, OneBounceFromALitWallMatchesQuadrature) {
     scenes::add_rectangle(wall, kO, kY, kZ, 200, glm::vec3(0.6f));
     const auto tracer = tracer_of(wall);
     const glm::vec3 place(1.5f, .5f, .5f), receiver(0.5f, 0.4f, 0.0f);
-    const std::vector<SpotLight> lights = {spot(place, glm::vec3(0, .5f, .5f), 0.8f, 0.8f, 20)};
+    const std::vector<Light> lights = {spot(place, glm::vec3(0, .5f, .5f), 0.8f, 0.8f, 20)};
     const PathTracer paths(*tracer, lights, {}, {.only_bounce = 1, .samples = 200000});
     const Estimate estimate = paths.trace({receiver, kZ, kZ, glm::vec3(0.5f), 0.002f, 0}, 0);
     double irradiance = 0;
@@ -209,7 +209,7 @@ TEST(Reference, SamplesOfBothLobesIntegrateTheBrdf) {
 TEST(Reference, SamePicturesForAnyNumberOfThreads) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.7f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<SpotLight> lights = {
+    const std::vector<Light> lights = {
         spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kX, kY, 40, surfels[0].radius, glm::vec3(0.7f));
     const PathTracer paths(*tracer, lights, {}, {.bounces = 6, .samples = 8, .seed = 5});
@@ -224,7 +224,7 @@ TEST(Reference, SamePicturesForAnyNumberOfThreads) {
 TEST(Reference, AnotherSeedOrFrameGivesOtherNumbersAndTheSameMean) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.5f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<SpotLight> lights = {
+    const std::vector<Light> lights = {
         spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kZ, kX, 16, surfels[0].radius, glm::vec3(0.5f));
     const auto mean = [&](uint64_t seed, uint64_t frame) {
@@ -242,7 +242,7 @@ TEST(Reference, AnotherSeedOrFrameGivesOtherNumbersAndTheSameMean) {
 TEST(Reference, StandardErrorIsThatOfRepeatedRuns) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.5f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<SpotLight> lights = {
+    const std::vector<Light> lights = {
         spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kZ, kX, 8, surfels[0].radius, glm::vec3(0.5f));
     double sum = 0, squares = 0, claimed = 0;
@@ -285,7 +285,7 @@ TEST(Reference, LightAtASurfaceOrInsideAWallLeavesNoNaN) {
     const auto tracer = tracer_of(surfels);
     for (const glm::vec3& place :
          {kO, glm::vec3(.5f, .5f, 0), surfels[7].position, glm::vec3(.5f, .5f, -1e-4f)}) {
-        const std::vector<SpotLight> lights = {spot(place, place + kZ, 1.2f, 1.0f, 10)};
+        const std::vector<Light> lights = {spot(place, place + kZ, 1.2f, 1.0f, 10)};
         const PathTracer paths(*tracer, lights, {}, {.bounces = 3, .samples = 8});
         for (const Estimate& e : paths.trace(starts_on(kO, kX, kY, 20, surfels[0].radius, glm::vec3(1.0f))))
             ASSERT_TRUE(std::isfinite(luminance(e.radiance)) && e.radiance.x >= 0);

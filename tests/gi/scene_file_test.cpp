@@ -41,7 +41,7 @@ TEST(SceneFile, EveryKeyArrives) {
     EXPECT_EQ(scene->lights[0].target, dvec3(1, 2, 0));
     EXPECT_DOUBLE_EQ(scene->lights[0].angle, M_PI / 2);
     EXPECT_EQ(scene->lights[0].softness, .5);
-    EXPECT_EQ(scene->lights[0].intensity, dvec3(10, 20, 30));
+    EXPECT_EQ(scene->lights[0].strength, dvec3(10, 20, 30));
     EXPECT_EQ(scene->lights[1].target, dvec3(500000.25, 5000001.5, 100));  // exact: doubles all the way
     ASSERT_EQ(scene->materials.size(), 2u);
     EXPECT_EQ(scene->materials[0].name, "all");  // without a condition: the default, wherever it stands
@@ -104,7 +104,7 @@ TEST(SceneFile, EveryMistakeIsReportedWithItsPlace) {
         {R"({"light": []})", "/light", "not a known key"},
         {R"({"lights": {}})", "/lights", ""},
         {R"({"lights": [3]})", "/lights/0", "object"},
-        {R"({"lights": [{"type": "point"}]})", "/lights/0/type", "spot"},
+        {R"({"lights": [{"type": "lamp"}]})", "/lights/0/type", "spot"},
         {R"({"lights": [{"type": "spot"}]})", "/lights/0", "position"},
         {R"({"lights": [{"type": "spot", "position": [0,0]}]})", "/lights/0/position", "three numbers"},
         {R"({"lights": [{"type": "spot", "position": [0,0,"1"]}]})", "/lights/0/position", "three numbers"},
@@ -185,7 +185,7 @@ TEST(DefaultScene, CameraAndSpotTakeInTheWholeBox) {
         ASSERT_EQ(scene.cameras.size(), 1u);
         ASSERT_EQ(scene.lights.size(), 1u);
         ASSERT_EQ(scene.materials.size(), 1u);
-        const SceneSpot& spot = scene.lights[0];
+        const SceneLight& spot = scene.lights[0];
         for (int corner = 0; corner < 8; ++corner) {
             const dvec3 p(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z);
             EXPECT_TRUE(sees(scene.cameras[0], p));
@@ -195,12 +195,12 @@ TEST(DefaultScene, CameraAndSpotTakeInTheWholeBox) {
         }
         // A surface in the middle that faces the light at 45 degrees: 18 % grey.
         const double distance = glm::length(spot.target - spot.position);
-        EXPECT_NEAR(.5 / M_PI * spot.intensity.x * M_SQRT1_2 / (distance * distance), .18, 1e-9);
+        EXPECT_NEAR(.5 / M_PI * spot.strength.x * M_SQRT1_2 / (distance * distance), .18, 1e-9);
     }
     // In feet the light is the same in metres.
     const Scene metres = default_scene(dvec3(0), dvec3(1)),
                 feet = default_scene(dvec3(0), dvec3(1 / .3048), .3048);
-    EXPECT_NEAR(feet.lights[0].intensity.x, metres.lights[0].intensity.x, 1e-9);
+    EXPECT_NEAR(feet.lights[0].strength.x, metres.lights[0].strength.x, 1e-9);
 }
 
 TEST(DefaultScene, AnEmptyBoxStillGivesAFinitePicture) {
@@ -208,7 +208,7 @@ TEST(DefaultScene, AnEmptyBoxStillGivesAFinitePicture) {
     for (const double bad : {kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
         const Scene scene = default_scene(dvec3(bad), dvec3(-bad));
         EXPECT_TRUE(std::isfinite(glm::length(scene.cameras[0].position)));
-        EXPECT_TRUE(std::isfinite(scene.lights[0].intensity.x));
+        EXPECT_TRUE(std::isfinite(scene.lights[0].strength.x));
     }
 }
 

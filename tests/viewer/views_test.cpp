@@ -54,15 +54,39 @@ TEST(Views, LocalFrameKeepsProjectedCoordinatesExactInFloats) {
 }
 
 TEST(Views, SpotKeepsItsConeAndFadesOverItsSoftness) {
-    gi::SceneSpot spot;
+    gi::SceneLight spot;
     spot.position = {0, 0, 4};
     spot.target = {0, 0, 0};
     spot.angle = 1.0;
     spot.softness = 0.2;
-    const auto light = spot_light(spot, {{0, 0, 0}, 1.0});
+    const auto light = device_light(spot, {{0, 0, 0}, 1.0});
     EXPECT_FLOAT_EQ(light.position.w, std::cos(0.5f));
     EXPECT_FLOAT_EQ(light.direction.w, std::cos(0.4f));
     EXPECT_FLOAT_EQ(light.direction.z, -1);
+}
+
+TEST(Views, LightsComeInMetresWhateverTheUnitOfTheScan) {
+    const LocalFrame feet{{10, 0, 0}, 0.3048};
+    gi::SceneLight lamp;
+    lamp.kind = gi::LightKind::rectangle;
+    lamp.position = {20, 0, 10};
+    lamp.target = {20, 0, 0};
+    lamp.up = {0, 1, 0};
+    lamp.width = 4;
+    lamp.height = 2;
+    const auto light = device_light(lamp, feet);
+    EXPECT_EQ(light.kind, gi::kRectangleLight);
+    EXPECT_NEAR(light.position.x, 3.048f, 1e-6f);
+    EXPECT_FLOAT_EQ(light.direction.z, -1);
+    EXPECT_NEAR(std::abs(light.extent.x), 2 * .3048f, 1e-6f);  // half the width, across `up`
+    EXPECT_NEAR(light.extent.y, 0, 1e-6f);
+    EXPECT_NEAR(light.extent.w, .3048f, 1e-6f);
+    lamp.kind = gi::LightKind::disc;
+    lamp.radius = 1;
+    EXPECT_NEAR(device_light(lamp, feet).extent.w, .3048f, 1e-6f);
+    lamp.kind = gi::LightKind::directional;
+    lamp.angular_radius = 0.01;
+    EXPECT_FLOAT_EQ(device_light(lamp, feet).direction.w, 0.01f);
 }
 
 TEST(Presets, UnknownPresetIsABadArgumentThatListsTheKnownOnes) {

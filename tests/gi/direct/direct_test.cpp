@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/shared/brdf.h"
-#include "gi/shared/spot.h"
+#include "gi/shared/light.h"
 #include "tests/gi/lit_scene.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_scenes.h"
@@ -179,8 +179,8 @@ TEST_F(DirectTest, LightInsideABoxDoesNotLeaveIt) {
 TEST_F(DirectTest, LightsAddUp) {
     const auto surfels = plate(2, 0, 60);
     const CameraView camera = look({0, -2, 2.5f}, {0, 0, 0}, 80, 60, 0.6f);
-    const SpotLight a = make_spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 30);
-    const SpotLight b = make_spot({-0.5f, 0.6f, 1}, {0, 0, 0}, 0.5f, 10);
+    const Light a = make_spot({0.5f, 0.2f, 2}, {0, 0, 0}, 0.7f, 30);
+    const Light b = make_spot({-0.5f, 0.6f, 1}, {0, 0, 0}, 0.5f, 10);
     LitOptions options;
     options.lights = {a};
     const Lit first = light(surfels, camera, options);
@@ -254,12 +254,12 @@ TEST(Brdf, ReflectsNoMoreThanArrives) {
 }
 
 TEST(Spot, FluxOfASharpConeIsIntensityTimesSolidAngle) {
-    const SpotLight spot = make_spot({0, 0, 0}, {0, 0, 1}, 0.6f, 2);
+    const Light spot = make_spot({0, 0, 0}, {0, 0, 1}, 0.6f, 2);
     double flux = 0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
         const float cosine = 1 - 2 * (static_cast<float>(i) + .5f) / kSteps;
-        flux += spot_intensity(spot, {std::sqrt(1 - cosine * cosine), 0, cosine}).x * 4 * M_PI / kSteps;
+        flux += light_intensity(spot, {std::sqrt(1 - cosine * cosine), 0, cosine}).x * 4 * M_PI / kSteps;
     }
     EXPECT_NEAR(flux, 2 * 2 * M_PI * (1 - std::cos(0.6)), 1e-3);
 }

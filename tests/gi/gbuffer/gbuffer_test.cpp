@@ -115,7 +115,7 @@ TEST_F(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
         append(surfels, wall(distance + 3 * radius, 1.0f, kSpacing, kRed, 2));
         const float field = std::min(1.0f, 2 * std::atan(0.9f / (distance + 3 * radius)));
         const CameraView camera = look({0, 0, 0}, {0, 1, 0}, 320, 320, field);
-        SpotLight spot{{0, 0, 0, std::cos(field / 2)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
+        Light spot{{0, 0, 0, std::cos(field / 2)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
         for (const CameraView& view : {camera, spot_view(spot, 320)}) {
             const Picture p = draw(surfels, view);
             for (size_t at = 0; at < p.ids.size(); ++at) {
@@ -135,7 +135,7 @@ TEST_F(GBufferTest, WindowInAWallStaysOpen) {
     });
     append(surfels, wall(4, 2.5f, kSpacing, kRed, 2));
     const CameraView camera = look({0, 0, 0}, {0, 1, 0}, 240, 240, 1.0f);
-    const SpotLight spot{{0, 0, 0, std::cos(0.5f)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
+    const Light spot{{0, 0, 0, std::cos(0.5f)}, {0, 1, 0, 1}, {1, 1, 1, 0}};
     for (const CameraView& view : {camera, spot_view(spot, 240)}) {
         const Picture p = draw(surfels, view);
         const float pixel = 2 * 2 * std::tan(0.5f) / 240;  // on the wall
@@ -245,7 +245,7 @@ TEST_F(GBufferTest, ManyLargeDiscsOverflowTheirQueueWithoutHoles) {
 }
 
 TEST_F(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
-    const SpotLight spot{{1, 2, 3, std::cos(0.4f)}, {0, 0, -1, 1}, {1, 1, 1, 0}};
+    const Light spot{{1, 2, 3, std::cos(0.4f)}, {0, 0, -1, 1}, {1, 1, 1, 0}};
     const CameraView view = spot_view(spot, 128);
     EXPECT_NEAR(glm::length(glm::vec3(view.right.x, view.right.y, view.right.z)), std::tan(0.4f), 1e-5f);
     EXPECT_NEAR(glm::length(glm::vec3(view.up.x, view.up.y, view.up.z)), std::tan(0.4f), 1e-5f);

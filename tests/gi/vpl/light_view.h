@@ -17,7 +17,7 @@ namespace lucarne::gi::vpl::testing {
 
 /// A spot at the origin that looks down (-z), seen through a square view around its cone.
 struct LightView {
-    SpotLight spot;
+    Light spot;
     CameraView view;
 };
 

@@ -43,7 +43,7 @@ double texel_intensity(const LightView& light, uint32_t x, uint32_t y) {
         const double t = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
         sum += t * t * (3 - 2 * t) / 5;
     }
-    return sum * light.spot.intensity.x;
+    return sum * light.spot.strength.x;
 }
 
 double texel_solid_angle(const LightView& light, uint32_t x, uint32_t y) {
@@ -54,7 +54,7 @@ double texel_solid_angle(const LightView& light, uint32_t x, uint32_t y) {
 
 double full_flux(const LightView& light) {  // of the whole cone: the edge's smoothstep has a mean of 1/2
     const double inner = light.spot.direction.w, outer = light.spot.position.w;
-    return 2 * std::numbers::pi * light.spot.intensity.x * (1 - inner + (inner - outer) / 2);
+    return 2 * std::numbers::pi * light.spot.strength.x * (1 - inner + (inner - outer) / 2);
 }
 
 double total_flux(const std::vector<VplLight>& lights) {

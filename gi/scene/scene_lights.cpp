@@ -1,0 +1,110 @@
+#include "gi/scene/scene_lights.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "gi/scene/scene_limits.h"
+
+namespace lucarne::gi {
+namespace {
+
+using glm::dvec3;
+
+constexpr JsonRange kConeDegrees{.1, 170}, kCapDegrees{0, 90}, kSide{1e-6, 1e9}, kTurnDegrees{-360, 360};
+
+/// Where a light shines to: `target`, or `direction` from where it stands.
+Result<void> read_aim(JsonObject& object, SceneLight& light) {
+    const bool by_direction = object.has("direction");
+    if (by_direction && object.has("target"))
+        return object.wrong("give a target or a direction, not both", "direction");
+    if (by_direction) {
+        LUCARNE_ASSIGN(const dvec3 direction, object.vector("direction", kCoordinate));
+        light.target = light.position + direction;
+    } else {
+        LUCARNE_ASSIGN(light.target, object.vector("target", kCoordinate));
+    }
+    if (light.target == light.position)
+        return object.wrong("the light points nowhere", by_direction ? "direction" : "target");
+    return {};
+}
+
+Result<void> read_spot(JsonObject& object, SceneLight& light) {
+    LUCARNE_ASSIGN(light.position, object.vector("position", kCoordinate));
+    LUCARNE_TRY(read_aim(object, light));
+    LUCARNE_ASSIGN(light.angle, object.number("angle", kConeDegrees, 60));
+    light.angle = glm::radians(light.angle);
+    LUCARNE_ASSIGN(light.softness, object.number("softness", kShare, .1));
+    LUCARNE_ASSIGN(light.strength, object.vector("intensity", kRadiance));
+    return {};
+}
+
+Result<void> read_point(JsonObject& object, SceneLight& light) {
+    LUCARNE_ASSIGN(light.position, object.vector("position", kCoordinate));
+    light.target = light.position - dvec3(0, 0, 1);
+    LUCARNE_ASSIGN(light.strength, object.vector("intensity", kRadiance));
+    return {};
+}
+
+Result<void> read_directional(JsonObject& object, SceneLight& light) {
+    LUCARNE_ASSIGN(light.target, object.vector("direction", kCoordinate));
+    if (light.target == dvec3(0)) return object.wrong("the light points nowhere", "direction");
+    LUCARNE_ASSIGN(light.angular_radius, object.number("angular_radius", kCapDegrees, 0));
+    light.angular_radius = glm::radians(light.angular_radius);
+    LUCARNE_ASSIGN(light.strength, object.vector("irradiance", kRadiance));
+    return {};
+}
+
+Result<void> read_rectangle(JsonObject& object, SceneLight& light) {
+    LUCARNE_ASSIGN(light.position, object.vector("position", kCoordinate));
+    LUCARNE_TRY(read_aim(object, light));
+    LUCARNE_ASSIGN(light.width, object.number("width", kSide));
+    LUCARNE_ASSIGN(light.height, object.number("height", kSide));
+    LUCARNE_ASSIGN(light.up, object.vector("up", kCoordinate, dvec3(0, 0, 1)));
+    LUCARNE_ASSIGN(light.strength, object.vector("radiance", kRadiance));
+    return {};
+}
+
+Result<void> read_disc(JsonObject& object, SceneLight& light) {
+    LUCARNE_ASSIGN(light.position, object.vector("position", kCoordinate));
+    LUCARNE_TRY(read_aim(object, light));
+    LUCARNE_ASSIGN(light.radius, object.number("radius", kSide));
+    LUCARNE_ASSIGN(light.strength, object.vector("radiance", kRadiance));
+    return {};
+}
+
+}  // namespace
+
+Result<SceneLight> read_light(JsonObject object) {
+    // In the order of LightKind.
+    static constexpr Result<void> (*kReaders[])(JsonObject&, SceneLight&) = {
+        read_spot, read_point, read_directional, read_rectangle, read_disc};
+    SceneLight light;
+    LUCARNE_ASSIGN(const size_t kind,
+                   object.choice("type", {"spot", "point", "directional", "rectangle", "disc"}));
+    light.kind = static_cast<LightKind>(kind);
+    LUCARNE_ASSIGN(light.name, object.text("name", ""));
+    LUCARNE_TRY(kReaders[kind](object, light));
+    LUCARNE_TRY(object.finish());
+    return light;
+}
+
+Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,
+                                                            const std::filesystem::path& folder) {
+    auto environment = std::make_shared<Environment>();
+    LUCARNE_ASSIGN(const std::string image, object.text("image", ""));
+    if (image.empty() && !object.has("radiance")) return object.wrong("give a radiance or an image");
+    LUCARNE_ASSIGN(const dvec3 radiance, object.vector("radiance", kRadiance, dvec3(1)));
+    LUCARNE_ASSIGN(const double rotation, object.number("rotation", kTurnDegrees, 0));
+    LUCARNE_TRY(object.finish());
+    environment->texels = {glm::vec3(radiance)};
+    if (!image.empty()) {
+        auto loaded = load_environment(folder / image, radiance, glm::radians(rotation));
+        if (!loaded) return object.wrong(loaded.error().line(), "image");
+        *environment = std::move(*loaded);
+    }
+    return environment;
+}
+
+}  // namespace lucarne::gi

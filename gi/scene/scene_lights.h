@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "gi/scene/environment.h"
+#include "gi/scene/scene.h"
+#include "io/core/json.h"
+
+namespace lucarne::gi {
+
+// The parts of a scene file that give light, as data/README.md documents them; load_scene() calls these.
+
+Result<SceneLight> read_light(JsonObject object);
+/// Paths of pictures are relative to `folder`.
+Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,
+                                                            const std::filesystem::path& folder);
+
+}  // namespace lucarne::gi

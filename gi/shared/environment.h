@@ -1,0 +1,26 @@
+// Which texel of an environment's picture a direction meets, for C++ and GLSL alike.
+#ifndef LUCARNE_GI_SHARED_ENVIRONMENT_H
+#define LUCARNE_GI_SHARED_ENVIRONMENT_H
+
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+#include <glm/trigonometric.hpp>
+namespace lucarne::gi {
+using glm::acos, glm::atan, glm::fract;
+#endif
+
+// Where the unit direction stands in an equirectangular picture, both in [0, 1), from its upper left corner: the
+// zenith (+z) on top, +y in the middle, +x to the right of it. `rotation` turns the picture about z, radians,
+// counterclockwise seen from above.
+LUCARNE_FN vec2 environment_place(vec3 direction, float rotation) {
+    float turns = direction.x == 0.0f && direction.y == 0.0f ? 0.0f : atan(direction.x, direction.y);
+    float u = fract(0.5f + (turns + rotation) / 6.28318531f);
+    float v = acos(clamp(direction.z, -1.0f, 1.0f)) / 3.14159265f;
+    return vec2(min(u, 0.99999994f), min(v, 0.99999994f));
+}
+
+#ifdef __cplusplus
+}  // namespace lucarne::gi
+#endif
+#endif

@@ -1,0 +1,67 @@
+// Lights as the devices hold them (std430), and what they send where, for C++ and GLSL alike.
+//
+// Lights are no surfaces: no camera sees one, none blocks light. What they send is counted where it is first reflected
+// (bounce 0). Surfaces that shine by themselves are surfels with an emission (Material).
+#ifndef LUCARNE_GI_SHARED_LIGHT_H
+#define LUCARNE_GI_SHARED_LIGHT_H
+
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+namespace lucarne::gi {
+#endif
+
+const uint kSpotLight = 0u;         // from a point, within a cone
+const uint kPointLight = 1u;        // from a point, everywhere
+const uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
+const uint kRectangleLight = 3u;    // from one side of a rectangle, the same radiance in all directions
+const uint kDiscLight = 4u;         // from one side of a disc, likewise
+
+// What a field holds by kind; fields that a kind does not name are unused.
+//   position   spot, point, rectangle, disc: m, relative to the local origin (the middle); w: spot: cos_outer
+//   direction  unit, the way the light goes (rectangle, disc: the normal of the side that shines);
+//              w: spot: cos_inner; directional: angular radius of the cap, 0 to pi/2
+//   strength   spot, point: radiant intensity, W/sr; directional: irradiance of a surface that faces it, W/m^2;
+//              rectangle, disc: radiance, W/(sr m^2)
+//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w: radius, m
+// A spot's intensity falls from 1 at cos_inner to 0 at cos_outer (half the full angle) as smoothstep of the cosine.
+struct Light {
+    vec4 position;
+    vec4 direction;
+    vec4 strength;
+    vec4 extent;
+    uint kind, pad0, pad1, pad2;
+};
+
+// Radiant intensity, W/sr, of a spot or point light in the unit direction `away` from it.
+LUCARNE_FN vec3 light_intensity(Light light, vec3 away) {
+    vec3 strength = vec3(light.strength.x, light.strength.y, light.strength.z);
+    if (light.kind == kPointLight) return strength;
+    float cosine = dot(away, vec3(light.direction.x, light.direction.y, light.direction.z));
+    float outer = light.position.w;
+    float width = light.direction.w - outer;
+    float t = width > 0.0f ? clamp((cosine - outer) / width, 0.0f, 1.0f) : (cosine >= outer ? 1.0f : 0.0f);
+    return strength * (t * t * (3.0f - 2.0f * t));
+}
+
+// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, a point or a directional light, the last as if
+// all of it came from the middle of its cap; `to_light` receives the unit direction to the light. Zero behind the
+// surface and at the light itself.
+LUCARNE_FN vec3 light_irradiance(Light light, vec3 position, vec3 normal, LUCARNE_OUT(vec3) to_light) {
+    if (light.kind == kDirectionalLight) {
+        to_light = vec3(-light.direction.x, -light.direction.y, -light.direction.z);
+        return vec3(light.strength.x, light.strength.y, light.strength.z) * max(dot(normal, to_light), 0.0f);
+    }
+    vec3 offset = vec3(light.position.x, light.position.y, light.position.z) - position;
+    float distance2 = dot(offset, offset);
+    to_light = normal;
+    if (!(distance2 > 0.0f)) return vec3(0.0f);
+    to_light = offset * inversesqrt(distance2);
+    return light_intensity(light, -to_light) * (max(dot(normal, to_light), 0.0f) / distance2);
+}
+
+#ifdef __cplusplus
+static_assert(sizeof(Light) == 80);
+}  // namespace lucarne::gi
+#endif
+#endif
