@@ -9,7 +9,6 @@ namespace lucarne::gi {
 #endif
 
 const uint kLargeQueue = 65535u;  // discs: the least that OpenGL promises of workgroups in x
-const uint kLargeGroups = 4u;     // that share the rows of one disc
 
 // Ahead of the queue's ids. queue_groups draws the queue, overflow_groups looks through the whole cut for
 // what did not find a place in it.

@@ -7,6 +7,6 @@ uniform uint blocks;  // of the cut
 
 void main() {
     bool fits = large.count <= kLargeQueue;
-    large.queue_groups = uint[3](fits ? large.count : 0u, kLargeGroups, 1u);
+    large.queue_groups = uint[3](fits ? large.count : 0u, 1u, 1u);
     large.overflow_groups = uint[3](fits ? 0u : blocks, 1u, 1u);
 }

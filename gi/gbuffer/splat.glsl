@@ -38,7 +38,3 @@ void take_pixel(vec2 pixel, uint key, uint id) {
 #endif
 }
 
-void take_large_pixel(Disc disc, uint id, ivec2 pixel, ivec2 home) {
-    uint key = disc_key(disc, pixel_tangent(vec2(pixel)), pixel == home);
-    if (key != kNoKey && takes_pixel(vec2(pixel), key)) take_pixel(vec2(pixel), key, id);
-}
