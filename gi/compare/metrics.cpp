@@ -1,60 +1,141 @@
 #include "gi/compare/metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 namespace lucarne::gi {
 namespace {
 
-double luminance(const glm::vec4& c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+using Pixels = std::span<const glm::vec4>;
+using Mask = std::span<const uint8_t>;
+
+Result<void> check_pair(Pixels picture, Pixels reference, Mask mask) {
+    if (picture.size() != reference.size() || picture.empty())
+        return rejected("pictures",
+                        fmt::format("{} pixels cannot be compared with {}", picture.size(), reference.size()),
+                        "render both at the same --size");
+    if (!mask.empty() && mask.size() != picture.size())
+        return rejected("mask", fmt::format("{} pixels for a picture of {}", mask.size(), picture.size()));
+    if (!mask.empty() && std::all_of(mask.begin(), mask.end(), [](uint8_t in) { return in == 0; }))
+        return rejected("mask", "no pixel is to be compared");
+    const auto row = static_cast<uint32_t>(std::min<size_t>(picture.size(), UINT32_MAX));
+    LUCARNE_TRY(check_radiance(picture, row, "first picture"));
+    return check_radiance(reference, row, "second picture");
 }
 
-Result<void> check_finite(std::span<const glm::vec4> picture, const char* name) {
-    for (size_t i = 0; i < picture.size(); ++i)
-        if (!std::isfinite(picture[i].x + picture[i].y + picture[i].z))
-            return rejected(name, fmt::format("pixel {} is not a finite radiance", i));
-    return {};
+/// use(i) for every pixel of the mask, in order.
+template <class Use>
+void for_each(size_t pixels, Mask mask, const Use& use) {
+    for (size_t i = 0; i < pixels; ++i)
+        if (mask.empty() || mask[i]) use(i);
+}
+
+double mean_of_channels(const glm::dvec3& v) {
+    return (v.x + v.y + v.z) / 3;
+}
+
+/// Trimmed mean and percentile; reorders the values.
+void rank(std::vector<double>& errors, ImageMetrics& metrics) {
+    const size_t count = errors.size();
+    const auto percentile = static_cast<size_t>(std::ceil(0.99 * static_cast<double>(count))) - 1;
+    const auto at = errors.begin() + static_cast<ptrdiff_t>(percentile);
+    std::nth_element(errors.begin(), at, errors.end());
+    metrics.p99 = std::sqrt(*at);
+    metrics.trimmed_pixels = static_cast<uint64_t>(kTrimmed * static_cast<double>(count));
+    const size_t kept = count - metrics.trimmed_pixels;
+    if (kept < count)
+        std::nth_element(errors.begin(), errors.begin() + static_cast<ptrdiff_t>(kept), errors.end());
+    double sum = 0;
+    for (size_t i = 0; i < kept; ++i) sum += errors[i];
+    metrics.rel_mse_trimmed = sum / static_cast<double>(kept);
 }
 
 }  // namespace
 
-double mean_luminance(std::span<const glm::vec4> picture) {
+Result<void> check_radiance(Pixels pixels, uint32_t width, const std::string& name) {
+    size_t bad = 0, first = 0;
+    for (size_t i = 0; i < pixels.size(); ++i)
+        if (!std::isfinite(pixels[i].x) || !std::isfinite(pixels[i].y) || !std::isfinite(pixels[i].z))
+            if (bad++ == 0) first = i;
+    if (bad == 0) return {};
+    return rejected(name,
+                    fmt::format("{} of {} pixels are no finite radiance, the first at column {}, row {}", bad,
+                                pixels.size(), first % width, first / width));
+}
+
+double luminance(const glm::vec4& colour) {
+    return glm::dot(glm::dvec3(colour), glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+double mean_luminance(Pixels picture) {
     double sum = 0;
     for (const glm::vec4& pixel : picture) sum += luminance(pixel);
     return picture.empty() ? 0 : sum / static_cast<double>(picture.size());
 }
 
-Result<ImageMetrics> compare_images(std::span<const glm::vec4> picture,
-                                    std::span<const glm::vec4> reference) {
-    if (picture.size() != reference.size() || picture.empty())
-        return rejected("pictures",
-                        fmt::format("{} pixels cannot be compared with {}", picture.size(), reference.size()),
-                        "render both at the same --size");
-    LUCARNE_TRY(check_finite(picture, "first picture"));
-    LUCARNE_TRY(check_finite(reference, "second picture"));
-    const auto values = 3.0 * static_cast<double>(reference.size());
+double relative_epsilon(Pixels reference) {
     double sum = 0;
-    for (const glm::vec4& r : reference) sum += double{r.x} + r.y + r.z;
+    for (const glm::vec4& r : reference) sum += mean_of_channels(glm::dvec3(r));
+    const double mean = reference.empty() ? 0 : sum / static_cast<double>(reference.size());
     // Of two black pictures every term is 0 / 0: the least double keeps it 0.
-    const double epsilon = 0.01 * (sum / values) * (sum / values) + std::numeric_limits<double>::min();
-    double squares = 0, relative = 0;
-    for (size_t i = 0; i < reference.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel) {
-            const double r = reference[i][channel], difference = picture[i][channel] - r;
-            squares += difference * difference;
-            relative += difference * difference / (r * r + epsilon);
-        }
+    return 0.01 * mean * mean + std::numeric_limits<double>::min();
+}
+
+Result<ImageMetrics> compare_images(Pixels picture, Pixels reference, Mask mask) {
+    LUCARNE_TRY(check_pair(picture, reference, mask));
+    const double epsilon = relative_epsilon(reference);
     ImageMetrics metrics;
-    metrics.mean_luminance = mean_luminance(picture);
-    metrics.reference_mean_luminance = mean_luminance(reference);
+    std::vector<double> errors;
+    errors.reserve(picture.size());
+    double squares = 0, relative = 0;
+    for_each(picture.size(), mask, [&](size_t i) {
+        const glm::dvec3 a(picture[i]), r(reference[i]), square = (a - r) * (a - r);
+        metrics.mean_luminance += luminance(picture[i]);
+        metrics.reference_mean_luminance += luminance(reference[i]);
+        squares += mean_of_channels(square);
+        errors.push_back(mean_of_channels(square / (r * r + epsilon)));
+        relative += errors.back();
+    });
+    metrics.pixels = errors.size();
+    const auto count = static_cast<double>(errors.size());
+    metrics.mean_luminance /= count;
+    metrics.reference_mean_luminance /= count;
     const double difference = metrics.mean_luminance - metrics.reference_mean_luminance;
     metrics.luminance_error = difference == 0 ? 0 : difference / metrics.reference_mean_luminance;
-    metrics.rel_mse = relative / values;
-    metrics.rmse = std::sqrt(squares / values);
+    metrics.rel_mse = relative / count;
+    metrics.rmse = std::sqrt(squares / count);
+    rank(errors, metrics);
     return metrics;
+}
+
+Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels second, Mask mask) {
+    LUCARNE_TRY(check_pair(picture, first, mask));
+    LUCARNE_TRY(check_pair(picture, second, mask));
+    std::vector<glm::vec4> mean(first.size());
+    for (size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5f * (first[i] + second[i]);
+    const double epsilon = relative_epsilon(mean);
+    double sum = 0, squares = 0, noise = 0, count = 0;
+    for_each(picture.size(), mask, [&](size_t i) {
+        const glm::dvec3 a(picture[i]), r1(first[i]), r2(second[i]), r(mean[i]);
+        const glm::dvec3 scale = 1.0 / (r * r + epsilon), half = 0.5 * (r1 - r2);
+        const double product = mean_of_channels((a - r1) * (a - r2) * scale);
+        sum += product;
+        squares += product * product;
+        noise += mean_of_channels(half * half * scale);
+        ++count;
+    });
+    HalvesError error;
+    error.rel_mse = sum / count;
+    error.standard_error = std::sqrt(std::max(0.0, squares / count - error.rel_mse * error.rel_mse) / count);
+    error.reference_rel_mse = noise / count;
+    return error;
 }
 
 }  // namespace lucarne::gi

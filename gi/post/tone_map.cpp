@@ -1,11 +1,20 @@
 #include "gi/post/tone_map.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "gi/shared/tone_curve.h"
 
 namespace lucarne::gi {
 namespace {
+
+constexpr double kKey = 0.18;
+// What is darker than this share of the mean is black to the eye and says nothing about the exposure.
+constexpr double kDarkest = 1.0 / 1024;
 
 /// Mean over the pixels that are lit, of what luminance.comp sums; 0 where none is.
 Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, float floor) {
@@ -24,12 +33,21 @@ Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, 
     return total.y > 0 ? total.x / total.y : 0.0;
 }
 
+/// What luminance.comp computes, with its `floor`.
+double mean_of(std::span<const glm::vec4> radiance, double floor) {
+    double sum = 0, count = 0;
+    for (const glm::vec4& pixel : radiance) {
+        const double luminance = glm::dot(glm::dvec3(pixel), glm::dvec3(0.2126, 0.7152, 0.0722));
+        if (!(luminance > 0) || std::isinf(luminance)) continue;
+        sum += floor > 0 ? std::log2(std::max(luminance, floor)) : luminance;
+        ++count;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
 }  // namespace
 
 Result<double> automatic_exposure(Device& device, const Buffer& radiance, uint32_t pixels) {
-    constexpr double kKey = 0.18;
-    // What is darker than this share of the mean is black to the eye and says nothing about the exposure.
-    constexpr double kDarkest = 1.0 / 1024;
     LUCARNE_ASSIGN(const double mean, mean_of(device, radiance, pixels, 0.0f));
     const auto floor = static_cast<float>(mean * kDarkest);
     if (!(floor > 0)) return 0.0;
@@ -48,6 +66,20 @@ Result<void> tone_map(Device& device, const Buffer& radiance, uint32_t pixels, T
     program->set("curve", static_cast<uint32_t>(curve));
     program->dispatch(pixels);
     return {};
+}
+
+double automatic_exposure(std::span<const glm::vec4> radiance) {
+    const double floor = mean_of(radiance, 0) * kDarkest;
+    return floor > 0 ? std::log2(kKey) - mean_of(radiance, floor) : 0;
+}
+
+std::vector<glm::vec4> tone_map(std::span<const glm::vec4> radiance, ToneMap curve, double ev) {
+    std::vector<glm::vec4> mapped;
+    mapped.reserve(radiance.size());
+    const auto scale = static_cast<float>(std::exp2(ev));
+    for (const glm::vec4& pixel : radiance)
+        mapped.emplace_back(tone_curve(glm::vec3(pixel) * scale, static_cast<uint32_t>(curve)), 1.0f);
+    return mapped;
 }
 
 }  // namespace lucarne::gi

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec4.hpp>
 
 #include "gi/device/device.h"
 #include "gi/scene/scene.h"
@@ -16,5 +20,10 @@ Result<double> automatic_exposure(Device& device, const Buffer& radiance, uint32
 /// lowest byte. What is no number becomes black. Errors: the shader's, no device memory.
 Result<void> tone_map(Device& device, const Buffer& radiance, uint32_t pixels, ToneMap curve, double ev,
                       Buffer& picture);
+
+// The same on the host, for pictures that come from files.
+double automatic_exposure(std::span<const glm::vec4> radiance);
+/// Linear light in [0, 1], not yet sRGB-coded.
+std::vector<glm::vec4> tone_map(std::span<const glm::vec4> radiance, ToneMap curve, double ev);
 
 }  // namespace lucarne::gi

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -232,6 +234,30 @@ TEST_F(RenderCommand, CompareFindsNoDifferenceToItselfAndTheRightOneToAnother) {
     EXPECT_NEAR(double(compare("y.exr", "x.exr")["luminance_error"]), 0.1, 1e-5);
     ASSERT_EQ(render("small.exr", "--engine direct", "32x24").code, 0);
     EXPECT_EQ(test::lucarne("compare " + at("small.exr") + " " + at("x.exr")).code, 3);
+}
+
+TEST_F(RenderCommand, GBufferOfThePictureIsWrittenAndTellsCompareWhereEdgesAre) {
+    ASSERT_EQ(render("shown.exr", "--engine direct --gbuffer " + at("gbuffer.exr"), "160x120").code, 0);
+    const auto gbuffer = exr("gbuffer.exr");
+    ASSERT_EQ(gbuffer.pixels.size(), 160u * 120);
+    size_t seen = 0;
+    for (const auto& texel : gbuffer.pixels) {
+        if (texel.w <= 0) continue;
+        ++seen;
+        EXPECT_NEAR(glm::length(glm::vec3(texel)), 1, 1e-3);
+        EXPECT_GT(texel.w, 7);  // the camera stands 7.6 m before the box of 5.5 m
+        EXPECT_LT(texel.w, 14);
+    }
+    EXPECT_GT(seen, gbuffer.pixels.size() / 2);
+    const std::string same = "compare " + at("shown.exr") + " " + at("shown.exr") + " --overwrite --json " +
+                             at("edges.json") + " --gbuffer ";
+    ASSERT_EQ(test::lucarne(same + at("gbuffer.exr")).code, 0);
+    const auto edges = json("edges.json")["edges"];
+    EXPECT_EQ(edges["from"], "G-buffer");
+    EXPECT_GT(edges["pixels"], 500);
+    EXPECT_LT(edges["pixels"], 160 * 120 / 2);
+    ASSERT_EQ(render("small.exr", "--engine direct", "32x24").code, 0);
+    EXPECT_EQ(test::lucarne(same + at("small.exr")).code, 3);
 }
 
 }  // namespace

@@ -1,11 +1,19 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "gi/compare/edges.h"
+#include "gi/compare/error_picture.h"
+#include "gi/compare/flip.h"
 #include "gi/compare/metrics.h"
+#include "gi/post/tone_map.h"
 #include "io/core/file.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
@@ -13,29 +21,156 @@
 namespace lucarne::viewer {
 namespace {
 
+using nlohmann::json;
+
 struct CompareOptions {
-    std::string picture, reference, json;
+    std::string picture, reference, gbuffer, json, error_picture;
+    std::string error_kind = "flip";
+    std::vector<std::string> halves;
+    std::optional<double> exposure;
     bool overwrite = false;
 };
 
-Result<void> compare(const CompareOptions& options) {
-    LUCARNE_ASSIGN(const io::Image picture, io::read_exr(options.picture));
-    LUCARNE_ASSIGN(const io::Image reference, io::read_exr(options.reference));
-    if (picture.width != reference.width || picture.height != reference.height)
-        return rejected(options.picture,
-                        fmt::format("is {}x{} and {} is {}x{}", picture.width, picture.height,
-                                    options.reference, reference.width, reference.height),
+struct Pictures {
+    io::Image picture, reference;
+    std::vector<io::Image> halves;  ///< none or two, of the reference
+    std::optional<io::Image> gbuffer;
+};
+
+/// A picture, of the size of the first where there is one.
+Result<io::Image> read_alike(const std::string& path, const io::Image* same_size) {
+    LUCARNE_ASSIGN(io::Image image, io::read_exr(path));
+    if (same_size && (image.width != same_size->width || image.height != same_size->height))
+        return rejected(path,
+                        fmt::format("is {}x{}, the first picture {}x{}", image.width, image.height,
+                                    same_size->width, same_size->height),
                         "render both at the same --size");
-    LUCARNE_ASSIGN(const gi::ImageMetrics metrics, gi::compare_images(picture.pixels, reference.pixels));
-    fmt::print("mean luminance {:.6g} against {:.6g} ({:+.2f} %), relMSE {:.4g}, RMSE {:.4g}\n",
-               metrics.mean_luminance, metrics.reference_mean_luminance, 100 * metrics.luminance_error,
-               metrics.rel_mse, metrics.rmse);
+    return image;
+}
+
+Result<Pictures> read_pictures(const CompareOptions& options) {
+    Pictures read;
+    const auto radiance = [&](const std::string& path, bool first = false) -> Result<io::Image> {
+        LUCARNE_ASSIGN(io::Image image, read_alike(path, first ? nullptr : &read.picture));
+        LUCARNE_TRY(gi::check_radiance(image.pixels, image.width, path));
+        return image;
+    };
+    LUCARNE_ASSIGN(read.picture, radiance(options.picture, true));
+    for (const std::string& half : options.halves) {
+        LUCARNE_ASSIGN(io::Image image, radiance(half));
+        read.halves.push_back(std::move(image));
+    }
+    if (!options.reference.empty()) {
+        LUCARNE_ASSIGN(read.reference, radiance(options.reference));
+    } else {
+        read.reference = read.halves[0];
+        for (size_t i = 0; i < read.reference.pixels.size(); ++i)
+            read.reference.pixels[i] = 0.5f * (read.halves[0].pixels[i] + read.halves[1].pixels[i]);
+    }
+    if (!options.gbuffer.empty()) {
+        LUCARNE_ASSIGN(read.gbuffer, read_alike(options.gbuffer, &read.picture));
+    }
+    return read;
+}
+
+/// Figures of all pixels or of those of a mask.
+struct Figures {
+    gi::ImageMetrics metrics;
+    double flip = 0;  ///< mean
+    std::optional<gi::HalvesError> halves;
+};
+
+Result<Figures> figures(const Pictures& pictures, std::span<const float> flip,
+                        std::span<const uint8_t> mask) {
+    Figures result;
+    LUCARNE_ASSIGN(result.metrics,
+                   gi::compare_images(pictures.picture.pixels, pictures.reference.pixels, mask));
+    for (size_t i = 0; i < flip.size(); ++i)
+        if (mask.empty() || mask[i]) result.flip += flip[i];
+    result.flip /= static_cast<double>(result.metrics.pixels);
+    if (!pictures.halves.empty()) {
+        LUCARNE_ASSIGN(result.halves,
+                       gi::compare_with_halves(pictures.picture.pixels, pictures.halves[0].pixels,
+                                               pictures.halves[1].pixels, mask));
+    }
+    return result;
+}
+
+void print(const char* which, const Figures& f) {
+    const auto& m = f.metrics;
+    fmt::print("{}: {} pixels, mean luminance {:.6g} against {:.6g} ({:+.2f} %)\n", which, m.pixels,
+               m.mean_luminance, m.reference_mean_luminance, 100 * m.luminance_error);
+    fmt::print(
+        "  relMSE {:.4g}, without the worst {} pixels {:.4g}, RMSE {:.4g}, p99 of the relative error {:.4g}, "
+        "FLIP {:.4g}\n",
+        m.rel_mse, m.trimmed_pixels, m.rel_mse_trimmed, m.rmse, m.p99, f.flip);
+    if (f.halves)
+        fmt::print("  relMSE free of the reference's noise {:.4g} +- {:.2g}; the noise itself {:.2g}\n",
+                   f.halves->rel_mse, f.halves->standard_error, f.halves->reference_rel_mse);
+}
+
+json to_json(const Figures& f) {
+    const auto& m = f.metrics;
+    json out = {{"pixels", m.pixels},
+                {"mean_luminance", m.mean_luminance},
+                {"reference_mean_luminance", m.reference_mean_luminance},
+                {"luminance_error", m.luminance_error},
+                {"rel_mse", m.rel_mse},
+                {"rel_mse_trimmed", m.rel_mse_trimmed},
+                {"trimmed_pixels", m.trimmed_pixels},
+                {"rmse", m.rmse},
+                {"p99", m.p99},
+                {"flip", f.flip}};
+    if (f.halves)
+        out["halves"] = {{"rel_mse", f.halves->rel_mse},
+                         {"standard_error", f.halves->standard_error},
+                         {"reference_rel_mse", f.halves->reference_rel_mse}};
+    return out;
+}
+
+Result<void> write_error_picture(const CompareOptions& options, const Pictures& pictures,
+                                 std::span<const float> flip) {
+    const io::Image8 picture = options.error_kind == "signed"
+                                   ? gi::signed_picture(pictures.picture, pictures.reference)
+                                   : gi::magma_picture(flip, pictures.picture.width);
+    return io::write_png(options.error_picture, picture, options.overwrite);
+}
+
+Result<void> compare(const CompareOptions& options) {
+    if (options.reference.empty() && options.halves.empty())
+        return bad_arguments("compare", "there is nothing to compare with",
+                             "name a second picture or --halves");
+    for (const std::string& output : {options.json, options.error_picture})
+        if (!output.empty()) LUCARNE_TRY(check_output(output, options.overwrite));
+    LUCARNE_ASSIGN(const Pictures pictures, read_pictures(options));
+
+    // Both are exposed alike, or FLIP could not tell a dark picture from a bright one.
+    const double ev =
+        options.exposure ? *options.exposure : gi::automatic_exposure(pictures.reference.pixels);
+    const auto shown = [&](const io::Image& image) {
+        return gi::tone_map(image.pixels, gi::ToneMap::filmic, ev);
+    };
+    const auto flip =
+        gi::flip_errors(shown(pictures.picture), shown(pictures.reference), pictures.picture.width);
+    const auto edges =
+        pictures.gbuffer ? gi::gbuffer_edges(*pictures.gbuffer) : gi::luminance_edges(pictures.reference);
+
+    LUCARNE_ASSIGN(const Figures all, figures(pictures, flip, {}));
+    print("all", all);
+    json report = to_json(all);
+    report["exposure_ev"] = ev;
+    const char* source = pictures.gbuffer ? "G-buffer" : "luminance";
+    report["edges"] = {{"from", source}, {"pixels", 0}};
+    if (std::find(edges.begin(), edges.end(), 1) != edges.end()) {
+        LUCARNE_ASSIGN(const Figures at_edges, figures(pictures, flip, edges));
+        print(pictures.gbuffer ? "edges of depth and normal" : "edges of the reference's luminance",
+              at_edges);
+        report["edges"].update(to_json(at_edges));
+    } else {
+        fmt::print("no edges in the {}\n", source);
+    }
+    if (!options.error_picture.empty()) LUCARNE_TRY(write_error_picture(options, pictures, flip));
     if (options.json.empty()) return {};
-    const nlohmann::json report = {{"mean_luminance", metrics.mean_luminance},
-                                   {"reference_mean_luminance", metrics.reference_mean_luminance},
-                                   {"luminance_error", metrics.luminance_error},
-                                   {"rel_mse", metrics.rel_mse},
-                                   {"rmse", metrics.rmse}};
     LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
     LUCARNE_TRY(file.append(report.dump(2) + "\n"));
     return file.commit();
@@ -47,9 +182,31 @@ void add_compare(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<CompareOptions>();
     auto* command = app.add_subcommand("compare", "Hold a picture of linear radiance against a reference");
     command->add_option("picture", options->picture, "EXR")->required()->type_name("A.exr");
-    command->add_option("reference", options->reference, "EXR: the truth")->required()->type_name("B.exr");
+    command->add_option("reference", options->reference, "EXR: the truth; the mean of --halves if not given")
+        ->type_name("B.exr");
+    command
+        ->add_option("--halves", options->halves,
+                     "Two independent halves of the reference, for an error free of its noise")
+        ->expected(2)
+        ->type_name("R1.exr R2.exr");
+    command
+        ->add_option("--gbuffer", options->gbuffer,
+                     "What render --gbuffer wrote: edges are those of depth and normal, not of luminance")
+        ->type_name("G.exr");
+    command
+        ->add_option("--exposure", options->exposure,
+                     "Stops by which FLIP sees both pictures; measured from the reference if not given")
+        ->check(CLI::Range(-64.0, 64.0))
+        ->type_name("EV");
+    command->add_option("--error-picture", options->error_picture, "Where the error lies")
+        ->type_name("FILE.png");
+    command
+        ->add_option("--error-kind", options->error_kind,
+                     "FLIP, or luminance too dark (blue) or bright (red)")
+        ->check(CLI::IsMember({"flip", "signed"}))
+        ->capture_default_str();
     command->add_option("--json", options->json, "The figures, machine-readable")->type_name("FILE");
-    command->add_flag("--overwrite", options->overwrite, "Replace a file that exists");
+    command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
     command->callback([options, &chosen] { chosen = [options] { return compare(*options); }; });
 }
 

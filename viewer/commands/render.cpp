@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "gi/compare/edges.h"
 #include "gi/compare/metrics.h"
 #include "io/core/file.h"
 #include "io/core/log.h"
@@ -20,7 +21,7 @@ namespace lucarne::viewer {
 namespace {
 
 struct RenderOptions {
-    std::string input, output, camera, json;
+    std::string input, output, camera, json, gbuffer;
     DrawingOptions drawing;
     uint32_t frames = 1;
     double seconds = 0;
@@ -106,7 +107,8 @@ Result<void> render(const RenderOptions& options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
     LUCARNE_TRY(check_output(options.output, options.overwrite));
-    if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, options.overwrite));
+    for (const std::string& also : {options.json, options.gbuffer})
+        if (!also.empty()) LUCARNE_TRY(check_output(also, options.overwrite));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_ASSIGN(const auto source, open_input(options.input));
@@ -125,6 +127,9 @@ Result<void> render(const RenderOptions& options) {
                       pipeline->radiance().download_all<glm::vec4>(pixels)};
     const double mean = gi::mean_luminance(picture.pixels);
     LUCARNE_TRY(write_picture(options, kind, *pipeline, std::move(picture)));
+    if (!options.gbuffer.empty())
+        LUCARNE_TRY(
+            io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));
     if (!options.json.empty()) {
         LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
         LUCARNE_TRY(file.append(report(rendered, *pipeline, drawing, mean).dump(2) + "\n"));
@@ -159,6 +164,10 @@ void add_render(CLI::App& app, Command& chosen) {
         ->type_name("S");
     command->add_option("--json", options->json, "Figures of the picture, machine-readable")
         ->type_name("FILE");
+    command
+        ->add_option("--gbuffer", options->gbuffer,
+                     "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
+        ->type_name("FILE.exr");
     command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
     command->callback([options, &chosen] { chosen = [options] { return render(*options); }; });
 }

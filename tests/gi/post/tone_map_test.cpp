@@ -100,5 +100,21 @@ TEST_F(ToneMapTest, BlackPictureIsNotExposedAtAll) {
     EXPECT_EQ(exposure(std::vector<glm::vec4>(100, glm::vec4(0.0f))), 0.0);
 }
 
+TEST_F(ToneMapTest, TheHostAgreesWithTheDevice) {
+    std::vector<glm::vec4> values = {{0, 0, 0, 0}, {-1, 0.5f, 1e9f, 0}};
+    for (int i = 0; i < 300; ++i) {
+        const float level = std::exp2(0.05f * static_cast<float>(i) - 10);
+        values.emplace_back(level, 0.5f * level, 2 * level, 0);
+    }
+    EXPECT_NEAR(automatic_exposure(values), exposure(values), 1e-4);
+    for (const ToneMap curve : {ToneMap::filmic, ToneMap::reinhard, ToneMap::none}) {
+        const auto device_picture = map(values, curve, 1);
+        const auto host_picture = tone_map(values, curve, 1);
+        for (size_t i = 0; i < values.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(device_picture[i] >> (8 * c) & 255u, srgb8(host_picture[i][c]), 1) << i;
+    }
+}
+
 }  // namespace
 }  // namespace lucarne::gi

@@ -1,0 +1,34 @@
+// The curves that bring exposed radiance to the screen, for C++ and GLSL alike.
+#ifndef LUCARNE_GI_SHARED_TONE_CURVE_H
+#define LUCARNE_GI_SHARED_TONE_CURVE_H
+
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+namespace lucarne::gi {
+#endif
+
+// Narkowicz 2015, "ACES filmic tone mapping curve": a fit of the ACES reference transform, channel by channel.
+LUCARNE_FN vec3 filmic_curve(vec3 x) {
+    return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+}
+
+// Reinhard et al. 2002, "Photographic tone reproduction for digital images", eq. 3, on luminance (Rec. 709).
+LUCARNE_FN vec3 reinhard_curve(vec3 x) {
+    return x / (1.0f + dot(x, vec3(0.2126f, 0.7152f, 0.0722f)));
+}
+
+// Exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none). What is no
+// number becomes black.
+LUCARNE_FN vec3 tone_curve(vec3 x, uint curve) {
+    // Beyond 10^4 every curve is white; the bound keeps infinity out of the quotients.
+    for (int i = 0; i < 3; ++i) x[i] = x[i] > 0.0f ? min(x[i], 1e4f) : 0.0f;
+    if (curve == 0u) x = filmic_curve(x);
+    if (curve == 1u) x = reinhard_curve(x);
+    return clamp(x, 0.0f, 1.0f);
+}
+
+#ifdef __cplusplus
+}  // namespace lucarne::gi
+#endif
+#endif
