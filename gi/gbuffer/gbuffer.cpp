@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "gi/gbuffer/large.h"
+#include "gi/gbuffer/queues.h"
 
 namespace lucarne::gi {
 namespace {
@@ -26,40 +26,57 @@ void set_view(const Program& program, const CameraView& view) {
     program.set("view_height", view.height);
 }
 
+const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
+
+/// `places`: ids that the cut may have.
+Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& target) {
+    const auto hold = [&](Buffer& buffer, size_t bytes) { return device.reserve(buffer, bytes, "G-buffer"); };
+    LUCARNE_TRY(hold(target.texels, pixels * sizeof(GBufferTexel)));
+    LUCARNE_TRY(hold(target.ids, pixels * sizeof(uint32_t)));
+    LUCARNE_TRY(hold(target.keys, pixels * sizeof(uint32_t)));
+    LUCARNE_TRY(hold(target.queues, sizeof(QueueHeader) + kLargeQueue * sizeof(uint32_t)));
+    return hold(target.candidates, places * sizeof(uint32_t));
+}
+
+Result<void> draw_large(Device& device, const CameraView& view, const GBuffer& target,
+                        const Defines& defines) {
+    LUCARNE_ASSIGN(const Program* queued, device.program("gi/gbuffer/splat_large.comp", defines));
+    LUCARNE_ASSIGN(const Program* overflow, device.program("gi/gbuffer/splat_overflow.comp", defines));
+    for (const Program* program : {queued, overflow}) set_view(*program, view);
+    queued->dispatch_indirect(target.queues, offsetof(QueueHeader, large_groups));
+    overflow->dispatch_indirect(target.queues, offsetof(QueueHeader, overflow_groups));
+    return {};
+}
+
 }  // namespace
 
 Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target) {
     const size_t pixels = size_t{view.width} * view.height;
+    const uint32_t places = cut.blocks() * kBlockSurfels;
     target.width = view.width;
     target.height = view.height;
-    LUCARNE_TRY(device.reserve(target.texels, pixels * sizeof(GBufferTexel), "G-buffer"));
-    LUCARNE_TRY(device.reserve(target.ids, pixels * sizeof(uint32_t), "G-buffer"));
-    LUCARNE_TRY(device.reserve(target.keys, pixels * sizeof(uint32_t), "G-buffer"));
-    LUCARNE_TRY(
-        device.reserve(target.large, sizeof(LargeHeader) + kLargeQueue * sizeof(uint32_t), "G-buffer"));
-    LUCARNE_ASSIGN(const Program* plan, device.program("gi/gbuffer/plan_large.comp"));
+    LUCARNE_TRY(reserve(device, pixels, places, target));
+    LUCARNE_ASSIGN(const Program* splat, device.program("gi/gbuffer/splat.comp"));
+    LUCARNE_ASSIGN(const Program* splat_ids, device.program("gi/gbuffer/splat.comp", kIdPass));
+    LUCARNE_ASSIGN(const Program* plan, device.program("gi/gbuffer/plan.comp"));
     LUCARNE_ASSIGN(const Program* resolve, device.program("gi/gbuffer/resolve.comp"));
     target.keys.clear(UINT32_MAX);
     target.ids.clear(kNoSurfel);
-    target.large.clear(0);
+    target.queues.clear(0);
     cut.bind();
     target.keys.bind(3);
     target.keys.bind_texels(3, TexelView::one_word);
     target.ids.bind(4);
-    target.large.bind(5);
+    target.queues.bind(5);
     target.texels.bind(6);
+    target.candidates.bind(7);
+    for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view);
     plan->set("blocks", cut.blocks());
-    for (const Defines& defines : {Defines{}, Defines{{"LUCARNE_ID_PASS", "1"}}}) {
-        LUCARNE_ASSIGN(const Program* splat, device.program("gi/gbuffer/splat.comp", defines));
-        LUCARNE_ASSIGN(const Program* large, device.program("gi/gbuffer/splat_large.comp", defines));
-        LUCARNE_ASSIGN(const Program* overflow, device.program("gi/gbuffer/splat_overflow.comp", defines));
-        for (const Program* program : {splat, large, overflow}) set_view(*program, view);
-        splat->dispatch(cut.blocks() * kBlockSurfels);
-        plan->dispatch(1);
-        large->dispatch_indirect(target.large, offsetof(LargeHeader, queue_groups));
-        overflow->dispatch_indirect(target.large, offsetof(LargeHeader, overflow_groups));
-    }
-    set_view(*resolve, view);
+    splat->dispatch(places);
+    plan->dispatch(1);
+    LUCARNE_TRY(draw_large(device, view, target, {}));
+    splat_ids->dispatch_indirect(target.queues, offsetof(QueueHeader, candidate_groups));
+    LUCARNE_TRY(draw_large(device, view, target, kIdPass));
     resolve->dispatch(static_cast<uint32_t>(pixels));
     return {};
 }

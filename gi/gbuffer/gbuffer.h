@@ -14,7 +14,7 @@ struct GBuffer {
     uint32_t width = 0, height = 0;
     Buffer texels;       ///< GBufferTexel[width * height]
     Buffer ids;          ///< uint[width * height], kNoSurfel where empty
-    Buffer keys, large;  ///< scratch of rasterize()
+    Buffer keys, queues, candidates;  ///< scratch of rasterize()
 };
 
 /// Draws the discs of a cut by compute: per pixel the nearest intersection of its ray with a surfel's disc

@@ -18,7 +18,7 @@ void draw_large(uint id) {
         uint taken = 0u, bit = 1u;
         do {
             uint key = disc_key(disc, pixel_tangent(vec2(pixel)), pixel == home);
-            if (key != kNoKey && takes_pixel(vec2(pixel), key)) taken |= bit;
+            if (key != kNoKey && may_take_pixel(vec2(pixel), key)) taken |= bit;
             pixel.y += 4;
             bit <<= 1;
         } while (bit != 0u && pixel.y <= box.w);

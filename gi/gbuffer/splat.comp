@@ -1,7 +1,10 @@
-// One invocation a surfel: draws small discs pixel by pixel and queues the others for splat_large.comp.
-// LUCARNE_ID_PASS: the second of the two passes, see take_pixel.
+// Draws small discs pixel by pixel, one invocation each. The first pass goes through the cut, queues the large discs for
+// splat_large.comp and lists those that were the nearest in some pixel when they were drawn; the second pass
+// (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
 layout(local_size_x = 256) in;
 #include "gi/gbuffer/splat.glsl"
+
+layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
 
 // A small disc in the picture, to first order about its centre (what is left out is a share radius/depth of the
 // disc): over pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth
@@ -41,26 +44,28 @@ uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
     return floatBitsToUint(key);
 }
 
-void draw_small(Disc disc, uint id) {
+// True where the disc took a pixel.
+bool draw_small(Disc disc, uint id) {
     Ellipse e = project(disc);
     vec2 home = floor(e.centre + 0.5);
     float determinant = max(e.xx * e.yy - 0.25 * e.xy * e.xy, 1e-12);
     vec2 reach = min(sqrt(vec2(e.yy, e.xx) / determinant), vec2(kSmallRadius + 1.0));
     vec2 low = max(min(ceil(e.centre - reach), home), vec2(0.0));
     vec2 high = min(max(floor(e.centre + reach), home), vec2(view_width, view_height) - 1.0);
-    if (low.x > high.x || low.y > high.y) return;
+    if (low.x > high.x || low.y > high.y) return false;
     float columns = high.x - low.x + 1.0;
     // Up to 32 pixels are tested, then those that it takes are written: llvmpipe writes one lane after the other, and
     // few lanes take the same place in the loop. Loops test at their end, since llvmpipe runs a body that no lane
     // enters.
     vec2 pixel = low;
+    bool took = false;
     do {
         vec2 start = pixel;
         uint taken = 0u, bit = 1u;
         do {
             vec2 d = pixel - e.centre;
             bool covered = ellipse_distance2(e, d) <= 1.0 || pixel == home;
-            if (covered && takes_pixel(pixel, ellipse_key(disc, e, d))) taken |= bit;
+            if (covered && may_take_pixel(pixel, ellipse_key(disc, e, d))) taken |= bit;
             pixel = pixel.x < high.x ? vec2(pixel.x + 1.0, pixel.y) : vec2(low.x, pixel.y + 1.0);
             bit <<= 1;
         } while (bit != 0u && pixel.y <= high.y);
@@ -70,23 +75,30 @@ void draw_small(Disc disc, uint id) {
             taken &= taken - 1u;
             float row = floor((column + 0.5) / columns);
             vec2 chosen = vec2(low.x + column - row * columns, start.y + row);
-            take_pixel(chosen, ellipse_key(disc, e, chosen - e.centre), id);
+            if (take_pixel(chosen, ellipse_key(disc, e, chosen - e.centre), id)) took = true;
         } while (taken != 0u);
     } while (pixel.y <= high.y);
+    return took;
 }
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
+#ifdef LUCARNE_ID_PASS
+    if (id >= queues.candidate_count) return;
+    id = candidates[id];
+#endif
     uint item;
     PackedSurfel surfel;
     Disc disc;
     if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc)) return;
+#ifdef LUCARNE_ID_PASS
+    draw_small(disc, id);
+#else
     if (is_small(disc)) {
-        draw_small(disc, id);
+        if (draw_small(disc, id)) candidates[atomicAdd(queues.candidate_count, 1u)] = id;
         return;
     }
-#ifndef LUCARNE_ID_PASS  // the queue serves both passes
-    uint place = atomicAdd(large.count, 1u);
+    uint place = atomicAdd(queues.large_count, 1u);
     if (place < kLargeQueue) large_ids[place] = id;
 #endif
 }

@@ -2,12 +2,12 @@
 // 64-bit atomics: the first leaves the nearest key in each pixel, the second (LUCARNE_ID_PASS) the smallest id of those
 // that have it.
 #include "gi/gbuffer/disc.glsl"
-#include "gi/gbuffer/large.h"
+#include "gi/gbuffer/queues.h"
 
 layout(std430, binding = 3) buffer Keys { uint keys[]; };
 layout(std430, binding = 4) buffer Ids { uint ids[]; };
-layout(std430, binding = 5) buffer Large {
-    LargeHeader large;
+layout(std430, binding = 5) buffer Queues {
+    QueueHeader queues;
     uint large_ids[];
 };
 layout(binding = 3) uniform usamplerBuffer key_texels;  // the keys again; perhaps not the latest in the first pass
@@ -21,20 +21,22 @@ bool is_small(Disc disc) {
 
 uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
 
-bool takes_pixel(vec2 pixel, uint key) {
+// Whether it is worth asking for the pixel.
+bool may_take_pixel(vec2 pixel, uint key) {
     uint held = texelFetch(key_texels, int(pixel_index(pixel))).x;
 #ifdef LUCARNE_ID_PASS
     return key == held;
 #else
-    return key < held;
+    return key <= held;
 #endif
 }
 
-void take_pixel(vec2 pixel, uint key, uint id) {
+// True where the disc was the nearest yet, or one of them: no other's id can end up in the pixel.
+bool take_pixel(vec2 pixel, uint key, uint id) {
 #ifdef LUCARNE_ID_PASS
     atomicMin(ids[pixel_index(pixel)], id);
+    return true;
 #else
-    atomicMin(keys[pixel_index(pixel)], key);
+    return atomicMin(keys[pixel_index(pixel)], key) >= key;
 #endif
 }
-
