@@ -177,7 +177,8 @@ void Buffer::bind_texels(uint32_t unit, TexelView view) const {
     uint32_t& texture = textures_[static_cast<size_t>(view)];
     if (!texture) {
         glCreateTextures(GL_TEXTURE_BUFFER, 1, &texture);
-        glTextureBuffer(texture, view == TexelView::one_word ? GL_R32UI : GL_RGBA32UI, id_);
+        constexpr GLenum kFormats[] = {GL_R32UI, GL_RGBA32UI, GL_RGBA32F};
+        glTextureBuffer(texture, kFormats[static_cast<size_t>(view)], id_);
     }
     glBindTextureUnit(unit, texture);
 }

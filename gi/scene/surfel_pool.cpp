@@ -23,6 +23,22 @@ float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per
     return floor > 0 ? static_cast<float>(std::min(floor, most)) : 0.0f;  // NaN: 0
 }
 
+/// m^2: what a point stands for when the first `points` of a node are drawn and nothing below it. At least
+/// what an even pattern would have: where the raw scan fills the surface by its own shares, the floor is
+/// nothing.
+float stage_area(const octree::NodeInfo& info, double points, double metres_per_unit, const CutItem& item,
+                 float above) {
+    if (points < 1 || info.count == 0) return above;
+    const double share = std::min(points / info.count, 1.0);
+    const double even = info.area_floor[1] * 0.5 / share * metres_per_unit * metres_per_unit;
+    const float floor = sane_floor(info, static_cast<uint32_t>(points), metres_per_unit, item.size);
+    return std::min(above, std::max(floor, even > 0 ? static_cast<float>(even) : 0.0f));
+}
+
+uint32_t area_code(float area) {
+    return static_cast<uint32_t>(std::clamp((std::log2(area) + 64) * 512 + 0.5f, 0.0f, 65535.0f));
+}
+
 /// The same walk as gi/shared/cut.glsl's.
 float local_floor(const std::vector<CutItem>& items, const CutItem* item, const PackedSurfel& surfel) {
     for (uint32_t depth = 0; depth < kOctantLevels; ++depth) {
@@ -156,8 +172,15 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         for (uint32_t octant = 0; octant < 8; ++octant)
             item.child[octant] = whole && !(info.child_mask >> octant & 1) ? kWholeOctant : kCoarseOctant;
         item.inner = whole && info.child_mask != 0xff;
-        for (uint32_t at = 0; at < item.count; at += kBlockSurfels)
-            blocks.push_back({index, item.first + at, std::min(item.count - at, kBlockSurfels), 0});
+        const float above =
+            parent != item_of.end() ? items[parent->second].area_floor : item.size * item.size;
+        const auto lod = [&](uint32_t points) {
+            return area_code(stage_area(info, points, unit, item, above));
+        };
+        for (uint32_t at = 0; at < item.count; at += kBlockSurfels) {
+            const uint32_t count = std::min(item.count - at, kBlockSurfels);
+            blocks.push_back({index, item.first + at, count, lod(at) | lod(at + count) << 16});
+        }
         surfels += item.count;
         items.push_back(item);
     }

@@ -36,6 +36,7 @@ class DeviceCut {
  public:
     uint32_t surfels() const { return surfels_; }  ///< points drawn
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
+    float size() const { return host_items_.empty() ? 1.0f : host_items_[0].size; }  ///< m, side of its root
     /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
     void bind() const;
 

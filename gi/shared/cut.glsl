@@ -20,6 +20,14 @@ bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
     return true;
 }
 
+// See CutBlock.
+float lod_area(uint code) { return exp2(float(code) / 512.0 - 64.0); }
+float surfel_lod_area(uint id) {
+    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
+    float along = (float(id % kBlockSurfels) + 0.5) / float(max(block.z, 1u));
+    return 1.0 / mix(1.0 / lod_area(block.w & 0xffffu), 1.0 / lod_area(block.w >> 16), min(along, 1.0));
+}
+
 // The item's cube: origin, and its side (m).
 vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int(4u * item))); }
 

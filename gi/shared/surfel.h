@@ -44,8 +44,11 @@ struct CutBlock {
     uint item;
     uint first;  // of its surfels in the pool
     uint count;
-    uint pad;
+    uint lod;  // areas at its ends, see below
 };
+// What a surfel would stand for if no finer ones were drawn: the surface's share of each point when the levels of
+// detail down to it are drawn, and its own node up to it. Along a block it falls from `lod & 0xffff` to `lod >> 16`,
+// codes of an area of 2^(code / 512 - 64) m^2; its inverse, the density, rises evenly.
 const uint kBlockSurfels = 256u;
 const uint kNoSurfel = 0xffffffffu;
 

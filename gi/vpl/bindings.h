@@ -11,6 +11,7 @@ inline constexpr uint32_t kBindLightIds = 5;  // of the surfels behind the light
 inline constexpr uint32_t kBindCasters = 5;
 inline constexpr uint32_t kBindLarge = 6;
 inline constexpr uint32_t kBindPoints = 7;  // Halton points
+inline constexpr uint32_t kBindMeetings = 7;
 inline constexpr uint32_t kBindImportance = 8;
 inline constexpr uint32_t kBindLights = 9;  // VplLight[]
 inline constexpr uint32_t kBindAtlas = 10;
@@ -20,8 +21,13 @@ inline constexpr uint32_t kBindDiffuse = 12;   // irradiance from the VPLs, a pi
 inline constexpr uint32_t kBindSpecular = 13;  // radiance by the receiver's lobe, a pixel
 inline constexpr uint32_t kBindRadiance = 14;
 
-/// VPLs come in runs of so many, the last one filled up with dead ones: enter.comp tries a run in one
-/// dispatch.
-inline constexpr uint32_t kRunMaps = 32;
+// Texture units of what is read as texels; 0 to 2 are the cut's.
+inline constexpr uint32_t kUnitLights = 3;
+inline constexpr uint32_t kUnitGBuffer = 4;
+inline constexpr uint32_t kUnitAtlas = 5;
+inline constexpr uint32_t kUnitCasters = 6;
+inline constexpr uint32_t kUnitBounds = 7;
+inline constexpr uint32_t kUnitDiffuse = 8;
+inline constexpr uint32_t kUnitSpecular = 9;
 
 }  // namespace lucarne::gi::vpl

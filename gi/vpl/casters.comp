@@ -4,15 +4,18 @@ layout(local_size_x = 256) in;
 #include "gi/shared/cut.glsl"
 #include "gi/vpl/casters.glsl"
 
+layout(std430, binding = 5) writeonly buffer Casters { uvec4 codes[]; };
+
 void main() {
     uint id = gl_GlobalInvocationID.x;
     uint item;
     PackedSurfel surfel;
-    Caster caster = Caster(vec3(0.0), vec3(0.0), 0.0);
+    Caster caster = Caster(vec3(0.0), vec3(0.0), 0.0, 0.0);
     if (cut_surfel(id, item, surfel)) {
         caster.position = surfel_position(item, surfel);
         if (surfel_has_normal(surfel)) caster.normal = surfel_normal(surfel);
         caster.radius = cut_surfel_radius(item, surfel);
+        caster.lod_area = max(surfel_lod_area(id), cut_surfel_area(item, surfel));
     }
-    caster_codes[id] = encode_caster(caster);
+    codes[id] = encode_caster(caster);
 }

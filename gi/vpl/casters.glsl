@@ -1,38 +1,41 @@
 // The light cut's surfels as the shadow maps' splatting reads them, once decoded: 16 bytes each, by their id.
 #include "gi/shared/surfel_code.h"
-#include "gi/vpl/vpl_light.h"
 
-layout(std430, binding = 9) readonly buffer Lights { VplLight lights[]; };
-layout(std430, binding = 5) buffer Casters { uvec4 caster_codes[]; };
+uniform float cut_size;  // m, side of the cut's root: radii and areas are coded relative to it
 
 struct Caster {
     vec3 position;
-    vec3 normal;   // unit; zero: the surfel has none
-    float radius;  // of its disc; 0: there is no surfel of this id
+    vec3 normal;     // unit; zero: the surfel has none
+    float radius;    // of its disc; 0: there is no surfel of this id
+    float lod_area;  // m^2, what it stands for where no finer surfels are drawn; at least its area in the cut
 };
 
-// w: normal as two 12-bit octahedral coordinates (.05 degrees; 0: none) | radius << 24, 2^((code - 128) / 8) m.
+// w: normal as two 9-bit octahedral coordinates (.3 degrees; 0: none) | radius, 7 bits of 2^(1/6) | lod_area, 7 bits of
+// 2^(1/4).
 uvec4 encode_caster(Caster caster) {
-    uint radius = caster.radius > 0.0 ? uint(clamp(8.0 * log2(caster.radius) + 128.5, 1.0, 255.0)) : 0u;
-    uint normal = 0u;
+    uint radius = 0u, normal = 0u;
+    if (caster.radius > 0.0) radius = uint(clamp(6.0 * log2(caster.radius / cut_size) + 127.5, 1.0, 127.0));
+    uint lod = uint(clamp(4.0 * log2(caster.lod_area / (cut_size * cut_size)) + 127.5, 0.0, 127.0));
     if (caster.normal != vec3(0.0)) {
         vec2 p = unpackSnorm2x16(encode_octahedral(caster.normal));
-        uvec2 steps = uvec2(clamp(p * 2047.0 + 2048.5, 1.0, 4095.0));
-        normal = steps.x | steps.y << 12;
+        uvec2 steps = uvec2(clamp(p * 255.0 + 256.5, 1.0, 511.0));
+        normal = steps.x | steps.y << 9;
     }
-    return uvec4(floatBitsToUint(caster.position), normal | radius << 24);
-}
-
-float caster_radius(uvec4 code) {
-    uint radius = code.w >> 24;
-    return radius == 0u ? 0.0 : exp2(0.125 * (float(radius) - 128.0));
+    return uvec4(floatBitsToUint(caster.position), normal | radius << 18 | lod << 25);
 }
 
 Caster decode_caster(uvec4 code) {
-    Caster caster = Caster(uintBitsToFloat(code.xyz), vec3(0.0), caster_radius(code));
-    if ((code.w & 0xffffffu) != 0u) {
-        vec2 p = (vec2(code.w & 4095u, code.w >> 12 & 4095u) - 2048.0) / 2047.0;
+    Caster caster = Caster(uintBitsToFloat(code.xyz), vec3(0.0), 0.0, 0.0);
+    uint radius = code.w >> 18 & 127u;
+    if (radius != 0u) caster.radius = exp2((float(radius) - 127.0) / 6.0) * cut_size;
+    caster.lod_area = exp2((float(code.w >> 25) - 127.0) * 0.25) * cut_size * cut_size;
+    if ((code.w & 0x3ffffu) != 0u) {
+        vec2 p = (vec2(code.w & 511u, code.w >> 9 & 511u) - 256.0) / 255.0;
         caster.normal = decode_octahedral(packSnorm2x16(p));
     }
     return caster;
 }
+
+layout(binding = 6) uniform usamplerBuffer caster_codes;
+
+Caster read_caster(uint id) { return decode_caster(texelFetch(caster_codes, int(id))); }

@@ -3,8 +3,10 @@
 // Per texel the texel's central ray is intersected with the disc's plane: one flat depth a splat would shadow its own
 // surface.
 #include "gi/vpl/casters.glsl"
+#include "gi/vpl/lights.glsl"
 #include "gi/vpl/parabolic.glsl"
 #include "gi/vpl/queue.glsl"
+#include "gi/vpl/thinning.glsl"
 
 struct Disc {
     vec3 centre;  // in the VPL's frame, the VPL at the origin
@@ -14,19 +16,19 @@ struct Disc {
     float lowest;  // hits up to this height over the VPL's tangent plane do not count
 };
 
-// The disc that `caster` becomes in the map of `light`; false where none of it can be hit.
-bool disc_over(VplLight light, Caster caster, out Disc disc) {
-    vec3 offset = caster.position - map_centre(light);
+// The disc that `caster` becomes in the map of VPL `map`; false where none of it can be hit.
+bool disc_over(uint map, Caster caster, out Disc disc) {
+    vec3 light_normal = vpl_normal(map).xyz;
+    vec3 offset = caster.position - vpl_map_centre(map);
     float distance2 = max(dot(offset, offset), 1e-12);
     float distance_m = sqrt(distance2);
     if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
-    float share = splat_share(caster.radius, distance2, abs(dot(caster.normal, offset)));
-    float radius = caster.radius * inversesqrt(min(share, 1.0));
-    float cosine = dot(light.normal.xyz, caster.normal);
+    float radius = thinned_radius(caster.radius, distance_m, abs(dot(caster.normal, offset)) / distance_m);
+    float cosine = dot(light_normal, caster.normal);
     // What is nearly parallel to the VPL's surface and hardly above the map's centre is the VPL's own sheet.
     float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
-    float top = dot(light.normal.xyz, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
-    mat3 frame = frame_about(light.normal.xyz);
+    float top = dot(light_normal, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
+    mat3 frame = frame_about(light_normal);
     disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, lowest);
     return top > lowest;
 }

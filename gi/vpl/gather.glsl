@@ -1,10 +1,10 @@
 // What the VPLs send to a point: the sum that shading and the merge's repairs have in common.
 #include "gi/shared/brdf.h"
 #include "gi/shared/gbuffer.h"
+#include "gi/vpl/lights.glsl"
 #include "gi/vpl/parabolic.glsl"
-#include "gi/vpl/vpl_light.h"
 
-layout(std430, binding = 9) readonly buffer Lights { VplLight lights[]; };
+layout(binding = 5) uniform usamplerBuffer atlas_texels;
 
 struct Receiver {
     vec3 position;
@@ -23,52 +23,80 @@ struct Gathered {
 // receiver's direction is a blocker if the receiver lies behind the blocker's plane, and the blocker before the
 // receiver's plane, both by more than the map can tell. A texel is coarse, and depths alone would let slanted surfaces and
 // the walls of a corner shadow each other over its whole width.
-bool vpl_sees(uint index, vec3 light_normal, vec3 lifted, vec3 normal) {
-    mat3 frame = frame_about(light_normal);
-    vec3 receiver = (lifted - light_normal * lights[index].incident.w) * frame;
-    if (receiver.z <= 0.0) return true;
+bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
+    mat3 frame = frame_about(light_normal.xyz);
+    vec3 receiver = (lifted - light_normal.xyz * light_normal.w) * frame;
     uvec2 at = texel_at(map_coordinates(normalize(receiver)));
-    uint nearest = atlas[texel_index(index, at)];
+    uint nearest = texelFetch(atlas_texels, int(texel_index(index, at))).x;
     vec2 uv = texel_centre(at);
     float blocker_distance = map_distance(nearest);
     vec3 blocker = map_ray(uv) * (blocker_distance / (1.0 + dot(uv, uv)));
     float tolerance = map_tolerance(map_radius(nearest), blocker_distance);
-    return nearest == kNothing || dot(normal * frame, blocker - receiver) <= tolerance ||
+    return receiver.z <= 0.0 || nearest == kNothing || dot(normal * frame, blocker - receiver) <= tolerance ||
            dot(map_normal(nearest), blocker - receiver) <= tolerance;
 }
 
+// The form factor, times pi, from a point to a disc of squared radius r2 whose centre lies at -offset, that is pi times
+// what a disc of unit radiosity sends there. In the plane of the disc's normal and the offset the light's vector has
+// closed form (Howell, catalogue of radiation configuration factors, B-12 and B-13: elements parallel and perpendicular
+// to a disc), here without their cancellations far away. What of the disc lies behind the receiver's plane counts
+// partly: half as a sphere of the same solid angle is cut off there (a parabola through the ends of the exact formula,
+// at most 2 % of the whole off), and half without a loss (after Hill: (l^2 + z) / (l + 1)). For a disc that crosses
+// the plane stands for surface that ends there, and a loss of all of it makes every corner dark: README.md.
+float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
+    float height = dot(light_normal, offset);
+    vec3 lateral = offset - height * light_normal;
+    float a2 = dot(lateral, lateral);
+    float d2 = dot(offset, offset);
+    float s = sqrt(max((d2 + r2) * (d2 + r2) - 4.0 * a2 * r2, 1e-30));
+    float parallel = d2 > r2 ? 2.0 * height * height * r2 / (s * (s + d2 - r2)) : 0.5 * (s + r2 - d2) / s;
+    float lateral_share = 2.0 * height * r2 / (s * (d2 + r2 + s));
+    vec3 flux = -parallel * light_normal - lateral_share * lateral;
+    float size = max(length(flux), 1e-30);
+    float facing = dot(flux, normal);
+    float sine = sqrt(size);
+    float cosine = facing / size;
+    float above = max(cosine + sine, 0.0);
+    float cut = cosine >= sine ? facing : size * above * above / (4.0 * sine);
+    return kPi * 0.5 * (cut + max((size * size + facing) / (size + 1.0), 0.0));
+}
+
+// Every `stride`-th VPL from `first` on, each a disc of its footprint A: as one, it sends what its surface would to
+// what is near, where a point would be without bounds. For lobes: G = cos cos' / sqrt(d^4 + (A/pi)^2).
+//
 // Points of one plane do not light each other, whichever side they are on: positions are rounded, and the G-buffer lets
 // the rim of a disc stick out of what hides it by a share of its radius (kRimPush). A lamp on the roof would shine at
 // the ceiling under it.
-
-// Every `stride`-th VPL from `first` on. Each is a disc of area A rather than a point: G = cos cos' / sqrt(d^4 + (A/pi)^2)
-// agrees with a disc's form factor where the receiver touches it (pi/A) and with a point's elsewhere. The usual
-// 1 / (d^2 + A/pi) has the same limits and loses two to three times as much energy between them (README.md).
 Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     for (uint i = first; i < count; i += stride) {
-        vec4 position = lights[i].position;
-        vec4 light_normal = lights[i].normal;
+        vec4 position = vpl_position(i);
+        vec4 light_normal = vpl_normal(i);
         vec3 offset = receiver.position - position.xyz;
         float cosines = -dot(receiver.normal, offset);
         float light_cosine = dot(light_normal.xyz, offset);
         if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) continue;  // also the dead
         float distance2 = dot(offset, offset);
-        if (!vpl_sees(i, light_normal.xyz, offset + receiver.normal * receiver.radius, receiver.normal)) continue;
-        float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, position.w / kPi)));
-        vec4 diffuse = lights[i].diffuse;
+        if (!vpl_sees(i, light_normal, offset + receiver.normal * receiver.radius, receiver.normal)) continue;
+        float r2 = max(position.w / kPi, 1e-12);
+        float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
+        float form_factor =
+            clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
+        vec4 diffuse = vpl_diffuse(i);
         vec3 arriving = diffuse.xyz;
 #ifdef LUCARNE_GLOSSY
+        float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, r2)));
         vec3 direction = offset * inversesqrt(distance2);
         Reflectance source;
         source.kd = vec3(0.0);
-        source.ks = light_normal.w;
+        vec4 incident = vpl_incident(i);
+        source.ks = incident.w;
         source.exponent = diffuse.w;
-        arriving += lights[i].flux.xyz * specular_brdf(source, light_normal.xyz, lights[i].incident.xyz, direction);
+        arriving += vpl_flux(i).xyz * specular_brdf(source, light_normal.xyz, incident.xyz, direction);
         sum.specular += arriving * geometry *
                         specular_brdf(receiver.reflectance, receiver.normal, -direction, receiver.to_viewer);
 #endif
-        sum.irradiance += arriving * geometry;
+        sum.irradiance += arriving * form_factor;
     }
     return sum;
 }

@@ -9,7 +9,7 @@ void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= camera.width || pixel.y >= camera.height) return;
     uint index = pixel.y * camera.width + pixel.x;
-    GBufferTexel texel = texels[index];
+    GBufferTexel texel = camera_texel(index);
     vec3 light = vec3(0.0);
     if (texel.depth > 0.0) {
         Receiver receiver = pixel_receiver(pixel, texel);

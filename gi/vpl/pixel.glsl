@@ -1,15 +1,18 @@
-// A pixel of the camera's G-buffer as shading and merging see it, and the buffers between the two.
+// A pixel of the camera's G-buffer as shading and merging see it.
 #include "gi/shared/gbuffer.glsl"
 #include "gi/vpl/gather.glsl"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 4) readonly buffer CameraGBuffer { GBufferTexel texels[]; };
-layout(std430, binding = 12) buffer DiffuseLight { vec4 diffuse_light[]; };    // irradiance, W/m^2
-layout(std430, binding = 13) buffer SpecularLight { vec4 specular_light[]; };  // radiance, W/(sr m^2)
+layout(binding = 4) uniform usamplerBuffer camera_words;  // GBufferTexel[]
 
 uniform CameraView camera;
 uniform uint interleave;   // n
 uniform uint light_count;  // M
+
+GBufferTexel camera_texel(uint index) {
+    uvec4 words = texelFetch(camera_words, int(index));
+    return GBufferTexel(uintBitsToFloat(words.x), words.y, words.z, words.w);
+}
 
 Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     Receiver receiver;

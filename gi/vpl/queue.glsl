@@ -1,16 +1,17 @@
-// The queues between enter.comp, splat.comp and splat_large.comp.
+// What meet.comp, enter.comp, splat.comp and splat_large.comp hand on to each other.
 layout(std430, binding = 11) buffer Queue {
-    uint queue_count;  // pairs that asked for a place; more than there is room for: the range is drawn in halves
+    uint pair_count;   // that asked for a place; more than there is room for: the range is drawn in halves
     uint large_count;  // discs that asked for a place among the large
     uint queue_unused[2];
-    uvec2 queue[];     // surfel's id, map
+    uvec2 pairs[];     // surfel's id, map
 };
-layout(std430, binding = 6) buffer Large { uint large_places[]; };  // in the queue
+layout(std430, binding = 6) buffer Large { uint large_places[]; };    // of pairs
+layout(std430, binding = 7) buffer Meetings { uint meetings[]; };     // kRunWords a block, a bit a map of the run
 
-void queue_pair(uint id, uint map) {
-    uint place = atomicAdd(queue_count, 1u);
-    if (place < uint(queue.length())) queue[place] = uvec2(id, map);
-}
+const uint kRunWords = 8u;
+
+// A block's bounds: least position and largest lod_area of its casters; greatest position and largest radius.
+layout(binding = 7) uniform usamplerBuffer block_bounds;
 
 // False where there is no room: then the disc is drawn at once, more slowly.
 bool queue_large(uint place) {

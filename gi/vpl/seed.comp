@@ -43,9 +43,9 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     float cosine = max(-dot(normal, away), kLeastCosine);
     vec3 offset = position - light_view.origin.xyz;
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
-    return VplLight(vec4(position, footprint), vec4(normal, r.ks), vec4(flux * r.kd / kPi, r.exponent),
+    return VplLight(vec4(position, footprint), vec4(normal, texel_radius(texel)), vec4(flux * r.kd / kPi, r.exponent),
                     vec4(flux, stands_clear(light_ids[pixel.y * light_view.width + pixel.x], normal, texel_radius(texel))),
-                    vec4(-away, texel_radius(texel)));
+                    vec4(-away, r.ks));
 }
 
 void main() {

@@ -48,10 +48,10 @@ Result<void> seed_lights(Device& device, const Light& spot, const CameraView& vi
     const uint32_t side = std::bit_ceil(std::max({view.width, view.height, 1u}));
     size_t texels = 0;
     for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
-    const auto padded = static_cast<uint32_t>((points.size() + kRunMaps - 1) / kRunMaps * kRunMaps);
+    const auto count = static_cast<uint32_t>(points.size());
     LUCARNE_TRY(device.reserve(target.importance, texels * sizeof(glm::vec2), "importance map"));
     LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
-    LUCARNE_TRY(device.reserve(target.lights, padded * sizeof(VplLight), "virtual point lights"));
+    LUCARNE_TRY(device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
     target.points.upload(0, std::as_bytes(points));
 
     cut.bind();
@@ -71,9 +71,9 @@ Result<void> seed_lights(Device& device, const Light& spot, const CameraView& vi
         mip->set("level", level);
         mip->dispatch(side >> level, side >> level);
     }
-    seed->set("light_count", static_cast<uint32_t>(points.size()));
-    seed->dispatch(padded);
-    target.host_lights = target.lights.download_all<VplLight>(padded);
+    seed->set("light_count", count);
+    seed->dispatch(count);
+    target.host_lights = target.lights.download_all<VplLight>(count);
     clear_rims(target.host_lights);
     target.lights.upload_all(target.host_lights);
     return {};

@@ -15,14 +15,13 @@ namespace lucarne::gi::vpl {
 struct Seeds {
     Buffer importance;                  ///< vec2 (weight, lit), all mip levels (importance.glsl)
     Buffer points;                      ///< vec2 in [0, 1)^2, one a VPL
-    Buffer lights;                      ///< VplLight[points], filled up with dead ones to whole runs
+    Buffer lights;                      ///< VplLight, one a point
     std::vector<VplLight> host_lights;  ///< the same
 };
 
 /// Places one VPL a point of `points` on what `spot` sees of `cut`, which `seen` holds (rasterized with
-/// spot_view()): importance map, mip chain, hierarchical warping. The buffer of lights is filled up with dead
-/// ones to a whole run. `materials` is what upload_materials made. Errors: no device memory, a shader that
-/// fails.
+/// spot_view()): importance map, mip chain, hierarchical warping. `materials` is what upload_materials made.
+/// Errors: no device memory, a shader that fails.
 Result<void> seed_lights(Device& device, const Light& spot, const CameraView& view, const DeviceCut& cut,
                          const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
                          Seeds& target);

@@ -16,11 +16,13 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
     LUCARNE_TRY(
         frame.device.reserve(target.specular, glossy ? bytes : 4 * sizeof(float), "indirect specular light"));
     materials.bind(kBindMaterials);
-    gbuffer.texels.bind(kBindGBuffer);
-    seeds.lights.bind(kBindLights);
-    maps.atlas.bind(kBindAtlas);
+    gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
+    seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
+    maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
     target.diffuse.bind(kBindDiffuse);
     target.specular.bind(kBindSpecular);
+    target.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
+    target.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
     frame.radiance.bind(kBindRadiance);
     const uint32_t n = frame.settings.interleave;
     for (const Program* program : {shade, merge}) {

@@ -18,12 +18,13 @@ constexpr uint32_t kSideStep = 8;           // so that three levels of 2 x 2 blo
 constexpr double kSplatTexels = 1.6;        // radius of the thinned splats
 constexpr uint32_t kNothing = 0xffffffffu;  // parabolic.glsl
 constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
-constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);  // queue.glsl
-constexpr uint32_t kLargeDiscs = 65535;  // a workgroup each: the least that OpenGL promises of them
-constexpr uint32_t kLargeGroup = 16;     // local size of splat_large.comp
+constexpr size_t kBoundsBytes = 8 * sizeof(float);     // queue.glsl, and the next three
+constexpr uint32_t kRunMaps = 256;
+constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
-constexpr uint32_t kQueuePairs =
-    2 << 20;  // 16 MiB; a run of an atlas of 2048 x 2048 for 256 VPLs has some 450 000
+constexpr uint32_t kQueuePairs = 4 << 20;  // 32 MiB; an atlas of 2048 x 2048 has some 2M
+constexpr uint32_t kLargeDiscs = 65535;    // a workgroup each: the least that OpenGL promises of them
+constexpr uint32_t kLargeGroup = 16;       // local size of splat_large.comp
 
 void set_layout(const Program& program, const AtlasLayout& layout) {
     program.set("map_side", layout.side);
@@ -31,22 +32,9 @@ void set_layout(const Program& program, const AtlasLayout& layout) {
     program.set("splat_angle", layout.splat_angle);
 }
 
-struct IdRange {
-    uint32_t first, count;
+struct Range {
+    uint32_t first, end;
 };
-
-/// The VPLs that enter.comp tries next, as uniforms (see there).
-void set_run(const Program& enter, std::span<const VplLight> lights, uint32_t first) {
-    std::vector<float> positions, normals;
-    for (const VplLight& l : lights.subspan(first, kRunMaps)) {
-        const glm::vec4 centre = map_centre(l);
-        positions.insert(positions.end(), {centre.x, centre.y, centre.z, 0.0f});
-        normals.insert(normals.end(), {l.normal.x, l.normal.y, l.normal.z, 0.0f});
-    }
-    enter.set("first_map", first);
-    enter.set_block("run_position", positions);
-    enter.set_block("run_normal", normals);
-}
 
 Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     LUCARNE_ASSIGN(const Program* pull, device.program("gi/vpl/pull.comp"));
@@ -65,50 +53,75 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     return {};
 }
 
-/// Draws the surfels of the range into the run of maps that is set in `enter`. A range with more pairs than
-/// the queue holds (large maps close to surfaces) is drawn in halves; a single surfel has kRunMaps at most.
 struct SplatPrograms {
-    const Program *enter, *draw, *draw_large;
+    const Program *meet, *enter, *draw, *draw_large;
 };
 
-void splat_range(const SplatPrograms& splat, IdRange range, Buffer& queue) {
-    queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
-    splat.enter->set("first_id", range.first);
-    splat.enter->set("id_end", range.first + range.count);
-    splat.enter->dispatch(range.count);
-    const uint32_t pairs = queue.download_all<uint32_t>(1)[0];
+/// Draws the surfels of some blocks into some maps. A range with more pairs than the queue holds (large maps
+/// among many surfaces) is drawn in halves; a single block has kBlockSurfels a map at most.
+void splat_range(const SplatPrograms& splat, Range blocks, Range maps, ShadowMaps& target) {
+    target.queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
+    splat.meet->set("first_block", blocks.first);
+    splat.meet->set("block_end", blocks.end);
+    splat.meet->set("map_end", maps.end);
+    splat.enter->set("first_block", blocks.first);
+    for (const Program* program : {splat.meet, splat.enter}) program->set("first_map", maps.first);
+    splat.meet->dispatch(blocks.end - blocks.first, kRunMaps / 32);
+    splat.enter->dispatch((blocks.end - blocks.first) * kBlockSurfels);
+    const uint32_t pairs = target.queue.download_all<uint32_t>(1)[0];
     if (pairs > kQueuePairs) {
-        const uint32_t half = range.count / 2;
-        splat_range(splat, {range.first, half}, queue);
-        splat_range(splat, {range.first + half, range.count - half}, queue);
+        const uint32_t half = (blocks.first + blocks.end) / 2;
+        splat_range(splat, {blocks.first, half}, maps, target);
+        splat_range(splat, {half, blocks.end}, maps, target);
         return;
     }
     splat.draw->dispatch(pairs);
-    const uint32_t large = std::min(queue.download_all<uint32_t>(2)[1], kLargeDiscs);
+    const uint32_t large = std::min(target.queue.download_all<uint32_t>(2)[1], kLargeDiscs);
     splat.draw_large->dispatch(large * kLargeGroup);
 }
 
-Result<void> splat(Device& device, const DeviceCut& cut, uint32_t ids, const Seeds& seeds, uint32_t seed,
-                   ShadowMaps& target) {
+/// What the passes below read of the cut: its surfels decoded, and bounds of its blocks.
+Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& target) {
     LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
+    LUCARNE_ASSIGN(const Program* bounds, device.program("gi/vpl/block_bounds.comp"));
+    const size_t ids = size_t{cut.blocks()} * kBlockSurfels;
+    LUCARNE_TRY(device.reserve(target.casters, ids * kCasterBytes, "ISM casters"));
+    LUCARNE_TRY(device.reserve(target.bounds, cut.blocks() * kBoundsBytes, "ISM casters"));
+    for (const Program* program : {casters, bounds}) program->set("cut_size", cut.size());
+    bounds->set("block_count", cut.blocks());
+    cut.bind();
+    target.casters.bind(kBindCasters);
+    casters->dispatch(static_cast<uint32_t>(ids));
+    target.casters.bind_texels(kUnitCasters, TexelView::four_words);
+    target.bounds.bind(kBindCasters);
+    bounds->dispatch(cut.blocks());
+    return {};
+}
+
+Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, ShadowMaps& target) {
+    if (cut.blocks() == 0) return {};
+    LUCARNE_ASSIGN(const Program* meet, device.program("gi/vpl/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp"));
     LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp"));
-    const SplatPrograms programs{enter, draw, draw_large};
-    cut.bind();
-    seeds.lights.bind(kBindLights);
-    target.casters.bind(kBindCasters);
+    LUCARNE_TRY(decode_casters(device, cut, target));
+    LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.large, kLargeDiscs * sizeof(uint32_t), "ISM queue"));
+    seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
+    target.bounds.bind_texels(kUnitBounds, TexelView::four_words);
     target.atlas.bind(kBindAtlas);
     target.queue.bind(kBindQueue);
     target.large.bind(kBindLarge);
-    casters->dispatch(ids);
-    for (const Program* program : {enter, draw, draw_large}) set_layout(*program, target.layout);
-    enter->set("seed", seed);
-    const uint32_t runs = (target.layout.maps + kRunMaps - 1) / kRunMaps;
-    for (uint32_t run = 0; run < runs; ++run) {
-        set_run(*enter, seeds.host_lights, run * kRunMaps);
-        splat_range(programs, {0, ids}, target.queue);
+    target.meetings.bind(kBindMeetings);
+    const SplatPrograms programs{meet, enter, draw, draw_large};
+    for (const Program* program : {meet, enter, draw, draw_large}) {
+        set_layout(*program, target.layout);
+        program->set("cut_size", cut.size());
     }
+    for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
+        splat_range(programs, {0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)},
+                    target);
     return {};
 }
 
@@ -139,18 +152,13 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
 }
 
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, uint32_t seed, PassTimes& times,
-                              ShadowMaps& target) {
-    const uint32_t ids = cut.blocks() * kBlockSurfels;
+                              const AtlasLayout& layout, PassTimes& times, ShadowMaps& target) {
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
-    LUCARNE_TRY(device.reserve(target.casters, size_t{ids} * kCasterBytes, "ISM casters"));
-    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
-    LUCARNE_TRY(device.reserve(target.large, kLargeDiscs * sizeof(uint32_t), "ISM queue"));
     target.layout = layout;
     times.begin("ISM splat");
     target.atlas.clear(kNothing);
-    if (ids > 0) LUCARNE_TRY(splat(device, cut, ids, seeds, seed, target));
+    LUCARNE_TRY(splat(device, cut, seeds, target));
     times.end();
     times.begin("ISM pull-push");
     LUCARNE_TRY(pull_push(device, target));

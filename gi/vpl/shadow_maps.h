@@ -27,13 +27,12 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps);
 struct ShadowMaps {
     AtlasLayout layout;
     Buffer atlas, coarse;
-    Buffer casters, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
+    Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
 /// Draws `cut` into the maps of `seeds` and closes the holes between the splats.
-/// Which surfels enter which maps follows from their ids and `seed`. Errors: no device memory, a shader that
-/// fails.
+/// Errors: no device memory, a shader that fails.
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, uint32_t seed, PassTimes& times, ShadowMaps& target);
+                              const AtlasLayout& layout, PassTimes& times, ShadowMaps& target);
 
 }  // namespace lucarne::gi::vpl

@@ -4,14 +4,14 @@ layout(local_size_x = 256) in;
 
 #include "gi/vpl/disc.glsl"
 
-const int kLargeTexels = 128;
+const int kLargeTexels = 48;
 
 void main() {
     uint place = gl_GlobalInvocationID.x;
-    if (place >= queue_count) return;
-    uvec2 pair = queue[place];
+    if (place >= pair_count) return;
+    uvec2 pair = pairs[place];
     Disc disc;
-    if (!disc_over(lights[pair.y], decode_caster(caster_codes[pair.x]), disc)) return;
+    if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
     ivec2 first, last;
     disc_box(disc, first, last);
     if (first.x > last.x || first.y > last.y) return;

@@ -4,10 +4,10 @@ layout(local_size_x = 16) in;
 #include "gi/vpl/disc.glsl"
 
 void main() {
-    uvec2 pair = queue[large_places[gl_WorkGroupID.x]];
+    uvec2 pair = pairs[large_places[gl_WorkGroupID.x]];
     Disc disc;
     ivec2 first, last;
-    if (!disc_over(lights[pair.y], decode_caster(caster_codes[pair.x]), disc)) return;
+    if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
     disc_box(disc, first, last);
     int width = last.x - first.x + 1;
     int texels = width * (last.y - first.y + 1);

@@ -1,12 +1,11 @@
 // Which surfels enter which maps.
 //
-// A surfel of radius r, seen from a VPL at distance d at the angle a to its normal, has the share
-//   q = (r / (splat_angle d))^2 cos a
-// of a splat's solid angle. Where q < 1 it is smaller than a splat should be: it enters the VPL's map with probability
-// kThinnedCover q alone, but with a disc of radius r / sqrt(q), for the surfels that did not. All splats of a map thus
-// take about the same solid angle, pi splat_angle^2, however far and slanted their surface is: none is coarser than
-// the map can show, and none finer. Neither a flat share of the surfels for every map does that (coarse splats where
-// they are close) nor all of them (256M splats a frame).
+// Every splat of a map shall take about the same solid angle, pi splat_angle^2, however far and slanted its surface is:
+// then none is finer than the map can show and none coarser. A surfel that much smaller is left out with its whole level
+// of detail: it enters where the area that it stands for without finer surfels, lod_area, is at least what a splat
+// should cover there. Levels of detail are even samples (octree/build), so the few that enter close the surface far
+// better than as many chosen by chance would; they are drawn larger, for those that did not.
+#include "gi/shared/brdf.h"
 
 uniform float splat_angle;
 
@@ -14,13 +13,16 @@ uniform float splat_angle;
 const float kLeastSlant = 0.1;
 const float kLargestSplat = 3.1623;  // 1 / sqrt(kLeastSlant), in splat_angle * distance
 
-// Surfels' discs cover their surface 5 to 7 times (octree/footprint.h); those of the thinned need not: random discs
-// leave e^-C of the rays through, 2 % at 4, most of them holes of one texel that pull-push closes.
-const float kThinnedCover = 0.75;
+// Splats over each direction where a map is thinned. Even patterns leave 1 % open at 3, holes of a texel that
+// pull-push closes.
+const float kThinnedCover = 4.0;
 
-// q. `along` is |dot(normal, offset)|.
-float splat_share(float radius, float distance2, float along) {
-    float inverse = inversesqrt(distance2);
-    float share = radius * inverse / splat_angle;
-    return share * share * max(along * inverse, kLeastSlant);
+// m^2 of its surface that a splat at this distance stands for.
+float needed_area(float distance2, float slant) {
+    return kPi / kThinnedCover * splat_angle * splat_angle * distance2 / max(slant, kLeastSlant);
+}
+
+// Radius of the disc that is drawn, of one that enters: its own or, where others were left out, a splat's.
+float thinned_radius(float radius, float distance_m, float slant) {
+    return max(radius, splat_angle * distance_m * inversesqrt(max(slant, kLeastSlant)));
 }

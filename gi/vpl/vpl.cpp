@@ -92,8 +92,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
                             halton_points(s.vpls, s.seed, frame.index), seeds_));
     frame.times.end();
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
-    const auto salt = static_cast<uint32_t>(mix64(s.seed, frame.index));
-    LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, salt, frame.times, maps_));
+    LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, frame.times, maps_));
     return shade_panes(frame, materials_, seeds_, maps_, glossy(frame), panes_);
 }
 

@@ -14,25 +14,13 @@ using vec4 = glm::vec4;
 struct VplLight {
     vec4 position;  // m, relative to the local origin; w: footprint A, the share of the surface it stands
                     // for, m^2
-    vec4 normal;    // unit, on the lit side; w: ks, specular intensity of its surface
+    vec4 normal;    // unit, on the lit side; w: how far its shadow map's centre is lifted off it, m
     vec4 diffuse;   // flux * kd / pi: the diffuse radiant intensity along the normal, W/sr; w: n, Phong
                     // exponent
     vec4 flux;      // incident, W; w: 1 where it stands clear in the light, else less (seeding.cpp)
-    vec4 incident;  // unit, toward where the flux comes from; w: how far its shadow map's centre is lifted
-                    // off it, m
+    vec4 incident;  // unit, toward where the flux comes from; w: ks, specular intensity of
+                    // its surface
 };
-
-// Where the shadow map is drawn from: one radius above the surfel, as the reference engine's rays start,
-// above what noise and the rims of neighbouring discs put in its way.
-#ifdef __cplusplus
-inline vec4 map_centre(const VplLight& light) {
-    return light.position + light.normal * light.incident.w;
-}
-#else
-vec3 map_centre(VplLight light) {
-    return light.position.xyz + light.normal.xyz * light.incident.w;
-}
-#endif
 
 #ifdef __cplusplus
 /// Infinitely far away, so that no surfel enters its shadow map.

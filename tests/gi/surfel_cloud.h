@@ -32,9 +32,9 @@ inline PackedSurfel pack(const Surfel& s, const octree::Cube& cube) {
     return packed;
 }
 
-/// An additive octree over surfels: a node keeps a random `keep` of the surfels in its cube and hands the
-/// others to its children; up to 4 * keep stay whole in a leaf. The floor of a node is the mean area of all
-/// surfels in its cube times `floor_scale`.
+/// An additive octree over surfels: a node keeps an even `keep` of the surfels in its cube and hands the
+/// others to its children; up to 4 * keep stay whole in a leaf. The floor of a node is the area of its cube's
+/// surfels over the number of those drawn down to it, times `floor_scale`.
 class SurfelCloud : public octree::NodeSource {
  public:
     explicit SurfelCloud(std::vector<Surfel> surfels, const octree::Cube& root = {{-8, -8, -8}, 16},
@@ -44,8 +44,10 @@ class SurfelCloud : public octree::NodeSource {
         header_.min = root.min;
         header_.max = root.min + root.size;
         header_.points = surfels.size();
+        header_.schema.add(std::string(io::names::area), io::ScalarType::u16);
         nodes_.push_back({});
         contents_.push_back(std::move(surfels));
+        inherited_.emplace_back();
         for (size_t i = 0; i < nodes_.size(); ++i) split(i);
         for (size_t i = 0; i < nodes_.size(); ++i) {
             const octree::Cube cube = root.of(nodes_[i].key);
@@ -74,40 +76,69 @@ class SurfelCloud : public octree::NodeSource {
     }
 
  private:
+    /// So that every prefix is about as even as the whole: along a curve through space, in the order of their
+    /// indices' digits mirrored.
+    static void order_evenly(std::vector<Surfel>& surfels, const octree::Cube& cube) {
+        const auto place = [&](const Surfel& s) {
+            uint64_t code = 0;
+            const glm::dvec3 at = (glm::dvec3(s.position) - cube.min) / cube.size * 65535.0;
+            for (int bit = 15; bit >= 0; --bit)
+                for (int axis = 0; axis < 3; ++axis)
+                    code = code << 1 | (static_cast<uint64_t>(std::clamp(at[axis], 0.0, 65535.0)) >> bit & 1);
+            return code;
+        };
+        std::stable_sort(surfels.begin(), surfels.end(),
+                         [&](const Surfel& a, const Surfel& b) { return place(a) < place(b); });
+        std::vector<std::pair<uint32_t, uint32_t>> order(surfels.size());
+        for (uint32_t i = 0; i < order.size(); ++i) {
+            order[i] = {0, i};
+            for (uint32_t bit = 0; bit < 32; ++bit) order[i].first |= (i >> bit & 1) << (31 - bit);
+        }
+        std::sort(order.begin(), order.end());
+        std::vector<Surfel> sorted;
+        for (const auto& [key, i] : order) sorted.push_back(surfels[i]);
+        surfels = std::move(sorted);
+    }
+
     void split(size_t index) {
         std::vector<Surfel> all = std::move(contents_[index]);
-        double area = 0;
-        for (const Surfel& s : all) area += s.area;
-        const float mean = all.empty() ? 0.0f : static_cast<float>(area / static_cast<double>(all.size()));
-        for (size_t step = 0; step < octree::kPrefixSteps; ++step)
-            nodes_[index].area_floor[step] = floor_scale_ * mean * static_cast<float>(1u << step);
-        nodes_[index].subtree_count = all.size();
+        const std::vector<Surfel> above = std::move(inherited_[index]);
         const octree::NodeKey key = nodes_[index].key;
-        std::vector<Surfel> children[8];
+        const octree::Cube cube = header_.root.of(key);
+        order_evenly(all, cube);
+        double area = 0;
+        for (const auto* surfels : {&all, &above})
+            for (const Surfel& s : *surfels) area += s.area;
+        nodes_[index].subtree_count = all.size();
+        std::vector<Surfel> children[8], inherited[8];
+        const auto octant = [&](const Surfel& s) {
+            const glm::dvec3 p(s.position), middle = cube.min + cube.size / 2;
+            return (p.x >= middle.x) | (p.y >= middle.y) << 1 | (p.z >= middle.z) << 2;
+        };
         if (all.size() > 4 * keep_ && key.level < 15) {
-            // The kept ones are drawn at random; the rest keeps its order.
-            Random random(1, index);
-            for (size_t i = 0; i < keep_; ++i) std::swap(all[i], all[i + random.next() % (all.size() - i)]);
-            const octree::Cube cube = header_.root.of(key);
-            const glm::dvec3 middle = cube.min + cube.size / 2;
-            for (size_t i = keep_; i < all.size(); ++i) {
-                const glm::dvec3 p(all[i].position);
-                children[(p.x >= middle.x) | (p.y >= middle.y) << 1 | (p.z >= middle.z) << 2].push_back(
-                    all[i]);
-            }
+            for (size_t i = keep_; i < all.size(); ++i) children[octant(all[i])].push_back(all[i]);
             all.resize(keep_);
+            for (const auto* surfels : {&all, &above})
+                for (const Surfel& s : *surfels) inherited[octant(s)].push_back(s);
+        }
+        for (size_t step = 0; step < octree::kPrefixSteps; ++step) {
+            const double points = static_cast<double>(above.size()) +
+                                  static_cast<double>(all.size()) / static_cast<double>(1u << step);
+            nodes_[index].area_floor[step] =
+                points > 0 ? floor_scale_ * static_cast<float>(area / points) : 0.0f;
         }
         nodes_[index].count = static_cast<uint32_t>(all.size());
         contents_[index] = std::move(all);
-        for (uint32_t octant = 0; octant < 8; ++octant) {
-            if (children[octant].empty()) continue;
+        for (uint32_t o = 0; o < 8; ++o) {
+            if (children[o].empty()) continue;
             if (!nodes_[index].child_mask) nodes_[index].first_child = static_cast<uint32_t>(nodes_.size());
-            nodes_[index].child_mask |= static_cast<uint8_t>(1u << octant);
+            nodes_[index].child_mask |= static_cast<uint8_t>(1u << o);
             octree::NodeInfo child;
-            child.key = key.child(octant);
+            child.key = key.child(o);
             child.parent = static_cast<uint32_t>(index);
             nodes_.push_back(child);
-            contents_.push_back(std::move(children[octant]));
+            contents_.push_back(std::move(children[o]));
+            inherited_.push_back(std::move(inherited[o]));
         }
     }
 
@@ -115,7 +146,7 @@ class SurfelCloud : public octree::NodeSource {
     float floor_scale_;
     octree::SourceHeader header_;
     std::vector<octree::NodeInfo> nodes_;
-    std::vector<std::vector<Surfel>> contents_;
+    std::vector<std::vector<Surfel>> contents_, inherited_;  ///< a node's own; its ancestors' in its cube
     std::vector<std::vector<PackedSurfel>> packed_;
 };
 

@@ -1,0 +1,18 @@
+// The VPLs as texels, for loops: llvmpipe fetches those ten times faster than storage.
+#include "gi/vpl/vpl_light.h"
+
+layout(binding = 3) uniform usamplerBuffer vpl_words;  // VplLight[], five texels each
+
+vec4 vpl_word(uint index, uint member) { return uintBitsToFloat(texelFetch(vpl_words, int(5u * index + member))); }
+vec4 vpl_position(uint index) { return vpl_word(index, 0u); }
+vec4 vpl_normal(uint index) { return vpl_word(index, 1u); }
+vec4 vpl_diffuse(uint index) { return vpl_word(index, 2u); }
+vec4 vpl_flux(uint index) { return vpl_word(index, 3u); }
+vec4 vpl_incident(uint index) { return vpl_word(index, 4u); }
+
+// Where the shadow map is drawn from: one radius above the surfel, as the reference engine's rays start, above what
+// noise and the rims of neighbouring discs put in its way.
+vec3 vpl_map_centre(uint index) {
+    vec4 normal = vpl_normal(index);
+    return vpl_position(index).xyz + normal.xyz * normal.w;
+}
