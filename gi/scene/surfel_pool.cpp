@@ -30,7 +30,7 @@ float stage_area(const octree::NodeInfo& info, double points, double metres_per_
                  float above) {
     if (points < 1 || info.count == 0) return above;
     const double share = std::min(points / info.count, 1.0);
-    const double even = info.area_floor[1] * 0.5 / share * metres_per_unit * metres_per_unit;
+    const double even = share > 0.5 ? info.area_floor[1] * 0.5 / share * metres_per_unit * metres_per_unit : 0.0;
     const float floor = sane_floor(info, static_cast<uint32_t>(points), metres_per_unit, item.size);
     return std::min(above, std::max(floor, even > 0 ? static_cast<float>(even) : 0.0f));
 }

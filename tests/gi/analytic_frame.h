@@ -14,13 +14,15 @@
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/source.h"
+#include "tests/gi/even_order.h"
 
 namespace lucarne::gi::scenes {
 
 /// One octree node with all surfels of a scene, which share one area. Classification carries the material.
 class OneNode final : public octree::NodeSource {
  public:
-    explicit OneNode(const std::vector<Surfel>& surfels) {
+    explicit OneNode(std::vector<Surfel> surfels) {
+        order_evenly(surfels);
         auto& schema = header_.schema;
         schema.position = io::PositionType::f64;
         schema.add(std::string(io::names::normal), io::ScalarType::f32, 3);
@@ -42,7 +44,8 @@ class OneNode final : public octree::NodeSource {
         node.count = static_cast<uint32_t>(surfels.size());
         node.subtree_count = node.count;
         // No share of its own is stored, so that the floor decides: an even pattern.
-        node.area_floor.fill(surfels[0].area);
+        for (uint32_t step = 0; step < octree::kPrefixSteps; ++step)
+            node.area_floor[step] = surfels[0].area * static_cast<float>(1u << step);
         nodes_.push_back(node);
         data_.count = node.count;
         for (const Surfel& s : surfels) append(s);

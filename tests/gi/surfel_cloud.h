@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
-#include "io/core/random.h"
 #include "octree/source.h"
+#include "tests/gi/even_order.h"
 
 namespace lucarne::gi {
 
@@ -76,38 +75,14 @@ class SurfelCloud : public octree::NodeSource {
     }
 
  private:
-    /// So that every prefix is about as even as the whole: along a curve through space, in the order of their
-    /// indices' digits mirrored.
-    static void order_evenly(std::vector<Surfel>& surfels, const octree::Cube& cube) {
-        const auto place = [&](const Surfel& s) {
-            uint64_t code = 0;
-            const glm::dvec3 at = (glm::dvec3(s.position) - cube.min) / cube.size * 65535.0;
-            for (int bit = 15; bit >= 0; --bit)
-                for (int axis = 0; axis < 3; ++axis)
-                    code = code << 1 | (static_cast<uint64_t>(std::clamp(at[axis], 0.0, 65535.0)) >> bit & 1);
-            return code;
-        };
-        std::stable_sort(surfels.begin(), surfels.end(),
-                         [&](const Surfel& a, const Surfel& b) { return place(a) < place(b); });
-        std::vector<std::pair<uint32_t, uint32_t>> order(surfels.size());
-        for (uint32_t i = 0; i < order.size(); ++i) {
-            order[i] = {0, i};
-            for (uint32_t bit = 0; bit < 32; ++bit) order[i].first |= (i >> bit & 1) << (31 - bit);
-        }
-        std::sort(order.begin(), order.end());
-        std::vector<Surfel> sorted;
-        for (const auto& [key, i] : order) sorted.push_back(surfels[i]);
-        surfels = std::move(sorted);
-    }
-
     void split(size_t index) {
         std::vector<Surfel> all = std::move(contents_[index]);
         const std::vector<Surfel> above = std::move(inherited_[index]);
         const octree::NodeKey key = nodes_[index].key;
         const octree::Cube cube = header_.root.of(key);
-        order_evenly(all, cube);
+        order_evenly(all);
         double area = 0;
-        for (const auto* surfels : {&all, &above})
+        for (const std::vector<Surfel>* surfels : {&std::as_const(all), &above})
             for (const Surfel& s : *surfels) area += s.area;
         nodes_[index].subtree_count = all.size();
         std::vector<Surfel> children[8], inherited[8];
@@ -118,7 +93,7 @@ class SurfelCloud : public octree::NodeSource {
         if (all.size() > 4 * keep_ && key.level < 15) {
             for (size_t i = keep_; i < all.size(); ++i) children[octant(all[i])].push_back(all[i]);
             all.resize(keep_);
-            for (const auto* surfels : {&all, &above})
+            for (const std::vector<Surfel>* surfels : {&std::as_const(all), &above})
                 for (const Surfel& s : *surfels) inherited[octant(s)].push_back(s);
         }
         for (size_t step = 0; step < octree::kPrefixSteps; ++step) {
