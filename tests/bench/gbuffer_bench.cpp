@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "gi/gbuffer/gbuffer.h"
+#include "io/core/random.h"
 #include "tests/gi/surfel_cloud.h"
 
 namespace lucarne::gi {
