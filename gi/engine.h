@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "gi/shared/camera.h"
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
+#include "io/core/progress.h"
 
 namespace lucarne::gi {
 
@@ -56,12 +58,16 @@ struct Frame {
     uint64_t index = 0;  ///< of the frame: engines that accumulate take new samples for each
     Buffer& radiance;
     PassTimes& times;
-    const Environment* environment = nullptr;  ///< lights, and is seen in the place of `background`
+    std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
+    Progress* progress = nullptr;                    ///< of engines that report it; or none
 };
 
 struct EngineInfo {
     std::string_view name;         ///< as --engine takes it
     std::string_view description;  ///< one line
+    /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
+    std::span<const std::string_view> layers = {};
+    bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
 };
 
 /// A way to light a G-buffer. `info / prepare / render / stats`; one folder an engine.
@@ -74,6 +80,8 @@ class Engine {
     virtual Result<void> render(Frame& frame) = 0;
     /// Figures of the last frame for statistics and reports ("vpls": 256).
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
+    /// Of info().layers, in their order: vec4 a pixel, of all frames that were accumulated so far.
+    virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }
 };
 
 }  // namespace lucarne::gi

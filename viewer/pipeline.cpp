@@ -228,7 +228,8 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                     accumulated,
                     sample,
                     times,
-                    scene.environment.get()};
+                    scene.environment,
+                    request.progress};
     LUCARNE_TRY(engine->prepare(frame));
     return engine->render(frame);
 }
@@ -327,6 +328,9 @@ double Pipeline::exposure_ev() const {
 }
 const gi::Buffer& Pipeline::picture() const {
     return state_->picture;
+}
+std::vector<std::vector<glm::vec4>> Pipeline::layers() const {
+    return state_->engine->layers();
 }
 const gi::Buffer& Pipeline::radiance() const {
     return state_->averaged ? state_->mean : state_->sample;

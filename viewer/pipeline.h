@@ -29,6 +29,7 @@ struct FrameRequest {
     bool wait = false;  ///< loads every cut whole first: the same pixels on every run
     bool accumulate =
         false;  ///< averages with the frames before for as long as nothing that is drawn changes
+    Progress* progress = nullptr;  ///< of pixels, for an engine that takes long (EngineInfo)
 };
 
 struct FrameStats {
@@ -82,6 +83,8 @@ class Pipeline {
     /// top.
     const gi::Buffer& radiance() const;
     const gi::Buffer& picture() const;
+    /// What else the engine knows of the pixels, see Engine::layers().
+    std::vector<std::vector<glm::vec4>> layers() const;
     /// The last frame's G-buffer and how its coordinates are to be read, for picking and tools.
     const gi::GBuffer& gbuffer() const;
     const gi::CameraView& camera() const;

@@ -6,10 +6,12 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/reference/surfel_tracer.h"
-#include "gi/shared/light.h"
-#include "gi/shared/material.h"
+#include "gi/reference/illumination.h"
 #include "io/core/random.h"
+
+namespace lucarne {
+class Progress;
+}
 
 namespace lucarne::gi::reference {
 
@@ -31,53 +33,67 @@ struct Start {
     uint32_t material = 0;
 };
 
-struct Estimate {
-    glm::vec3 radiance{0.0f};  ///< W/(sr m^2)
-    float variance = 0;        ///< of the luminance of `radiance`, estimated from its paths
+/// What the paths of one start have gathered, in two halves that share no path: every other path goes to the
+/// second. Sums of several frames add up.
+struct PathSums {
+    glm::dvec3 exact{0.0};  ///< light without chance in it, the same for every path
+    glm::dvec3 halves[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
+    uint64_t paths[2] = {0, 0};
+    double luminance = 0, squares = 0;  ///< of the paths' light: sum, and sum of squares
+
+    void add(const PathSums& other);
+
+    glm::vec3 radiance() const;               ///< W/(sr m^2)
+    glm::vec3 half_radiance(int half) const;  ///< by that half alone; of all paths where it has none
+    /// Of the luminance of radiance(), estimated from the spread of the paths; 0 below two paths.
+    float variance() const;
 };
 
-/// Unidirectional path tracing over surfels with next event estimation of spots.
+/// Unidirectional path tracing over surfels. Lights, environment and emitting surfels are sampled where a
+/// path reflects (next event estimation); what the BRDF's own directions meet counts as well, both weighted
+/// by the balance heuristic (Veach & Guibas 1995).
 ///
 /// Bounces are orders of the Neumann series L = sum_k T^k L0 (Kajiya 1986): L0 is emission and the light that
-/// spots reflect off a surface directly (bounce 0), and each bounce is one more reflection by the transport
-/// operator T. Emission therefore counts like directly reflected light: seen directly it is bounce 0.
+/// comes from lights and the environment and is reflected once (bounce 0), and each bounce is one more
+/// reflection by the transport operator T. Emission therefore counts like directly reflected light: seen
+/// directly it is bounce 0.
 class PathTracer {
  public:
-    /// `materials` may be empty: then every surfel is a white-scaled diffuse one. All spans outlive the
-    /// tracer.
-    PathTracer(const SurfelTracer& surfels, std::span<const Light> lights,
-               std::span<const Material> materials, const PathSettings& settings);
+    /// `illumination` outlives the tracer.
+    PathTracer(const Illumination& illumination, const PathSettings& settings);
 
-    /// One estimate a start. The numbers follow from (seed, frame, start's index, path) alone, so that they
-    /// are the same for any number of threads.
-    std::vector<Estimate> trace(std::span<const Start> starts) const;
+    /// One a start. The numbers follow from (seed, frame, start's index, path) alone, so that they are the
+    /// same for any number of threads. Starts that are done are added to `progress` if there is one.
+    std::vector<PathSums> trace(std::span<const Start> starts, Progress* progress = nullptr) const;
 
     /// Of one start; `index` chooses its random numbers.
-    Estimate trace(const Start& start, uint64_t index) const;
+    PathSums trace(const Start& start, uint64_t index) const;
 
  private:
     struct Vertex;
+    struct Ray;
     Vertex vertex(const Start& start) const;
     bool counts(uint32_t bounce) const;
+    bool anything_random() const;
     glm::vec3 before_what_hides(const glm::vec3& origin, const Start& start) const;
-    glm::vec3 own_light(const Vertex& vertex) const;
+    glm::vec3 sharp_light(const Vertex& vertex) const;
+    glm::vec3 soft_light(const Vertex& vertex, Random& random) const;
+    glm::vec3 soft_light_along(const Vertex& vertex, const Ray& ray) const;
+    glm::vec3 sampled_emission(const Vertex& vertex, Random& random) const;
+    glm::vec3 weighed_emission(const Vertex& at, const Ray& ray) const;
+    Vertex arrive(const Vertex& from, const Ray& ray) const;
     glm::vec3 path(const Vertex& first, Random& random) const;
 
+    const Illumination& light_;
     const SurfelTracer& surfels_;
-    std::span<const Light> lights_;
-    std::span<const Material> materials_;
     PathSettings settings_;
+    uint32_t last_;  // bounce that counts
 };
 
-/// Rec. 709.
-inline float luminance(const glm::vec3& c) {
-    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-}
-
-/// Mean luminance of estimates and its standard error, in double and in order.
+/// Mean luminance of all starts and its standard error, in double and in order.
 struct MeanLuminance {
     double mean = 0, standard_error = 0;
 };
-MeanLuminance mean_luminance(std::span<const Estimate> estimates);
+MeanLuminance mean_luminance(std::span<const PathSums> sums);
 
 }  // namespace lucarne::gi::reference

@@ -6,16 +6,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "gi/reference/light_sampling.h"
+
 namespace lucarne::gi::reference {
 namespace {
-
-/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
-void frame_of(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    bitangent = {b, sign + n.y * n.y * a, -n.y};
-}
 
 /// A direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
 glm::vec3 sample_cosine_power(const glm::vec3& axis, float n, Random& random) {
@@ -37,24 +31,36 @@ float mean(const glm::vec3& v) {
     return (v.x + v.y + v.z) / 3.0f;
 }
 
+/// Of draws, how many take the specular lobe; less than 0 where nothing is reflected.
+float specular_share(const Reflectance& surface) {
+    const float total = mean(surface.kd) + surface.ks;
+    return total > 0 ? surface.ks / total : -1.0f;
+}
+
 }  // namespace
+
+float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
+                  const glm::vec3& in) {
+    const float share = specular_share(surface), cosine = glm::dot(normal, in);
+    if (share < 0 || cosine <= 0) return 0;
+    float pdf = (1 - share) * cosine / kPi;
+    if (share > 0) {
+        const float lobe_cosine = std::clamp(glm::dot(mirror(normal, out), in), 0.0f, 1.0f);
+        pdf += share * (surface.exponent + 1) / (2 * kPi) * std::pow(lobe_cosine, surface.exponent);
+    }
+    return pdf;
+}
 
 std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                                  Random& random) {
-    const float total = mean(surface.kd) + surface.ks;
-    if (total <= 0) return std::nullopt;
-    const float share = surface.ks / total;  // of draws from the specular lobe
-    const glm::vec3 axis = mirror(normal, out);
+    const float share = specular_share(surface);
+    if (share < 0) return std::nullopt;
     const bool specular = random.uniform() < share;
-    const glm::vec3 in =
-        sample_cosine_power(specular ? axis : normal, specular ? surface.exponent : 1.0f, random);
-    const float cosine = glm::dot(normal, in);
-    if (cosine <= 0) return std::nullopt;
-    const float lobe_cosine = std::max(0.0f, glm::dot(axis, in));
-    const float pdf = (1 - share) * cosine / kPi +
-                      share * (surface.exponent + 1) / (2 * kPi) * std::pow(lobe_cosine, surface.exponent);
+    const glm::vec3 in = sample_cosine_power(specular ? mirror(normal, out) : normal,
+                                             specular ? surface.exponent : 1.0f, random);
+    const float pdf = scatter_pdf(surface, normal, out, in);
     if (!(pdf > 0)) return std::nullopt;
-    return Scattered{in, brdf(surface, normal, out, in) * (cosine / pdf)};
+    return Scattered{in, brdf(surface, normal, out, in) * (glm::dot(normal, in) / pdf), pdf};
 }
 
 }  // namespace lucarne::gi::reference

@@ -12,11 +12,16 @@ namespace lucarne::gi::reference {
 struct Scattered {
     glm::vec3 direction;
     glm::vec3 weight;  ///< f cos / pdf
+    float pdf = 0;     ///< 1/sr
 };
+
 /// Draws a direction from the mixture of both lobes of the BRDF as seen from `out` (one-sample model, Veach
 /// 1997, sec. 9.2.4: the pdf of the whole mixture divides, whichever lobe was drawn). Empty where the draw
 /// falls below the surface: such a path carries nothing.
 std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                                  Random& random);
+/// The density, 1/sr, with which scatter() draws a direction.
+float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
+                  const glm::vec3& in);
 
 }  // namespace lucarne::gi::reference

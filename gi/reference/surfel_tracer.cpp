@@ -94,12 +94,32 @@ std::optional<uint32_t> SurfelTracer::nearest(const glm::vec3& origin, const glm
     return query.hit.primID;
 }
 
-bool SurfelTracer::occluded(const glm::vec3& from, const glm::vec3& to) const {
-    RTCRay ray = make_ray(from, to - from, 1.0f - 1e-5f);
+namespace {
+
+bool any_hit(RTCScene scene, RTCRay ray) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(embree_->scene, &context, &ray);
+    rtcOccluded1(scene, &context, &ray);
     return ray.tfar < 0;  // Embree's sign of a hit: -infinity
+}
+
+}  // namespace
+
+bool SurfelTracer::occluded(const glm::vec3& from, const glm::vec3& to) const {
+    return any_hit(embree_->scene, make_ray(from, to - from, 1.0f - 1e-5f));
+}
+
+bool SurfelTracer::occluded_along(const glm::vec3& origin, const glm::vec3& direction) const {
+    return any_hit(embree_->scene, make_ray(origin, direction, std::numeric_limits<float>::infinity()));
+}
+
+double SurfelTracer::coverage() const {
+    double discs = 0, surface = 0;
+    for (const Surfel& s : surfels_) {
+        discs += M_PI * s.radius * s.radius;
+        surface += s.area;
+    }
+    return surface > 0 ? discs / surface : 0;
 }
 
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius) {

@@ -35,6 +35,12 @@ class SurfelTracer {
     std::optional<uint32_t> nearest(const glm::vec3& origin, const glm::vec3& direction) const;
     /// Whether anything stands on the segment, its ends excluded.
     bool occluded(const glm::vec3& from, const glm::vec3& to) const;
+    /// Whether anything stands on the whole ray.
+    bool occluded_along(const glm::vec3& origin, const glm::vec3& direction) const;
+
+    /// Area of all discs over the area of the surface (the sum of the surfels' shares), 0 where that is
+    /// unknown. Randomly placed surfels let a share exp(-coverage) of the rays through.
+    double coverage() const;
 
  private:
     struct Embree;

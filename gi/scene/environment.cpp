@@ -11,11 +11,11 @@
 
 namespace lucarne::gi {
 
-glm::vec3 Environment::radiance(const glm::vec3& direction) const {
+size_t Environment::texel(const glm::vec3& direction) const {
     const glm::vec2 place = environment_place(direction, rotation);
     const auto x = std::min(static_cast<uint32_t>(place.x * static_cast<float>(width)), width - 1);
     const auto y = std::min(static_cast<uint32_t>(place.y * static_cast<float>(height)), height - 1);
-    return texels[size_t{y} * width + x];
+    return size_t{y} * width + x;
 }
 
 Result<Environment> load_environment(const std::filesystem::path& path, const glm::dvec3& scale,

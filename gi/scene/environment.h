@@ -19,7 +19,9 @@ struct Environment {
     float rotation = 0;                              ///< about z, radians, counterclockwise from above
 
     /// In a unit direction, W/(sr m^2).
-    glm::vec3 radiance(const glm::vec3& direction) const;
+    glm::vec3 radiance(const glm::vec3& direction) const { return texels[texel(direction)]; }
+    /// The texel that a unit direction meets.
+    size_t texel(const glm::vec3& direction) const;
 };
 
 /// No more texels than this: 8192 x 4096 take 384 MiB.

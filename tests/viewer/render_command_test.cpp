@@ -111,6 +111,26 @@ TEST_F(RenderCommand, MoreFramesAreAveragedAndLessNoisy) {
                 5 * one);
 }
 
+TEST_F(RenderCommand, LayersOfTheReferenceAreItsErrorAndItsHalves) {
+    ASSERT_EQ(render("layered.exr", "--engine reference --bounces 1 --samples 3 --frames 3 --layers").code,
+              0);
+    ASSERT_EQ(render("unlayered.exr", "--engine reference --bounces 1 --samples 3 --frames 3").code, 0);
+    const auto whole = exr("layered.exr"), a = exr("layered.a.exr"), b = exr("layered.b.exr"),
+               error = exr("layered.stderr.exr");
+    EXPECT_EQ(bytes_of(at("layered.exr")), bytes_of(at("unlayered.exr")));
+    double sum = 0, noise = 0;
+    for (size_t i = 0; i < whole.pixels.size(); ++i) {
+        // Nine paths: five in the first half, four in the other.
+        EXPECT_NEAR((5 * a.pixels[i].x + 4 * b.pixels[i].x) / 9, whole.pixels[i].x,
+                    1e-4f + 1e-5f * whole.pixels[i].x);
+        sum += (a.pixels[i].y - b.pixels[i].y) * (a.pixels[i].y - b.pixels[i].y);
+        noise += error.pixels[i].y * error.pixels[i].y;
+    }
+    EXPECT_GT(sum, noise) << "halves are noisier than the whole";
+    EXPECT_LT(sum, 10 * noise);
+    EXPECT_EQ(render("direct.exr", "--engine direct --layers").code, 2);
+}
+
 TEST_F(RenderCommand, FiguresNameEngineSizePointsAndPasses) {
     ASSERT_EQ(render("p.png", "--engine direct --preset preview --json " + at("figures.json")).code, 0);
     const auto figures = json("figures.json");

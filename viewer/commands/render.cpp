@@ -2,7 +2,9 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,8 +12,10 @@
 
 #include "gi/compare/edges.h"
 #include "gi/compare/metrics.h"
+#include "gi/registry.h"
 #include "io/core/file.h"
 #include "io/core/log.h"
+#include "io/core/progress.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
@@ -25,7 +29,7 @@ struct RenderOptions {
     DrawingOptions drawing;
     uint32_t frames = 1;
     double seconds = 0;
-    bool overwrite = false;
+    bool layers = false, overwrite = false;
 };
 
 enum class PictureKind { png, exr };
@@ -54,9 +58,15 @@ double engine_stat(const FrameStats& stats, std::string_view name) {
 }
 
 /// At least `frames` frames and at least `seconds`, averaged.
-Result<Rendered> render_frames(Pipeline& pipeline, const FrameRequest& request,
-                               const RenderOptions& options) {
+Result<Rendered> render_frames(Pipeline& pipeline, FrameRequest request, const RenderOptions& options) {
     Rendered rendered;
+    std::optional<Progress> progress;
+    if (pipeline.engine().reports_progress) {
+        const uint64_t pixels = uint64_t{request.size.width} * request.size.height;
+        progress.emplace(std::string(pipeline.engine().name),
+                         options.seconds > 0 ? 0 : pixels * options.frames, "pixels");
+        request.progress = &*progress;
+    }
     while (rendered.frames < options.frames || rendered.seconds < options.seconds) {
         LUCARNE_ASSIGN(rendered.last, pipeline.render(request));
         const double error = engine_stat(rendered.last, "standard error");
@@ -103,6 +113,34 @@ Result<void> write_picture(const RenderOptions& options, PictureKind kind, const
     return io::write_png(options.output, picture, options.overwrite);
 }
 
+/// The files of the engine's further pictures: OUT.exr has OUT.stderr.exr beside it.
+std::vector<std::string> layer_paths(const std::string& output, const gi::EngineInfo& engine) {
+    std::vector<std::string> paths;
+    for (const std::string_view layer : engine.layers)
+        paths.push_back(
+            std::filesystem::path(output).replace_extension(fmt::format("{}.exr", layer)).string());
+    return paths;
+}
+
+/// Before any long work: whether the layers can be written.
+Result<void> check_layers(const RenderOptions& options) {
+    LUCARNE_ASSIGN(const auto engine, gi::make_engine(options.drawing.engine));
+    if (engine->info().layers.empty())
+        return bad_arguments("--layers", fmt::format("engine {} has none", options.drawing.engine));
+    for (const auto& path : layer_paths(options.output, engine->info()))
+        LUCARNE_TRY(check_output(path, options.overwrite));
+    return {};
+}
+
+Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline, ImageSize size) {
+    const auto paths = layer_paths(options.output, pipeline.engine());
+    auto layers = pipeline.layers();
+    for (size_t i = 0; i < layers.size(); ++i)
+        LUCARNE_TRY(
+            io::write_exr(paths[i], {size.width, size.height, std::move(layers[i])}, options.overwrite));
+    return {};
+}
+
 Result<void> render(const RenderOptions& options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
@@ -110,6 +148,7 @@ Result<void> render(const RenderOptions& options) {
     for (const std::string& also : {options.json, options.gbuffer})
         if (!also.empty()) LUCARNE_TRY(check_output(also, options.overwrite));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
+    if (options.layers) LUCARNE_TRY(check_layers(options));
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_ASSIGN(const auto source, open_input(options.input));
     LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
@@ -130,6 +169,7 @@ Result<void> render(const RenderOptions& options) {
     if (!options.gbuffer.empty())
         LUCARNE_TRY(
             io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));
+    if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing.size));
     if (!options.json.empty()) {
         LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
         LUCARNE_TRY(file.append(report(rendered, *pipeline, drawing, mean).dump(2) + "\n"));
@@ -168,6 +208,10 @@ void add_render(CLI::App& app, Command& chosen) {
         ->add_option("--gbuffer", options->gbuffer,
                      "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
         ->type_name("FILE.exr");
+    command->add_flag("--layers", options->layers,
+                      "Also write what else the engine knows, beside the picture (reference: "
+                      "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
+                      "OUT.b.exr by half the paths each)");
     command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
     command->callback([options, &chosen] { chosen = [options] { return render(*options); }; });
 }

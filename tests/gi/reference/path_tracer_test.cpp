@@ -5,54 +5,45 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/reference/path_tracer.h"
 #include "gi/reference/scatter.h"
 #include "io/core/parallel.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
 namespace {
-
-std::unique_ptr<SurfelTracer> tracer_of(std::vector<Surfel> surfels) {
-    auto tracer = SurfelTracer::create(std::move(surfels));
-    EXPECT_TRUE(tracer) << tracer.error().line();
-    return std::move(*tracer);
-}
-
-/// n x n starts on a parallelogram, seen along its normal.
-std::vector<Start> starts_on(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, int n,
-                             float radius, const glm::vec3& albedo) {
-    std::vector<Start> starts;
-    const glm::vec3 normal = glm::normalize(glm::cross(u, v));
-    for (int i = 0; i < n * n; ++i) {
-        const float a = (static_cast<float>(i % n) + .5f) / static_cast<float>(n);
-        const float b = (static_cast<float>(i / n) + .5f) / static_cast<float>(n);
-        starts.push_back({corner + u * a + v * b, normal, normal, albedo, radius, 0});
-    }
-    return starts;
-}
-
-Material material(float diffuse, float specular, float exponent, float emission) {
-    return {glm::vec4(diffuse, diffuse, diffuse, specular),
-            glm::vec4(emission, emission, emission, exponent)};
-}
-
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 
 TEST(Reference, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
     for (const float rho : {0.5f, 0.8f}) {
         const auto surfels = scenes::closed_box(1, 40, glm::vec3(rho));
         const auto tracer = tracer_of(surfels);
-        const std::vector<Material> materials = {material(1, 0, 1, 1 - rho)};
-        const auto starts = starts_on(kO, kX, kY, 16, surfels[0].radius, glm::vec3(rho));
-        for (const uint32_t bounces : {0u, 1u, 3u, 8u}) {
-            const PathTracer paths(*tracer, {}, materials, {.bounces = bounces, .samples = 64});
-            const auto mean = mean_luminance(paths.trace(starts));
+        const Illumination light(*tracer, {material(1, 0, 1, 1 - rho)}, {}, nullptr);
+        const auto starts = starts_on(kO, kX, kY, 32, surfels[0].radius, glm::vec3(rho));
+        for (const uint32_t bounces : {0u, 1u, 2u, 4u, 8u}) {
+            const auto mean = traced(light, starts, {.bounces = bounces, .samples = 256});
             const double truth = 1 - std::pow(rho, bounces + 1.0);
-            EXPECT_NEAR(mean.mean, truth, std::max(5 * mean.standard_error, 1e-5)) << rho << " " << bounces;
-            EXPECT_LT(mean.standard_error, 0.004);
+            EXPECT_LT(mean.standard_error, 0.0006 * truth) << rho << " " << bounces;
+            EXPECT_NEAR(mean.mean, truth, std::max(0.001 * truth, 4 * mean.standard_error))
+                << rho << " " << bounces;
         }
     }
+}
+
+TEST(Reference, OpenFurnaceUnderAUniformEnvironmentIsOneEverywhere) {
+    // A sphere reflects its albedo of it at once; a box without a lid that emits what it does not reflect is
+    // as bright as the sky it stands under.
+    const float rho = 0.6f;
+    const auto floor_starts = [&](float radius) { return starts_on(kO, kX, kY, 24, radius, glm::vec3(rho)); };
+    const auto nothing = tracer_of({});
+    const Illumination alone(*nothing, {}, {}, uniform_environment(1));
+    const auto open = traced(alone, floor_starts(.01f), {.bounces = 3, .samples = 256});
+    EXPECT_NEAR(open.mean, rho, 1e-6 + 5 * open.standard_error);
+    auto box = scenes::closed_box(1, 60, glm::vec3(rho));
+    std::erase_if(box, [](const Surfel& s) { return s.normal.z < -.5f; });
+    const auto tracer = tracer_of(box);
+    const Illumination light(*tracer, {material(1, 0, 1, 1 - rho)}, {}, uniform_environment(1));
+    const auto mean = traced(light, floor_starts(box[0].radius), {.bounces = 30, .samples = 512});
+    EXPECT_LT(mean.standard_error, 0.001);
+    EXPECT_NEAR(mean.mean, 1, 0.001 + 3 * mean.standard_error);
 }
 
 TEST(Reference, BouncesOneByOneAddUpToAllOfThem) {
@@ -61,7 +52,8 @@ TEST(Reference, BouncesOneByOneAddUpToAllOfThem) {
     const std::vector<Material> materials = {material(1, 0, 1, 0.4f)};
     const auto starts = starts_on(kO, kX, kY, 8, surfels[0].radius, glm::vec3(0.6f));
     for (const int32_t only : {0, 1, 2, 6}) {
-        const PathTracer paths(*tracer, {}, materials, {.bounces = 1, .only_bounce = only, .samples = 64});
+        const Illumination light(*tracer, materials, {}, nullptr);
+        const PathTracer paths(light, {.bounces = 1, .only_bounce = only, .samples = 64});
         const auto mean = mean_luminance(paths.trace(starts));
         EXPECT_NEAR(mean.mean, 0.4 * std::pow(0.6, only), std::max(5 * mean.standard_error, 1e-5)) << only;
     }
@@ -73,7 +65,8 @@ TEST(Reference, GlossyFurnaceNeverGainsEnergy) {
         const auto tracer = tracer_of(surfels);
         const std::vector<Material> materials = {material(1, 0.4f, exponent, 0.2f)};
         const auto starts = starts_on(kO, kX, kY, 12, surfels[0].radius, glm::vec3(0.4f));
-        const PathTracer paths(*tracer, {}, materials, {.bounces = 30, .samples = 64});
+        const Illumination light(*tracer, materials, {}, nullptr);
+        const PathTracer paths(light, {.bounces = 30, .samples = 64});
         const auto mean = mean_luminance(paths.trace(starts));
         EXPECT_LT(mean.mean, 1 + 4 * mean.standard_error) << exponent;
         EXPECT_GT(mean.mean, 0.5) << exponent;
@@ -85,7 +78,8 @@ TEST(Reference, GlossyFurnaceNeverGainsEnergy) {
 double form_factor(const std::vector<Surfel>& emitter, const std::vector<Start>& receiver) {
     const auto tracer = tracer_of(emitter);
     const std::vector<Material> materials = {material(1, 0, 1, 0), material(0, 0, 1, 1)};
-    const PathTracer paths(*tracer, {}, materials, {.only_bounce = 1, .samples = 256});
+    const Illumination light(*tracer, materials, {}, nullptr);
+    const PathTracer paths(light, {.only_bounce = 1, .samples = 256});
     const auto mean = mean_luminance(paths.trace(receiver));
     EXPECT_LT(mean.standard_error, 0.0003);
     return mean.mean / 0.5;  // the receivers' albedo
@@ -108,34 +102,29 @@ TEST(Reference, PerpendicularSquaresExchangeTheirFormFactor) {
     EXPECT_NEAR(form_factor(emitter, receiver), 0.200044, 0.005 * 0.200044);
 }
 
-Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
-               float intensity) {
-    return {glm::vec4(position, std::cos(half_angle)),
-            glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
-            glm::vec4(intensity, intensity, intensity, 0)};
-}
-
 TEST(Reference, SpotLightFallsWithTheSquareOfDistanceAndTheCosine) {
     std::vector<Surfel> floor;
     scenes::add_rectangle(floor, kO, kX, kY, 50, glm::vec3(0.5f));
     const auto tracer = tracer_of(floor);
     const glm::vec3 place(0.9f, 0.5f, 2.0f), point(0.3f, 0.4f, 0.0f);
     const std::vector<Light> lights = {spot(place, point, 0.5f, 0.4f, 10)};
-    const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
+    const Illumination light(*tracer, {}, lights, nullptr);
+    const PathTracer paths(light, {.bounces = 0});
     const Start start{point, kZ, kZ, glm::vec3(0.5f), floor[0].radius, 0};
     const glm::vec3 to_light = place - point;
     const float d2 = glm::dot(to_light, to_light);
     const float expected = 0.5f / kPi * 10 * (to_light.z / std::sqrt(d2)) / d2;
-    EXPECT_NEAR(paths.trace(start, 0).radiance.x, expected, 1e-5f * expected);
-    EXPECT_EQ(paths.trace(start, 0).variance, 0.0f);
+    EXPECT_NEAR(paths.trace(start, 0).radiance().x, expected, 1e-5f * expected);
+    EXPECT_EQ(paths.trace(start, 0).variance(), 0.0f);
 }
 
 TEST(Reference, SpotLightEndsSmoothlyAtItsCone) {
     const auto tracer = tracer_of({});
     const std::vector<Light> lights = {spot(kZ, kO, std::atan(1.0f), 0.0f, 1)};
-    const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
+    const Illumination light(*tracer, {}, lights, nullptr);
+    const PathTracer paths(light, {.bounces = 0});
     const auto at = [&](float x) {
-        return paths.trace({glm::vec3(x, 0, 0), kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x;
+        return paths.trace({glm::vec3(x, 0, 0), kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance().x;
     };
     const float cosine = 1 / std::sqrt(1.25f), outer = std::sqrt(0.5f);
     const float t = (cosine - outer) / (1 - outer);
@@ -151,9 +140,10 @@ TEST(Reference, SheetCastsAShadowFromBothItsSides) {
                               glm::vec3(0.5f));
         const auto tracer = tracer_of(sheet);
         const std::vector<Light> lights = {spot(2.0f * kZ, kO, 0.7f, 0.6f, 10)};
-        const PathTracer paths(*tracer, lights, {}, {.bounces = 0});
-        EXPECT_EQ(paths.trace({kO, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x, 0.0f);
-        EXPECT_GT(paths.trace({1.2f * kX, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance.x, 0.0f);
+        const Illumination light(*tracer, {}, lights, nullptr);
+        const PathTracer paths(light, {.bounces = 0});
+        EXPECT_EQ(paths.trace({kO, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance().x, 0.0f);
+        EXPECT_GT(paths.trace({1.2f * kX, kZ, kZ, glm::vec3(0.5f), 0.01f, 0}, 0).radiance().x, 0.0f);
     }
 }
 
@@ -161,10 +151,11 @@ TEST(Reference, SealedDarkRoomIsBlackHoweverBrightTheLightOutside) {
     const auto surfels = scenes::closed_box(1, 40, glm::vec3(0.9f));
     const auto tracer = tracer_of(surfels);
     const std::vector<Light> lights = {spot(glm::vec3(.5f, .5f, 3), glm::vec3(.5f), 1.0f, 0.9f, 1e6f),
-                                           spot(glm::vec3(-2, .4f, .3f), glm::vec3(.5f), 1.0f, 0.9f, 1e6f)};
-    const PathTracer paths(*tracer, lights, {}, {.bounces = 4, .samples = 32});
+                                       spot(glm::vec3(-2, .4f, .3f), glm::vec3(.5f), 1.0f, 0.9f, 1e6f)};
+    const Illumination light(*tracer, {}, lights, nullptr);
+    const PathTracer paths(light, {.bounces = 4, .samples = 32});
     const auto estimates = paths.trace(starts_on(kO, kX, kY, 32, surfels[0].radius, glm::vec3(0.9f)));
-    for (const Estimate& e : estimates) ASSERT_EQ(e.radiance, kO);
+    for (const PathSums& e : estimates) ASSERT_EQ(e.radiance(), kO);
 }
 
 // A wall that is lit and one that sees only it: the light of one bounce, integrated by hand.
@@ -174,8 +165,9 @@ TEST(Reference, OneBounceFromALitWallMatchesQuadrature) {
     const auto tracer = tracer_of(wall);
     const glm::vec3 place(1.5f, .5f, .5f), receiver(0.5f, 0.4f, 0.0f);
     const std::vector<Light> lights = {spot(place, glm::vec3(0, .5f, .5f), 0.8f, 0.8f, 20)};
-    const PathTracer paths(*tracer, lights, {}, {.only_bounce = 1, .samples = 200000});
-    const Estimate estimate = paths.trace({receiver, kZ, kZ, glm::vec3(0.5f), 0.002f, 0}, 0);
+    const Illumination light(*tracer, {}, lights, nullptr);
+    const PathTracer paths(light, {.only_bounce = 1, .samples = 200000});
+    const PathSums estimate = paths.trace({receiver, kZ, kZ, glm::vec3(0.5f), 0.002f, 0}, 0);
     double irradiance = 0;
     for (const Surfel& s : wall) {
         const glm::vec3 to_light = place - s.position, to_receiver = receiver - s.position;
@@ -184,9 +176,9 @@ TEST(Reference, OneBounceFromALitWallMatchesQuadrature) {
         irradiance += 0.6 / kPi * incident * (to_receiver.x / std::sqrt(r2)) *
                       (-to_receiver.z / std::sqrt(r2)) / r2 * s.area;
     }
-    const double truth = 0.5 / kPi * irradiance, error = std::sqrt(estimate.variance);
+    const double truth = 0.5 / kPi * irradiance, error = std::sqrt(estimate.variance());
     EXPECT_LT(error, 0.01 * truth);
-    EXPECT_NEAR(luminance(estimate.radiance), truth, 4 * error + 0.003 * truth);
+    EXPECT_NEAR(luminance(estimate.radiance()), truth, 4 * error + 0.003 * truth);
 }
 
 TEST(Reference, SamplesOfBothLobesIntegrateTheBrdf) {
@@ -209,27 +201,26 @@ TEST(Reference, SamplesOfBothLobesIntegrateTheBrdf) {
 TEST(Reference, SamePicturesForAnyNumberOfThreads) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.7f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<Light> lights = {
-        spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
+    const std::vector<Light> lights = {spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kX, kY, 40, surfels[0].radius, glm::vec3(0.7f));
-    const PathTracer paths(*tracer, lights, {}, {.bounces = 6, .samples = 8, .seed = 5});
+    const Illumination light(*tracer, {}, lights, nullptr);
+    const PathTracer paths(light, {.bounces = 6, .samples = 8, .seed = 5});
     const auto render = [&](unsigned threads) {
         const ThreadLimit limit(threads);
         return paths.trace(starts);
     };
     const auto one = render(1), many = render(4);
-    for (size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i].radiance, many[i].radiance) << i;
+    for (size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one[i].radiance(), many[i].radiance()) << i;
 }
 
 TEST(Reference, AnotherSeedOrFrameGivesOtherNumbersAndTheSameMean) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.5f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<Light> lights = {
-        spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
+    const std::vector<Light> lights = {spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kZ, kX, 16, surfels[0].radius, glm::vec3(0.5f));
     const auto mean = [&](uint64_t seed, uint64_t frame) {
-        const PathTracer paths(*tracer, lights, {},
-                               {.bounces = 2, .samples = 64, .seed = seed, .frame = frame});
+        const Illumination light(*tracer, {}, lights, nullptr);
+        const PathTracer paths(light, {.bounces = 2, .samples = 64, .seed = seed, .frame = frame});
         return mean_luminance(paths.trace(starts));
     };
     const auto first = mean(1, 0), frame = mean(1, 1), seed = mean(2, 0);
@@ -242,13 +233,13 @@ TEST(Reference, AnotherSeedOrFrameGivesOtherNumbersAndTheSameMean) {
 TEST(Reference, StandardErrorIsThatOfRepeatedRuns) {
     const auto surfels = scenes::closed_box(1, 30, glm::vec3(0.5f));
     const auto tracer = tracer_of(surfels);
-    const std::vector<Light> lights = {
-        spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
+    const std::vector<Light> lights = {spot(glm::vec3(.5f, .5f, .9f), glm::vec3(.5f, .5f, 0), 0.8f, 0.6f, 1)};
     const auto starts = starts_on(kO, kZ, kX, 8, surfels[0].radius, glm::vec3(0.5f));
     double sum = 0, squares = 0, claimed = 0;
     const int runs = 200;
     for (int run = 0; run < runs; ++run) {
-        const PathTracer paths(*tracer, lights, {},
+        const Illumination light(*tracer, {}, lights, nullptr);
+        const PathTracer paths(light,
                                {.bounces = 1, .samples = 16, .seed = 3, .frame = static_cast<uint64_t>(run)});
         const auto mean = mean_luminance(paths.trace(starts));
         sum += mean.mean, squares += mean.mean * mean.mean, claimed += mean.standard_error;
@@ -286,9 +277,10 @@ TEST(Reference, LightAtASurfaceOrInsideAWallLeavesNoNaN) {
     for (const glm::vec3& place :
          {kO, glm::vec3(.5f, .5f, 0), surfels[7].position, glm::vec3(.5f, .5f, -1e-4f)}) {
         const std::vector<Light> lights = {spot(place, place + kZ, 1.2f, 1.0f, 10)};
-        const PathTracer paths(*tracer, lights, {}, {.bounces = 3, .samples = 8});
-        for (const Estimate& e : paths.trace(starts_on(kO, kX, kY, 20, surfels[0].radius, glm::vec3(1.0f))))
-            ASSERT_TRUE(std::isfinite(luminance(e.radiance)) && e.radiance.x >= 0);
+        const Illumination light(*tracer, {}, lights, nullptr);
+        const PathTracer paths(light, {.bounces = 3, .samples = 8});
+        for (const PathSums& e : paths.trace(starts_on(kO, kX, kY, 20, surfels[0].radius, glm::vec3(1.0f))))
+            ASSERT_TRUE(std::isfinite(luminance(e.radiance())) && e.radiance().x >= 0);
     }
 }
 

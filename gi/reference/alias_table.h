@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "io/core/random.h"
+
+namespace lucarne::gi::reference {
+
+/// Draws indices in proportion to weights, in constant time (Walker 1974; built as in Vose 1991, "A linear
+/// algorithm for generating random numbers with a given distribution").
+class AliasTable {
+ public:
+    /// Weights are finite and not negative. Where all are zero the table is empty.
+    explicit AliasTable(std::span<const double> weights);
+
+    bool empty() const { return cells_.empty(); }
+    double total() const { return total_; }  ///< of the weights
+    uint32_t draw(Random& random) const;     ///< of a table that is not empty
+
+ private:
+    struct Cell {
+        float own;  ///< the share of draws that keep this index; the others take `alias`
+        uint32_t alias;
+    };
+    std::vector<Cell> cells_;
+    double total_ = 0;
+};
+
+}  // namespace lucarne::gi::reference
