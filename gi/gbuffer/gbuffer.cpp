@@ -65,7 +65,7 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     target.queues.clear(0);
     cut.bind();
     target.keys.bind(3);
-    target.keys.bind_texels(3, TexelView::one_word);
+    target.keys.bind_texels(3, TexelView::four_words);
     target.ids.bind(4);
     target.queues.bind(5);
     target.texels.bind(6);

@@ -12,8 +12,8 @@ namespace lucarne::gi {
 /// What a camera or a light sees of a cut: one GBufferTexel a pixel and the id of the surfel behind it.
 struct GBuffer {
     uint32_t width = 0, height = 0;
-    Buffer texels;       ///< GBufferTexel[width * height]
-    Buffer ids;          ///< uint[width * height], kNoSurfel where empty
+    Buffer texels;                    ///< GBufferTexel[width * height]
+    Buffer ids;                       ///< uint[width * height], kNoSurfel where empty
     Buffer keys, queues, candidates;  ///< scratch of rasterize()
 };
 

@@ -8,11 +8,12 @@
 namespace lucarne::gi {
 #endif
 
-const uint kLargeQueue = 65535u;  // discs: the least that OpenGL promises of workgroups in x
+const uint kLargeQueue = 65535u;    // discs: the least that OpenGL promises of workgroups in x
 const uint kCandidateGroup = 256u;  // candidates drawn by a workgroup
 
-// Ahead of the ids of the large discs. The numbers of workgroups: large_groups draws their queue, overflow_groups
-// looks through the whole cut for what did not find a place in it, candidate_groups draws the candidates' ids.
+// Ahead of the ids of the large discs. The numbers of workgroups: large_groups draws their queue,
+// overflow_groups looks through the whole cut for what did not find a place in it, candidate_groups draws the
+// candidates' ids.
 struct QueueHeader {
     uint large_groups[3];
     uint overflow_groups[3];

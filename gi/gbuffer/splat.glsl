@@ -10,7 +10,8 @@ layout(std430, binding = 5) buffer Queues {
     QueueHeader queues;
     uint large_ids[];
 };
-layout(binding = 3) uniform usamplerBuffer key_texels;  // the keys again; perhaps not the latest in the first pass
+// The keys again, four a texel; perhaps not the latest in the first pass.
+layout(binding = 3) uniform usamplerBuffer key_texels;
 
 // Discs of a larger radius, in pixels, are drawn by a workgroup each.
 const float kSmallRadius = 8.0;
@@ -23,7 +24,11 @@ uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x)
 
 // Whether it is worth asking for the pixel.
 bool may_take_pixel(vec2 pixel, uint key) {
-    uint held = texelFetch(key_texels, int(pixel_index(pixel))).x;
+    // Four words and a choice take less time on llvmpipe than one: x86 gathers single words slowly.
+    int index = int(pixel_index(pixel));
+    uvec4 four = texelFetch(key_texels, index >> 2);
+    uvec2 two = (index & 2) == 0 ? four.xy : four.zw;
+    uint held = (index & 1) == 0 ? two.x : two.y;
 #ifdef LUCARNE_ID_PASS
     return key == held;
 #else
