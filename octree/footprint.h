@@ -49,7 +49,7 @@ LUCARNE_SHARED_FN float surfel_radius(float own, float floor_area) {
 // The floor at a prefix of `share` (0, 1] of a node's points, from its values at 1, 1/2, 1/4, 1/8: linear in the
 // logarithms between them, inversely proportional below. Where points are left out whose own shares filled the surface
 // (a first value near 0), the floor jumps to about the mean share at once: the second term, measured on random and
-// even patterns, keeps the sum of all areas within a twentieth of the surface.
+// even patterns, keeps the sum of all areas within a twelfth of the surface.
 inline float floor_at_prefix(const float (&floors)[4], float share) {
     const float octaves = -std::log2(share > 1e-6f ? share : 1e-6f);
     if (!(octaves > 0)) return floors[0];
@@ -57,7 +57,7 @@ inline float floor_at_prefix(const float (&floors)[4], float share) {
     const int step = static_cast<int>(octaves);
     const float t = octaves - static_cast<float>(step), a = floors[step], b = floors[step + 1];
     const float even = a > 0 && b > 0 ? a * std::pow(b / a, t) : 0;
-    const float jump = b * std::exp2(t - 1) * (1 - std::pow(1 - t, 16.0f));
+    const float jump = b * std::exp2(t - 1) * (1 - std::pow(1 - t, 10.0f));
     return even > jump ? even : jump;
 }
 }  // namespace lucarne::octree

@@ -14,6 +14,8 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kNearEdges = 4;  ///< of kSiteEdges; the others are spread over the rest of the neighbourhood
+constexpr size_t kRimNeighbours = 16;  ///< asked for in a round, beyond the known ones
+constexpr int kRimRounds = 6;
 constexpr size_t kBorderEdges = 2;  ///< a site, to the nearest points of other chunks
 
 class SurfaceEstimator {
@@ -31,8 +33,9 @@ class SurfaceEstimator {
 
     Result<void> estimate(std::span<const uint32_t> sites, size_t k) {
         return neighbours_.search(sites, k + 1,
-                                  [&](uint32_t site, std::span<const Neighbour> nearest, bool exact) {
-                                      if (exact) visit(site, nearest, k + 1);
+                                  [&](uint32_t site, std::span<const Neighbour> nearest, bool exact,
+                                      const ChunkNeighbours::Surroundings& around) {
+                                      return exact ? visit(site, nearest, k + 1, around) : 0.0;
                                   });
     }
     std::vector<uint32_t> uncertain() const {
@@ -44,6 +47,7 @@ class SurfaceEstimator {
     ChunkSurface take() {
         for (size_t i = 0; i < deviations_.size(); ++i)
             if (deviations_[i] > kPoorDeviation) surface_.normals[i] = glm::vec3(0.0f);
+        std::sort(surface_.apart.begin(), surface_.apart.end());
         auto& border = surface_.border;
         const auto key = [](const BorderEdge& e) { return std::tie(e.site, e.other.chunk, e.other.index); };
         std::sort(border.begin(), border.end(),
@@ -54,23 +58,53 @@ class SurfaceEstimator {
     }
 
  private:
-    void visit(uint32_t site, std::span<const Neighbour> nearest, size_t asked) {
+    /// 0, or the radius that must be known around the site first.
+    double visit(uint32_t site, std::span<const Neighbour> nearest, size_t asked,
+                 const ChunkNeighbours::Surroundings& around) {
         std::array<glm::vec3, kMostSampled> offsets;
         const glm::dvec3 at = neighbours_.position(site);
         for (size_t i = 0; i < nearest.size(); ++i)
             offsets[i] = glm::vec3(neighbours_.position(nearest[i].index) - at);
-        const auto sample = sample_surface(std::span(offsets).first(nearest.size()), area_count_,
-                                           nearest.size() < asked, fitters_.local());
+        auto sample = sample_surface(std::span(offsets).first(nearest.size()), area_count_,
+                                     nearest.size() < asked, fitters_.local());
         if (sample.deviation >= kNoPlane) {  // out in the air, whatever fewer neighbours said
             deviations_[site] = kNoPlane;
             surface_.areas[site] = sample.area;
-            return;
+            return 0;
         }
-        if (!(sample.deviation < deviations_[site])) return;
+        if (!(sample.deviation < deviations_[site])) return 0;
+        if (sample.rim) {
+            if (!around.knows(sample.rim->widest_search())) return sample.rim->widest_search();
+            cut_further(*sample.rim, around);
+            if (sample.area_if_stray && !sample.rim->closed()) {
+                deviations_[site] = kNoPlane;
+                surface_.areas[site] = *sample.area_if_stray;
+                return 0;
+            }
+            sample.area = sample.rim->area_at_rim();
+        }
+        if (sample.area_if_stray) {
+            const std::lock_guard lock(mutex_);
+            surface_.apart.emplace_back(site, *sample.area_if_stray);
+        }
         deviations_[site] = sample.deviation;
         surface_.normals[site] = sample.normal;
         surface_.areas[site] = sample.area;
         connect(site, nearest, offsets);
+        return 0;
+    }
+
+    /// The nearest that a cell wants are often more of the dense patch, each of which cuts off but little: in
+    /// rounds, so that those cut off by others are wanted no longer.
+    void cut_further(ShareCell& cell, const ChunkNeighbours::Surroundings& around) const {
+        std::array<Neighbour, kRimNeighbours> further;
+        for (int round = 0; round < kRimRounds && cell.open(); ++round) {
+            const size_t found = around.nearest(
+                std::min(cell.widest_search(), cell.widest_cut()),
+                [&](const glm::vec3& offset) { return cell.wants(offset); }, further);
+            for (size_t i = 0; i < found; ++i) cell.cut(around.offset(further[i].index));
+            if (found < kRimNeighbours) break;
+        }
     }
 
     void connect(uint32_t site, std::span<const Neighbour> nearest, std::span<const glm::vec3> offsets) {

@@ -151,17 +151,20 @@ bool ChunkNeighbours::reaches_out(uint32_t site, double reach2) const {
 Result<void> ChunkNeighbours::search(std::span<const uint32_t> sites, size_t k, const Visit& visit) {
     assert(k <= kMostNeighbours);
     std::mutex mutex;
-    std::vector<std::pair<uint32_t, double>> pending;  // site, distance of its k-th own neighbour
+    std::vector<std::pair<uint32_t, double>> pending;  // site, radius to be known around it
     parallel_ranges(sites.size(), kGrain, [&](size_t first, size_t last) {
         std::array<Neighbour, kMostNeighbours> nearest;
         std::vector<std::pair<uint32_t, double>> out;
         for (const uint32_t site : sites.subspan(first, last - first)) {
             const size_t found = index_.merge_nearest(sites_[site], std::span(nearest).first(k), 0, 0);
             const double reach2 = found == k ? nearest[k - 1].distance2 : kInfinity;
-            if (reaches_out(site, reach2))
+            if (reaches_out(site, reach2)) {
                 out.emplace_back(site, std::sqrt(reach2));
-            else
-                visit(site, std::span(nearest).first(found), true);
+                continue;
+            }
+            const double needed =
+                visit(site, std::span(nearest).first(found), true, Surroundings(*this, site, 0.0));
+            if (needed > 0) out.emplace_back(site, needed);
         }
         const std::lock_guard lock(mutex);
         pending.insert(pending.end(), out.begin(), out.end());
@@ -208,12 +211,14 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<uint32_t> pending, doubl
                 found = halo_index_.merge_nearest(sites_[site], nearest, found, halo_offset);
                 const double reach = found == k ? std::sqrt(nearest[k - 1].distance2) : kInfinity;
                 const bool exact = complete && (reach <= radius || !reaches_out(site, reach * reach));
-                if (exact || last_try) {
-                    visit(site, nearest.first(found), exact);
-                } else {
+                double needed = reach;
+                if (exact || last_try)
+                    needed = visit(site, nearest.first(found), exact,
+                                   Surroundings(*this, site, last_try ? kInfinity : radius));
+                if (needed > 0) {
                     const std::lock_guard lock(mutex);
                     still.push_back(site);
-                    farthest = std::max(farthest, reach);
+                    farthest = std::max(farthest, needed);
                 }
             }
         });
@@ -223,6 +228,23 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<uint32_t> pending, doubl
         radius = std::min({4 * radius, farthest, widest_halo});
     }
     return {};
+}
+
+bool ChunkNeighbours::Surroundings::knows(double radius) const {
+    return radius <= halo || !of.reaches_out(site, radius * radius);
+}
+
+size_t ChunkNeighbours::Surroundings::nearest(double radius,
+                                              const std::function<bool(const glm::vec3& offset)>& wanted,
+                                              std::span<Neighbour> nearest) const {
+    const glm::dvec3& at = of.sites_[site];
+    const auto search = [&](const PointIndex& index, const std::vector<glm::dvec3>& points, size_t found,
+                            size_t first) {
+        return index.merge_nearest(at, nearest, found, static_cast<uint32_t>(first), radius * radius,
+                                   [&](uint32_t i) { return wanted(glm::vec3(points[i] - at)); });
+    };
+    const size_t found = search(of.index_, of.sites_, 0, 0);
+    return search(of.halo_index_, of.halo_, found, of.sites_.size());
 }
 
 void ChunkNeighbours::drop_indices() {

@@ -36,11 +36,32 @@ class ChunkNeighbours {
     }
     bool is_halo(uint32_t site) const { return site >= sites_.size(); }
     const PointRef& halo_point(uint32_t site) const { return halo_points_[site - sites_.size()]; }
+    /// What can be asked about the surroundings of a site while it is visited.
+    class Surroundings {
+     public:
+        /// Whether all points nearer than `radius` are at hand (or no more can be).
+        bool knows(double radius) const;
+        /// The nearest points within `radius` of the site that `wanted` (asked with their offset) lets
+        /// through, nearest first, into `nearest`; how many there are.
+        size_t nearest(double radius, const std::function<bool(const glm::vec3& offset)>& wanted,
+                       std::span<Neighbour> nearest) const;
+        glm::vec3 offset(uint32_t other) const { return glm::vec3(of.position(other) - of.position(site)); }
+
+     private:
+        friend class ChunkNeighbours;
+        Surroundings(const ChunkNeighbours& neighbours, uint32_t centre, double known)
+            : of(neighbours), site(centre), halo(known) {}
+        const ChunkNeighbours& of;
+        uint32_t site;
+        double halo;  ///< the radius within which the halo holds all points
+    };
     /// Takes the `k` sites nearest to `site`, itself included, nearest first. `exact` is false where the
-    /// surroundings are so empty that searching on was given up: what is known then is handed over.
-    using Visit = std::function<void(uint32_t site, std::span<const Neighbour> nearest, bool exact)>;
-    /// Calls `visit` once for each of `sites`, in parallel and in any order; halo sites are valid inside
-    /// `visit` only. Errors: a chunk that cannot be read.
+    /// surroundings are so empty that searching on was given up: what is known then is handed over. Returns
+    /// 0, or the radius that it must know to go on: then it is called again when that is known.
+    using Visit = std::function<double(uint32_t site, std::span<const Neighbour> nearest, bool exact,
+                                       const Surroundings& around)>;
+    /// Calls `visit` for each of `sites` until it is satisfied, in parallel and in any order; halo sites are
+    /// valid inside `visit` only. Errors: a chunk that cannot be read.
     Result<void> search(std::span<const uint32_t> sites, size_t k, const Visit& visit);
     void drop_indices();  ///< frees what only `search` needs
 

@@ -17,6 +17,9 @@ namespace {
 
 /// A normal seen at a flatter angle than this (sine) does not tell which side the station saw.
 constexpr double kGrazing = 0.05;
+/// Of a silhouette's tangent plane and the rays that graze it (sine): the plane is fitted over some degrees
+/// of a pier.
+constexpr double kSilhouette = 0.1;
 
 /// What is known of one chunk before the components of all are joined.
 struct ChunkEstimate {
@@ -25,22 +28,45 @@ struct ChunkEstimate {
     ChunkOrientation orientation;
 };
 
-/// Which way the stations want each site's normal turned: the first point at the site with a station decides.
-Result<std::vector<int8_t>> toward_stations(const ChunkAccess& chunks, size_t chunk,
-                                            const NormalOptions& options, const ChunkNeighbours& neighbours,
-                                            const ChunkSurface& surface) {
-    std::vector<int8_t> toward(neighbours.site_count(), 0);
-    if (options.stations.empty()) return toward;
+/// A point that stands apart in the plane of its neighbours, a plane that holds its station too, is no sparse
+/// surface: mixed pixels behind a silhouette lie on the rays that graze it, a curtain in the silhouette's
+/// tangent plane.
+void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    for (const auto& [site, area] : surface.apart) {
+        const glm::dvec3& ray = ray_of_site[site];
+        const double facing = std::abs(glm::dot(glm::dvec3(surface.normals[site]), ray));
+        if (glm::length(ray) > 0 && facing <= kSilhouette * glm::length(ray)) {
+            surface.normals[site] = glm::vec3(0.0f);
+            surface.areas[site] = area;
+        }
+    }
+}
+
+/// From each site to the station that saw it: the first point at the site with a station decides; zero where
+/// none is known.
+Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkAccess& chunks, size_t chunk,
+                                                 const NormalOptions& options,
+                                                 const ChunkNeighbours& neighbours) {
+    std::vector<glm::dvec3> rays(options.stations.empty() ? 0 : neighbours.site_count(), glm::dvec3(0.0));
+    if (rays.empty()) return rays;
     LUCARNE_ASSIGN(const auto stations, chunks.stations(chunk));
-    for (uint32_t site = 0; site < toward.size(); ++site)
+    for (uint32_t site = 0; site < rays.size(); ++site)
         for (const uint32_t point : neighbours.members(site)) {
             const int32_t station = point < stations.size() ? stations[point] : -1;
             if (station < 0 || static_cast<size_t>(station) >= options.stations.size()) continue;
-            const glm::dvec3 ray = options.stations[static_cast<size_t>(station)] - neighbours.position(site);
-            const double facing = glm::dot(glm::dvec3(surface.normals[site]), ray);
-            if (std::abs(facing) > kGrazing * glm::length(ray)) toward[site] = facing > 0 ? 1 : -1;
+            rays[site] = options.stations[static_cast<size_t>(station)] - neighbours.position(site);
             break;
         }
+    return rays;
+}
+
+/// The side of each site's normal that its station saw: 1, -1, or 0 where that is unknown.
+std::vector<int8_t> toward_stations(const ChunkSurface& surface, std::span<const glm::dvec3> rays) {
+    std::vector<int8_t> toward(surface.normals.size(), 0);
+    for (size_t site = 0; site < rays.size(); ++site) {
+        const double facing = glm::dot(glm::dvec3(surface.normals[site]), rays[site]);
+        if (std::abs(facing) > kGrazing * glm::length(rays[site])) toward[site] = facing > 0 ? 1 : -1;
+    }
     return toward;
 }
 
@@ -48,11 +74,11 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(auto neighbours, ChunkNeighbours::load(cache, chunk));
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
+    LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache.chunks(), chunk, options, neighbours));
+    if (!rays.empty()) drop_curtains(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {
-        LUCARNE_ASSIGN(const auto toward,
-                       toward_stations(cache.chunks(), chunk, options, neighbours, surface));
-        orientation = orient_chunk(neighbours, surface, toward);
+        orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
     } else {
         std::fill(surface.normals.begin(), surface.normals.end(), glm::vec3(0.0f));
         orientation.components.assign(neighbours.site_count(), 0);

@@ -10,14 +10,17 @@ namespace {
 /// A FLANN result set over a caller's sorted array, so that a second index can go on where the first ended.
 class MergingResult final : public flann::ResultSet<double> {
  public:
-    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset)
-        : nearest_(nearest), found_(found), offset_(offset) {
+    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset,
+                  double limit2 = std::numeric_limits<double>::max(),
+                  const PointIndex::Wanted* wanted = nullptr)
+        : nearest_(nearest), found_(found), offset_(offset), limit2_(limit2), wanted_(wanted) {
         update_worst();
     }
     bool full() const override { return found_ == nearest_.size(); }
     double worstDist() const override { return worst_; }
     void addPoint(double distance2, size_t index) override {
         if (!(distance2 < worst_)) return;
+        if (wanted_ && !(*wanted_)(static_cast<uint32_t>(index))) return;
         if (!full()) ++found_;
         size_t at = found_ - 1;
         for (; at > 0 && nearest_[at - 1].distance2 > distance2; --at) nearest_[at] = nearest_[at - 1];
@@ -27,11 +30,12 @@ class MergingResult final : public flann::ResultSet<double> {
     size_t found() const { return found_; }
 
  private:
-    void update_worst() { worst_ = full() ? nearest_.back().distance2 : std::numeric_limits<double>::max(); }
+    void update_worst() { worst_ = full() ? nearest_.back().distance2 : limit2_; }
     std::span<Neighbour> nearest_;
     size_t found_;
     uint32_t offset_;
-    double worst_ = 0;
+    double limit2_, worst_ = 0;
+    const PointIndex::Wanted* wanted_;
 };
 
 flann::Matrix<double> matrix_of(std::span<const glm::dvec3> points) {
@@ -59,6 +63,14 @@ size_t PointIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> n
                                  uint32_t offset) const {
     if (!tree_ || nearest.empty()) return found;
     MergingResult result(nearest, found, offset);
+    tree_->index.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    return result.found();
+}
+
+size_t PointIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
+                                 uint32_t offset, double limit2, const Wanted& wanted) const {
+    if (!tree_ || nearest.empty()) return found;
+    MergingResult result(nearest, found, offset, limit2, &wanted);
     tree_->index.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     return result.found();
 }

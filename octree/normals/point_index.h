@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,6 +30,11 @@ class PointIndex {
     /// an index of the result is the point's plus `offset`. Returns how many entries are filled now.
     size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
                          uint32_t offset) const;
+    /// The same of only those points nearer than the root of `limit2` that `wanted` (asked with the point's
+    /// index) lets through.
+    using Wanted = std::function<bool(uint32_t index)>;
+    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found, uint32_t offset,
+                         double limit2, const Wanted& wanted) const;
 
     /// Squares of larger coordinates would overflow inside the search.
     static constexpr double kLargestCoordinate = 1e150;

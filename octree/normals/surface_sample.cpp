@@ -16,9 +16,6 @@ constexpr size_t kLeastLayer = 6;  ///< fewer points say nothing about a layer o
 /// points once in 2^16), and by this share of the spacing: closer ones are the noise, rounding or
 /// registration of one.
 constexpr float kLayerGap = 0.4f, kLayerSpacing = 0.5f;
-/// Neighbours near the poles of the ball have next to no disc; this share of d^2 bounds their weight.
-constexpr double kLeastDisc = 0.1;
-constexpr double kThick = 0.4;  ///< deviation of the heights over d, from which noise fills the ball
 /// The nearest of 16 neighbours in a plane is at this share of the farthest once in 2^18 (Poisson); a point
 /// out in the air sees all of a surface from afar and has no share of it.
 constexpr float kIsolated = 0.75f;
@@ -28,6 +25,11 @@ constexpr float kIsolated = 0.75f;
 /// most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
 constexpr float kSparser = 7.0f;  // not one of 200,000 points of a random pattern
+/// But a sparse point beside a dense patch that lies in the patch's plane, within this share of its distance
+/// or this many deviations of the patch's own heights, goes on with its surface.
+constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
+/// ... unless it is farther from the patch than this many of its spacings: too far for its plane to tell.
+constexpr float kMostApart = 10.0f;
 /// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
@@ -110,17 +112,22 @@ Layer own_layer(std::span<const float> heights, float spacing) {
     return own_is_lower ? Layer{low, below} : Layer{above, high};
 }
 
-double area_of(std::span<const glm::vec3> offsets, const glm::vec3& normal, const Layer& layer) {
-    const double reach2 = glm::dot(offsets.back(), offsets.back());
-    double inverse = 0;  // sum of 1 / disc
-    for (const auto& offset : offsets.subspan(1)) {
-        const float height = glm::dot(offset, normal);
-        // Where the farthest neighbour is of another layer, the own layer's next one would be just beyond.
-        if (!layer.holds(height) && &offset != &offsets.back()) continue;
-        const double lift = layer.holds(height) ? static_cast<double>(height) * height : 0.0;
-        inverse += 1 / std::max(reach2 - lift, kLeastDisc * reach2);
-    }
-    return std::numbers::pi / inverse;
+bool lies_in_plane_of_others(std::span<const glm::vec3> near, PlaneFitter& fitter) {
+    const auto others = near.subspan(1);
+    const Plane plane = fitter.fit(others);
+    if (deviation_of(plane, others.size()) > kGoodDeviation) return false;
+    double height = 0;
+    for (const auto& other : others) height += glm::dot(glm::dvec3(other), plane.normal);
+    height /= static_cast<double>(others.size());
+    return std::abs(height) <= kInPlane * glm::length(near[1]) + kInNoise * std::sqrt(plane.variances[0]);
+}
+
+ShareCell cell_of(std::span<const glm::vec3> offsets, std::span<const float> heights, const glm::vec3& normal,
+                  const Layer& layer) {
+    ShareCell cell(normal, glm::length(offsets.back()), offsets.size() - 1);
+    for (size_t i = 1; i < offsets.size(); ++i)
+        if (layer.holds(heights[i])) cell.cut(offsets[i]);
+    return cell;
 }
 
 }  // namespace
@@ -132,9 +139,11 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     const auto near = offsets.first(std::min(offsets.size(), area_count));
     const float reach2 = glm::dot(near.back(), near.back());
     const bool sees_from_afar = glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2;
-    if (!whole_cloud && near.size() > kTheirRank + 1 && (sees_from_afar || stands_apart(offsets))) {
+    if (!whole_cloud && near.size() > kOwnRank && (sees_from_afar || stands_apart(offsets))) {
         sample.area = share_of_neighbours(offsets);
-        return sample;
+        const bool near_enough = glm::dot(near[1], near[1]) < kMostApart * kMostApart * sample.area;
+        if (!near_enough || !lies_in_plane_of_others(near, fitter)) return sample;
+        sample.area_if_stray = sample.area;
     }
 
     Plane plane = fitter.fit(offsets);
@@ -147,17 +156,18 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     size_t used = 0;
     for (size_t i = 0; i < offsets.size(); ++i)
         if (layer.holds(heights[i])) own[used++] = offsets[i];
-    const glm::vec3 first_normal(plane.normal);
     if (used < offsets.size()) plane = fitter.fit(std::span(own).first(used));
 
     sample.normal = glm::vec3(plane.normal);
     sample.deviation = deviation_of(plane, used);
-    // Noise that fills the ball leaves no disc to measure: then all neighbours count, not only the nearest.
-    const bool thick = plane.variances[0] > kThick * kThick * reach2;
-    if (sample.deviation < kPoorDeviation)
-        sample.area = static_cast<float>(area_of(thick ? offsets : near, first_normal, layer));
-    else  // a blob has no disc either, and a stray point must not get that of the empty space around it
+    if (!(sample.deviation < kPoorDeviation)) {
+        // A blob has no disc, and a stray point must not get that of the empty space around it.
         sample.area = std::min(spacing * spacing, share_of_neighbours(offsets));
+        return sample;
+    }
+    ShareCell cell = cell_of(offsets, std::span(heights).first(offsets.size()), sample.normal, layer);
+    sample.area = cell.area();
+    if (cell.open()) sample.rim = cell;
     return sample;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
 
 #include "octree/normals/plane.h"
+#include "octree/normals/surface_share.h"
 
 namespace lucarne::octree {
 
@@ -15,7 +17,13 @@ inline constexpr float kNoPlane = 1e9f;
 struct SurfaceSample {
     glm::vec3 normal{0.0f};      ///< unit, sign arbitrary; zero where there is no plane at all
     float deviation = kNoPlane;  ///< standard error of the normal, radians
-    float area = 0.0f;           ///< the location's share of the surface (in the air: its neighbours'); 0: unknown
+    float area = 0.0f;  ///< the location's share of the surface (in the air: its neighbours'); 0: unknown
+    /// At the rim of a sheet or of a patch denser than what is around it: the known neighbours leave the cell
+    /// open. Its area_at_rim() counts, once cut by what else it wants.
+    std::optional<ShareCell> rim;
+    /// The point stands apart from its neighbours, in their plane: a sparse point beside a dense patch if the
+    /// surface goes on beyond it, on all sides that are open; else a stray one, and this is its share.
+    std::optional<float> area_if_stray;
 };
 
 /// A normal whose standard error is larger is asked from more neighbours (3 degrees: what millimetres of
@@ -26,20 +34,15 @@ inline constexpr float kGoodDeviation = 0.052f;
 inline constexpr float kPoorDeviation = 0.26f;
 
 /// From the offsets to the point itself (zero) and to its neighbours, nearest first, at most kMostSampled in
-/// all. The area is taken from the first `area_count` of them, however many the normal is from, so that
-/// surfaces that need many are not favoured. `whole_cloud`: there are no further points, so that distances
-/// say nothing about isolation.
+/// all; `area_count` is the usual number of them, whose reach tells the spacing. `whole_cloud`: there are no
+/// further points, so that distances say nothing about isolation.
 ///  - The plane is PCL's. Where the neighbourhood falls apart into layers along the normal (both faces of a
 ///  thin
 ///    wall), only the point's own layer is used.
 ///  - The standard error of the normal is that of an eigenvector (Anderson 1963, theorem 1): with eigenvalues
 ///    l0 <= l1 <= l2 over n points, var = sum over i = 1, 2 of l0 li / (n (li - l0)^2), which grows without
 ///    bound for lines (l1 -> l0) and blobs (l2 -> l0) alike.
-///  - The area of a Poisson process in the plane follows from the distance d of the k-th neighbour: pi d^2 /
-///  k, which
-///    is unbiased (pi d^2 times the density is Gamma(k) distributed: Thompson 1956). Where noise lifts
-///    neighbours by h along the normal, the ball cuts a smaller disc out of their layer, and each counts with
-///    the inverse of it (Horvitz, Thompson 1952): area = pi / sum over neighbours of 1 / (d^2 - h^2).
+///  - The area is that of the point's cell among the neighbours in its layer (surface_share.h).
 SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_count, bool whole_cloud,
                              PlaneFitter& fitter);
 inline constexpr size_t kMostSampled = 128;
