@@ -12,8 +12,7 @@ namespace {
 
 constexpr uint64_t kMaxChunkPoints = 1'000'000;  // larger chunks sort slower and share out worse
 constexpr uint64_t kMinMemory = uint64_t{16} << 20;
-constexpr uint64_t kMinMemoryNormals = uint64_t{64}
-                                       << 20;  // measured: 37 MiB held where 32 are given, 51 where 64 are
+constexpr uint64_t kMinMemoryNormals = uint64_t{32} << 20;
 constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, chunk number
 /// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
 /// samples.

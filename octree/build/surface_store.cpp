@@ -1,5 +1,6 @@
 #include "octree/build/surface_store.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 
@@ -8,7 +9,8 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr float kAreaBins = 4;  ///< an octave
+constexpr uint64_t kPieceBytes = uint64_t{1} << 18;  ///< of records read at a time
+constexpr float kAreaBins = 4;                       ///< an octave
 /// A few points that hang in the air together have no plane, and a share that is that of the empty space
 /// around them: no picture wants it larger than the usual surfel.
 constexpr float kMostStray = 0.5f;
@@ -35,35 +37,46 @@ class Access final : public ChunkAccess {
     }
 
     Result<std::vector<glm::dvec3>> positions(size_t chunk) const override {
-        LUCARNE_ASSIGN(const auto records, store_.load(chunk, 0, point_count(chunk)));
         std::vector<glm::dvec3> positions;
         positions.reserve(point_count(chunk));
-        for (size_t at = 0; at < records.size(); at += store_.schema().stride)
-            positions.push_back(io::position_of(store_.schema(), &records[at]));
+        LUCARNE_TRY(for_each_record(chunk, [&](const std::byte* record) {
+            positions.push_back(io::position_of(store_.schema(), record));
+        }));
         return positions;
     }
 
     /// By point_source_id; the only station of an input saw all of its points.
     Result<std::vector<int32_t>> stations(size_t chunk) const override {
-        std::vector<int32_t> result(point_count(chunk), -1);
-        if (stations_.empty()) return result;
-        LUCARNE_ASSIGN(const auto records, store_.load(chunk, 0, point_count(chunk)));
-        const auto& schema = store_.schema();
-        const auto* scan = by_id_.size() > 1 ? schema.find(io::names::scan) : nullptr;
-        const auto* source = schema.find(io::names::point_source_id);
-        for (size_t i = 0; i < result.size(); ++i) {
-            const std::byte* record = &records[i * schema.stride];
+        if (stations_.empty()) return std::vector<int32_t>(point_count(chunk), -1);
+        std::vector<int32_t> result;
+        result.reserve(point_count(chunk));
+        const auto* scan = by_id_.size() > 1 ? store_.schema().find(io::names::scan) : nullptr;
+        const auto* source = store_.schema().find(io::names::point_source_id);
+        LUCARNE_TRY(for_each_record(chunk, [&](const std::byte* record) {
+            result.push_back(-1);
             const auto& ids = by_id_[scan ? io::load<uint16_t>(record + scan->offset) : 0];
-            if (ids.size() == 1) result[i] = ids.begin()->second;
-            if (ids.size() < 2 || !source) continue;
+            if (ids.size() == 1) result.back() = ids.begin()->second;
+            if (ids.size() < 2 || !source) return;
             const auto found =
                 ids.find(static_cast<uint32_t>(io::scalar_at(source->type, record + source->offset)));
-            if (found != ids.end()) result[i] = found->second;
-        }
+            if (found != ids.end()) result.back() = found->second;
+        }));
         return result;
     }
 
  private:
+    /// In pieces: records may be many times as wide as what is wanted of them.
+    template <typename Use>
+    Result<void> for_each_record(size_t chunk, const Use& use) const {
+        const size_t stride = store_.schema().stride;
+        const uint64_t count = point_count(chunk), piece = std::max<uint64_t>(1, kPieceBytes / stride);
+        for (uint64_t first = 0; first < count; first += piece) {
+            LUCARNE_ASSIGN(const auto records, store_.load(chunk, first, std::min(piece, count - first)));
+            for (size_t at = 0; at < records.size(); at += stride) use(&records[at]);
+        }
+        return {};
+    }
+
     const ChunkStore& store_;
     std::vector<std::map<uint32_t, int32_t>> by_id_;  ///< of each scan: station id to index
     std::vector<glm::dvec3> stations_;

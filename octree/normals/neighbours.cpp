@@ -27,6 +27,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidestHalo = 4.0;
 /// A halo holds at most this many points per own site, but kLeastHalo anyway.
 constexpr size_t kHaloShare = 2, kLeastHalo = size_t{1} << 18;
+/// What a halo point takes: found, sorted, and in a tree. The fewest there is always room for: 2 MiB.
+constexpr uint64_t kHaloPointBytes = 128;
+constexpr uint64_t kFewestHalo = 1 << 14;
 constexpr int kMostNarrowings = 6;  ///< tries of a halo a quarter as wide when there are more
 
 double distance2(const Box& a, const Box& b) {
@@ -88,8 +91,8 @@ class CellSet {
 
 }  // namespace
 
-Result<ChunkNeighbours> ChunkNeighbours::load(ChunkCache& cache, size_t chunk) {
-    ChunkNeighbours loaded(cache, chunk);
+Result<ChunkNeighbours> ChunkNeighbours::load(ChunkCache& cache, size_t chunk, uint64_t halo_bytes) {
+    ChunkNeighbours loaded(cache, chunk, halo_bytes);
     LUCARNE_ASSIGN(const auto points, cache.positions(chunk));
     if (points->size() >= kMostChunkPoints) return failed("normals", "a chunk of more than 2^29 points");
     loaded.sort_sites(*points);
@@ -266,7 +269,8 @@ Result<bool> ChunkNeighbours::load_halo(std::span<const uint32_t> pending, doubl
     CellSet cells(region, radius);
     for (const auto& p : centres) cells.add_around(p);
 
-    const size_t most = std::max(kLeastHalo, kHaloShare * sites_.size());
+    const size_t most = std::min<uint64_t>(std::max(kLeastHalo, kHaloShare * sites_.size()),
+                                           std::max(kFewestHalo, halo_bytes_ / kHaloPointBytes));
     std::vector<std::pair<glm::dvec3, PointRef>> found;
     for (const Around& other : around_) {
         if (other.distance2 > radius * radius) break;

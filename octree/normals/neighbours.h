@@ -23,7 +23,8 @@ struct PointRef {
 /// work on consecutive sites stays in the cache. Site numbers from site_count() on are of the halo.
 class ChunkNeighbours {
  public:
-    static Result<ChunkNeighbours> load(ChunkCache& cache, size_t chunk);
+    /// `halo_bytes` bounds what is taken of the chunks around.
+    static Result<ChunkNeighbours> load(ChunkCache& cache, size_t chunk, uint64_t halo_bytes);
 
     size_t site_count() const { return sites_.size(); }
     size_t point_count() const { return order_.size(); }
@@ -71,7 +72,8 @@ class ChunkNeighbours {
         Box bounds;
         double distance2;  ///< of the two boxes
     };
-    ChunkNeighbours(ChunkCache& cache, size_t chunk) : cache_(&cache), chunk_(chunk) {}
+    ChunkNeighbours(ChunkCache& cache, size_t chunk, uint64_t halo_bytes)
+        : cache_(&cache), chunk_(chunk), halo_bytes_(halo_bytes) {}
     void sort_sites(const std::vector<glm::dvec3>& points);
     void find_around();
     bool reaches_out(uint32_t site, double distance2) const;
@@ -82,6 +84,7 @@ class ChunkNeighbours {
 
     ChunkCache* cache_;
     size_t chunk_;
+    uint64_t halo_bytes_;
     Box box_;
     std::vector<glm::dvec3> sites_;
     std::vector<uint32_t> order_, first_;  ///< points by site; where each site's begin

@@ -21,6 +21,9 @@ constexpr double kGrazing = 0.05;
 /// of a pier.
 constexpr double kSilhouette = 0.1;
 
+/// A halo's share of the memory: two chunks are worked on at a time where memory is short.
+constexpr uint64_t kHaloMemory = 8;
+
 /// What is known of one chunk before the components of all are joined.
 struct ChunkEstimate {
     ChunkNeighbours neighbours;
@@ -71,7 +74,7 @@ std::vector<int8_t> toward_stations(const ChunkSurface& surface, std::span<const
 }
 
 Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const NormalOptions& options) {
-    LUCARNE_ASSIGN(auto neighbours, ChunkNeighbours::load(cache, chunk));
+    LUCARNE_ASSIGN(auto neighbours, ChunkNeighbours::load(cache, chunk, options.memory / kHaloMemory));
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache.chunks(), chunk, options, neighbours));
@@ -125,10 +128,10 @@ Result<OrientationSigns> estimate_normals(
         return bad_arguments("normals", fmt::format("{} neighbours; must be 3 to {}", options.neighbours,
                                                     kMostNormalNeighbours));
     const ThreadLimit threads(options.threads);
-    ChunkCache cache(chunks, options.memory / 4);
+    ChunkCache cache(chunks, options.memory / 8);
     OrientationMerger merger(chunks.chunk_count());
     for (size_t first = 0, last; first < chunks.chunk_count(); first = last) {
-        last = wave_end(chunks, first, options.memory - options.memory / 4);
+        last = wave_end(chunks, first, options.memory / 2);
         std::vector<std::optional<ChunkEstimate>> wave(last - first);
         FirstError error;
         tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {

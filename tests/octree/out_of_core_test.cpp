@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -55,13 +56,14 @@ uint64_t peak_resident() {
 TEST(OutOfCore, DISABLED_BuildAndWriteDownThePeak) {
     const char* points = std::getenv("LUCARNE_TEST_POINTS");
     const char* output = std::getenv("LUCARNE_TEST_OUTPUT");
+    const char* memory = std::getenv("LUCARNE_TEST_NORMALS_MEMORY");
     if (!points || !output) GTEST_SKIP() << "run by the test below";
     const auto source = rooms(std::stoull(points));
     BuildOptions options;
     options.inputs = {&source};
     options.output = output;
-    options.normals = NormalsMode::none;
-    options.memory = kMemory;
+    options.normals = memory ? NormalsMode::estimate : NormalsMode::none;
+    options.memory = memory ? std::stoull(memory) : kMemory;
     const auto report = build_cache(options);
     ASSERT_TRUE(report) << report.error().line();
     std::ofstream(std::string(output) + ".peak") << peak_resident() << " " << report->chunks;
@@ -108,6 +110,27 @@ TEST(OutOfCore, StaysUnderTheMemoryCapForAHundredTimesAsMuchInput) {
     const auto cache = open_cache(folder / "large.luc");
     ASSERT_TRUE(cache) << cache.error().line();
     EXPECT_EQ((*cache)->header().points, points);
+}
+
+TEST(OutOfCore, StaysUnderTheMemoryCapWithNormals) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "AddressSanitizer's own memory hides the program's";
+#endif
+    const test::TempFolder folder;
+    const uint64_t points = 2'000'000;
+    for (const uint64_t memory : {uint64_t{32} << 20, uint64_t{64} << 20}) {
+        ::setenv("LUCARNE_TEST_NORMALS_MEMORY", std::to_string(memory).c_str(), 1);
+        const Measured base = build_in_child(folder / fmt::format("tiny-{}.luc", memory), 1000);
+        const Measured full = build_in_child(folder / fmt::format("large-{}.luc", memory), points);
+        ::unsetenv("LUCARNE_TEST_NORMALS_MEMORY");
+        ASSERT_GT(base.peak, 0u);
+        const uint64_t held = full.peak - std::min(full.peak, base.peak);
+        std::printf("%s of points in %lu chunks: %s resident, %s of it for an empty process; the cap is %s\n",
+                    bytes_text(points * 80).c_str(), full.chunks, bytes_text(full.peak).c_str(),
+                    bytes_text(base.peak).c_str(), bytes_text(memory).c_str());
+        EXPECT_LE(held, memory + kSlack);
+        EXPECT_GT(full.chunks, 10u);
+    }
 }
 
 }  // namespace

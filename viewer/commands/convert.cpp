@@ -123,7 +123,7 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->default_str("auto");
     command
         ->add_option("--memory", options->memory,
-                     "Cap on memory, however large the input is (64M or more; 16M without normals)")
+                     "Cap on memory, however large the input is (32M or more; 16M without normals)")
         ->capture_default_str()
         ->type_name("BYTES");
     command->add_option("--threads", options->build.threads, "0: all cores")
