@@ -43,6 +43,10 @@ struct FrameCuts {
     const DeviceCut* light = nullptr;
 };
 
+struct Bounds {
+    glm::vec3 min{0.0f}, max{0.0f};
+};
+
 /// One picture to be lit. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused), row 0 on top; the engine
 /// writes all of it: direct and indirect light, emission, background where the G-buffer is empty.
 struct Frame {
@@ -59,6 +63,7 @@ struct Frame {
     Buffer& radiance;
     PassTimes& times;
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
+    Bounds bounds{};                                 ///< of the whole cloud, m
     Progress* progress = nullptr;                    ///< of engines that report it; or none
 };
 

@@ -214,6 +214,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
         cuts.light_views.push_back(&light_views[i].drawn);
         lights.push_back(device_light(scene.lights[i], local));
     }
+    const auto& header = source->header();
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials) materials.push_back(device_material(material));
     gi::Frame frame{device,
@@ -229,6 +230,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                     sample,
                     times,
                     scene.environment,
+                    {local.to_local(header.min), local.to_local(header.max)},
                     request.progress};
     LUCARNE_TRY(engine->prepare(frame));
     return engine->render(frame);

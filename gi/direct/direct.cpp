@@ -15,6 +15,7 @@ class DirectEngine : public Engine {
         if (frame.cuts.light_views.size() < frame.lights.size())
             return failed("direct", "there are fewer light views than lights");
         warn_of_lights_left_out(frame, "direct", said_);
+        LUCARNE_TRY(upload_sky(frame, sky_));
         return upload_materials(frame.device, frame.materials, materials_);
     }
     Result<void> render(Frame& frame) override;
@@ -22,8 +23,9 @@ class DirectEngine : public Engine {
 
  private:
     Buffer materials_;
-    std::string said_;       // which lights are left out
-    GBuffer light_gbuffer_;  // one light's after another
+    std::string said_;  // which lights are left out
+    Sky sky_;
+    GBuffer light_gbuffer_;  // of one light's view after another
 };
 
 Result<void> DirectEngine::render(Frame& frame) {
@@ -32,17 +34,14 @@ Result<void> DirectEngine::render(Frame& frame) {
         return {};
     }
     frame.times.begin("emission");
-    LUCARNE_TRY(add_own_light(frame, materials_, false));
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
     frame.times.end();
-    for (size_t i = 0; i < frame.lights.size(); ++i) {
-        const Light& spot = frame.lights[i];
-        if (!casts_shadow_map(spot)) continue;
+    for (const LightView& from : light_views(frame)) {
         frame.times.begin("light G-buffer");
-        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
-                              spot_view(spot, frame.settings.light_resolution), light_gbuffer_));
+        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[from.light], from.view, light_gbuffer_));
         frame.times.end();
         frame.times.begin("direct light");
-        LUCARNE_TRY(add_spot_light(frame, materials_, spot, light_gbuffer_));
+        LUCARNE_TRY(add_light(frame, materials_, from, light_gbuffer_));
         frame.times.end();
     }
     return {};

@@ -1,7 +1,5 @@
 #include "gi/gbuffer/direct_light.h"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "gi/gbuffer/uniforms.h"
@@ -10,7 +8,7 @@
 namespace lucarne::gi {
 namespace {
 
-enum Binding : uint32_t { kCameraTexels = 3, kLightTexels = 4, kMaterials = 5, kRadiance = 6 };
+enum Binding : uint32_t { kCameraTexels = 3, kLightTexels = 4, kMaterials = 5, kRadiance = 6, kSky = 7 };
 
 }  // namespace
 
@@ -26,42 +24,62 @@ Result<void> upload_materials(Device& device, const std::vector<Material>& mater
     return {};
 }
 
-Result<void> add_own_light(Frame& frame, const Buffer& materials, bool add) {
+Result<void> upload_sky(const Frame& frame, Sky& sky) {
+    const std::vector<glm::vec3> plain = {frame.background};
+    const auto& texels = frame.environment ? frame.environment->texels : plain;
+    if (frame.environment && frame.environment == sky.uploaded) return {};
+    if (sky.texels.bytes() != texels.size() * sizeof(glm::vec3)) {
+        sky.texels = Buffer();
+        LUCARNE_ASSIGN(sky.texels, frame.device.buffer(texels.size() * sizeof(glm::vec3), "environment"));
+    }
+    sky.texels.upload_all(texels);
+    sky.uploaded = frame.environment;
+    return {};
+}
+
+Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
     LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/own_light.comp"));
     frame.gbuffer.texels.bind(kCameraTexels);
     materials.bind(kMaterials);
     frame.radiance.bind(kRadiance);
+    sky.texels.bind(kSky);
     const uint32_t pixels = frame.gbuffer.width * frame.gbuffer.height;
-    program->set("pixels", pixels);
+    set(*program, "camera", frame.camera);
     program->set("add", add ? 1u : 0u);
-    program->set_block("background",
-                       std::array<float, 3>{frame.background.x, frame.background.y, frame.background.z});
+    program->set("sky_width", frame.environment ? frame.environment->width : 1u);
+    program->set("sky_height", frame.environment ? frame.environment->height : 1u);
+    program->set("sky_rotation", frame.environment ? frame.environment->rotation : 0.0f);
     program->dispatch(pixels);
     return {};
 }
 
 void warn_of_lights_left_out(const Frame& frame, std::string_view engine, std::string& said) {
-    static constexpr const char* kNames[] = {"spot", "point light", "directional light", "rectangle", "disc"};
+    static constexpr const char* kNames[] = {"", "", "the width of a directional light", "a rectangle",
+                                             "a disc"};
     std::string names;
+    const auto add = [&](std::string_view name) {
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    };
     for (const Light& light : frame.lights)
-        if (!casts_shadow_map(light))
-            names += fmt::format("{}a {}", names.empty() ? "" : ", ", kNames[light.kind]);
-    if (frame.environment) names += fmt::format("{}the environment", names.empty() ? "" : ", ");
+        if (!casts_shadow_map(light) || (light.kind == kDirectionalLight && light.direction.w > 0))
+            add(kNames[light.kind]);
+    if (frame.environment) add("the light of the environment");
     if (names != said && !names.empty())
         log::warn("{}: left out, since no shadow map can hold it: {}; --engine reference has it all", engine,
                   names);
     said = names;
 }
 
-Result<void> add_spot_light(Frame& frame, const Buffer& materials, const Light& spot, const GBuffer& seen) {
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/spot_light.comp"));
+Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/light.comp"));
     frame.gbuffer.texels.bind(kCameraTexels);
     seen.texels.bind(kLightTexels);
     materials.bind(kMaterials);
     frame.radiance.bind(kRadiance);
     set(*program, "camera", frame.camera);
-    set(*program, "light_view", spot_view(spot, seen.width));
-    set(*program, "spot", spot);
+    set(*program, "light_view", from.view);
+    set(*program, "light", frame.lights[from.light]);
+    program->set("face", from.face);
     program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
     return {};
 }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gi/engine.h"
+#include "gi/gbuffer/light_view.h"
 
 namespace lucarne::gi {
 
@@ -14,19 +16,22 @@ namespace lucarne::gi {
 /// A white diffuse material where there is none.
 Result<void> upload_materials(Device& device, const std::vector<Material>& materials, Buffer& target);
 
+/// What the camera sees where nothing is, on the device.
+struct Sky {
+    Buffer texels;  ///< three floats each
+    std::shared_ptr<const Environment> uploaded;
+};
+Result<void> upload_sky(const Frame& frame, Sky& sky);
+
 /// Emission and background, added to the picture or, with `add` false, in the place of what it held.
-Result<void> add_own_light(Frame& frame, const Buffer& materials, bool add);
+Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add);
 
-/// Whether add_spot_light can draw it.
-inline bool casts_shadow_map(const Light& light) {
-    return light.kind == kSpotLight;
-}
-
-/// Says once, in the name of `engine`, which of the frame's lights it leaves out; `said` remembers.
+/// Says once, in the name of `engine`, which of the frame's lights leave no shadow map and are left out;
+/// `said` remembers.
 void warn_of_lights_left_out(const Frame& frame, std::string_view engine, std::string& said);
 
-/// Adds the spot's light after one reflection: BRDF * I cos / d^2 * visibility. `seen` is what rasterize()
-/// drew from the light with spot_view(): it serves as the shadow map.
-Result<void> add_spot_light(Frame& frame, const Buffer& materials, const Light& spot, const GBuffer& seen);
+/// Adds a light after one reflection, as far as one of its views shows it: BRDF * E * visibility. `seen` is
+/// what rasterize() drew of that view: it serves as the shadow map.
+Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen);
 
 }  // namespace lucarne::gi

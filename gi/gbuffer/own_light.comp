@@ -1,20 +1,32 @@
 // What reaches the eye without being reflected: emission of surfaces, and the background where there is none.
 layout(local_size_x = 64) in;
+#include "gi/shared/environment.h"
 #include "gi/shared/gbuffer.glsl"
 #include "gi/shared/material.h"
 
 layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]; };
 layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
-uniform uint pixels;
-uniform vec3 background;
+layout(std430, binding = 7) readonly buffer Sky { float sky[]; };  // r, g, b of each texel
+uniform CameraView camera;
+uniform uint sky_width;
+uniform uint sky_height;
+uniform float sky_rotation;
 uniform uint add;  // 0: in the place of what the picture held
+
+vec3 background(uint at) {
+    vec3 ray = view_ray(camera, vec2(at % camera.width, at / camera.width) + 0.5);
+    uvec2 texel = uvec2(environment_place(normalize(ray), sky_rotation) * vec2(sky_width, sky_height));
+    texel = min(texel, uvec2(sky_width, sky_height) - 1u);
+    uint first = 3u * (texel.y * sky_width + texel.x);
+    return vec3(sky[first], sky[first + 1u], sky[first + 2u]);
+}
 
 void main() {
     uint at = gl_GlobalInvocationID.x;
-    if (at >= pixels) return;
+    if (at >= camera.width * camera.height) return;
     GBufferTexel texel = texels[at];
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);
-    vec3 light = texel.depth > 0.0 ? materials[material].emission.xyz : background;
+    vec3 light = texel.depth > 0.0 ? materials[material].emission.xyz : background(at);
     radiance[at] = vec4(add != 0u ? radiance[at].rgb + light : light, 1.0);
 }

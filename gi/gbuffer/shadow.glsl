@@ -1,4 +1,4 @@
-// Whether a spot sees a point: a light G-buffer read as a shadow map.
+// Whether a light's view (gi/gbuffer/light_view.h) sees a point: its G-buffer read as a shadow map.
 #include "gi/shared/gbuffer.glsl"
 
 layout(std430, binding = 4) readonly buffer LightTexels { GBufferTexel light_texels[]; };

@@ -44,6 +44,14 @@ LUCARNE_FN vec3 light_intensity(Light light, vec3 away) {
     return strength * (t * t * (3.0f - 2.0f * t));
 }
 
+// Of the cube about a point light, the face that an offset from it goes through: +x, -x, +y, -y, +z, -z.
+LUCARNE_FN uint cube_face(vec3 offset) {
+    vec3 size = abs(offset);
+    if (size.x >= size.y && size.x >= size.z) return offset.x > 0.0f ? 0u : 1u;
+    if (size.y >= size.z) return offset.y > 0.0f ? 2u : 3u;
+    return offset.z > 0.0f ? 4u : 5u;
+}
+
 // Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, a point or a directional light, the last as if
 // all of it came from the middle of its cap; `to_light` receives the unit direction to the light. Zero behind the
 // surface and at the light itself.

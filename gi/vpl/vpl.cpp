@@ -23,11 +23,12 @@ class VplEngine : public Engine {
     std::vector<std::pair<std::string, double>> stats() const override;
 
  private:
-    Result<void> add_direct(Frame& frame);
-    Result<void> light_indirectly(Frame& frame);
+    Result<void> add_direct(Frame& frame, const std::vector<LightView>& views, const LightView* seeds);
+    Result<void> light_indirectly(Frame& frame, const LightView& from);
 
     Buffer materials_;
-    std::vector<GBuffer> seen_;  ///< by each light: its G-buffer and its shadow map
+    Sky sky_;
+    GBuffer seen_[2];  ///< by the light that VPLs are seeded from, and by one view after another
     Seeds seeds_;
     ShadowMaps maps_;
     Panes panes_;
@@ -48,9 +49,11 @@ bool glossy(const Frame& frame) {
                        [](const Material& m) { return m.diffuse.w > 0; });
 }
 
-size_t first_spot(const Frame& frame) {
-    const auto found = std::find_if(frame.lights.begin(), frame.lights.end(), casts_shadow_map);
-    return static_cast<size_t>(found - frame.lights.begin());
+/// The view that VPLs are seeded from: of the first spot.
+const LightView* first_spot(const Frame& frame, const std::vector<LightView>& views) {
+    const auto found = std::ranges::find_if(
+        views, [&](const LightView& v) { return frame.lights[v.light].kind == kSpotLight; });
+    return found == views.end() ? nullptr : &*found;
 }
 
 const EngineInfo& VplEngine::info() const {
@@ -71,24 +74,22 @@ Result<void> VplEngine::prepare(Frame& frame) {
         said_first_bounce_ = true;
     }
     warn_of_lights_left_out(frame, "vpl", said_left_out_);
-    if (!said_first_light_ && std::count_if(frame.lights.begin(), frame.lights.end(), casts_shadow_map) > 1 &&
-        wants_indirect(s)) {
+    if (!said_first_light_ && frame.lights.size() > 1 && wants_indirect(s)) {
         log::warn("vpl: indirect light comes from the first spot alone");
         said_first_light_ = true;
     }
+    LUCARNE_TRY(upload_sky(frame, sky_));
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
 /// VPLs on what the light sees, their shadow maps, interleaved shading: frame.radiance becomes the first
 /// bounce. Another bounce will put new VPLs in the place of these and repeat the last two, adding up the
 /// panes.
-Result<void> VplEngine::light_indirectly(Frame& frame) {
+Result<void> VplEngine::light_indirectly(Frame& frame, const LightView& from) {
     const EngineSettings& s = frame.settings;
-    const size_t first = first_spot(frame);
-    const Light& spot = frame.lights[first];
     frame.times.begin("VPL seeding");
-    LUCARNE_TRY(seed_lights(frame.device, spot, spot_view(spot, s.light_resolution),
-                            *frame.cuts.light_views[first], seen_[first], materials_,
+    LUCARNE_TRY(seed_lights(frame.device, frame.lights[from.light], from.view,
+                            *frame.cuts.light_views[from.light], seen_[0], materials_,
                             halton_points(s.vpls, s.seed, frame.index), seeds_));
     frame.times.end();
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
@@ -96,31 +97,35 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     return shade_panes(frame, materials_, seeds_, maps_, glossy(frame), panes_);
 }
 
-/// Emission, background and what the lights' first reflection sends to the eye.
-Result<void> VplEngine::add_direct(Frame& frame) {
+/// Emission, background and what the lights' first reflection sends to the eye. `seeds` is the view that
+/// seen_[0] holds.
+Result<void> VplEngine::add_direct(Frame& frame, const std::vector<LightView>& views,
+                                   const LightView* seeds) {
     frame.times.begin("direct light");
-    LUCARNE_TRY(add_own_light(frame, materials_, true));
-    for (size_t i = 0; i < frame.lights.size(); ++i)
-        if (casts_shadow_map(frame.lights[i]))
-            LUCARNE_TRY(add_spot_light(frame, materials_, frame.lights[i], seen_[i]));
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
+    for (const LightView& from : views) {
+        GBuffer& seen = seen_[&from == seeds ? 0 : 1];
+        if (&from != seeds)
+            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[from.light], from.view, seen));
+        LUCARNE_TRY(add_light(frame, materials_, from, seen));
+    }
     frame.times.end();
     return {};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    seen_.resize(frame.lights.size());
-    frame.times.begin("light G-buffer");
-    for (size_t i = 0; i < frame.lights.size(); ++i)
-        if (casts_shadow_map(frame.lights[i]))
-            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
-                                  spot_view(frame.lights[i], frame.settings.light_resolution), seen_[i]));
-    frame.times.end();
-    indirect_ = wants_indirect(frame.settings) && first_spot(frame) < frame.lights.size();
-    if (indirect_)
-        LUCARNE_TRY(light_indirectly(frame));
-    else
+    const std::vector<LightView> views = light_views(frame);
+    const LightView* seeds = wants_indirect(frame.settings) ? first_spot(frame, views) : nullptr;
+    indirect_ = seeds != nullptr;
+    if (seeds) {
+        frame.times.begin("light G-buffer");
+        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[seeds->light], seeds->view, seen_[0]));
+        frame.times.end();
+        LUCARNE_TRY(light_indirectly(frame, *seeds));
+    } else {
         frame.radiance.clear(0);
-    return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};
+    }
+    return wants_direct(frame.settings) ? add_direct(frame, views, seeds) : Result<void>{};
 }
 
 std::vector<std::pair<std::string, double>> VplEngine::stats() const {

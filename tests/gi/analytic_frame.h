@@ -80,6 +80,7 @@ struct AnalyticScene {
     std::vector<Material> materials;  ///< [0] is the default
     CameraView camera;
     EngineSettings settings;
+    std::shared_ptr<const Environment> environment = nullptr;
 };
 
 /// A square picture seen from `eye` toward `target`, `tangent` of half its field.
@@ -99,7 +100,7 @@ inline CameraView look(const glm::vec3& eye, const glm::vec3& target, float tang
 }
 
 inline Light spot(const glm::vec3& position, const glm::vec3& target, float half_angle, float inner_angle,
-                      float intensity) {
+                  float intensity) {
     return {glm::vec4(position, std::cos(half_angle)),
             glm::vec4(glm::normalize(target - position), std::cos(inner_angle)),
             glm::vec4(intensity, intensity, intensity, 0)};
@@ -144,8 +145,9 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(scene.lights.size(), &cut), &cut};
     const std::vector<Material> materials =
         scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
-    Frame frame{device,          pool,           cuts,  scene.camera, gbuffer, scene.lights, materials,
-                glm::vec3(0.0f), scene.settings, index, radiance,     times};
+    Frame frame{device,          pool,           cuts,  scene.camera, gbuffer, scene.lights,     materials,
+                glm::vec3(0.0f), scene.settings, index, radiance,     times,   scene.environment};
+    frame.bounds = {glm::vec3(source.header().min), glm::vec3(source.header().max)};
     LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
     LUCARNE_TRY(engine->prepare(frame));
     LUCARNE_TRY(engine->render(frame));

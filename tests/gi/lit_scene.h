@@ -77,6 +77,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 0,
                 *radiance,
                 times};
+    frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
     frame.cuts.light_views.assign(options.lights.size(), &cut);
     const auto prepared = engine.prepare(frame);
     EXPECT_TRUE(prepared) << prepared.error().line();

@@ -1,4 +1,4 @@
-// Adds to the picture what its surfaces reflect of one spot's light.
+// Adds to the picture what its surfaces reflect of one light, as far as one of its views shows it.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/gbuffer/shadow.glsl"
 #include "gi/shared/brdf.h"
@@ -8,7 +8,8 @@ layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]
 layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
 uniform CameraView camera;
-uniform Light spot;
+uniform Light light;
+uniform uint face;  // of a point light's cube that light_view shows
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -19,8 +20,9 @@ void main() {
     vec3 position = texel_position(camera, pixel, texel);
     vec3 normal = texel_normal(texel);
     vec3 to_light;
-    vec3 irradiance = light_irradiance(spot, position, normal, to_light);
+    vec3 irradiance = light_irradiance(light, position, normal, to_light);
     if (irradiance == vec3(0.0)) return;
+    if (light.kind == kPointLight && cube_face(position - light.position.xyz) != face) return;
     float visible = spot_visibility(position, normal, texel_radius(texel));
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);
     Reflectance reflectance = make_reflectance(materials[material], texel_albedo(texel));
