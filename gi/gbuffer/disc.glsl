@@ -26,10 +26,11 @@ vec2 pixel_tangent(vec2 pixel) {
 }
 vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz), dot(v, view_forward.xyz)); }
 
-// False where no part of the disc is before the near plane.
+// False where no part of the disc is before the near plane, and for stray points.
 bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
     disc.radius = cut_surfel_radius(item, surfel);
+    if (!(disc.radius > 0.0)) return false;
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
     // Outside a side plane of the view: without this a disc that stands beside the eye would ask every pixel.
     vec2 side = vec2(view_right.w, view_down.w);

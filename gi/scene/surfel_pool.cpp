@@ -57,8 +57,9 @@ Surfel unpack(const std::vector<CutItem>& items, const CutItem& item, const Pack
     surfel.position = item.origin + item.size * surfel_fractions(packed.a, packed.b);
     surfel.normal = packed.d & kSurfelHasNormal ? decode_octahedral(packed.c) : glm::vec3(0.0f);
     surfel.albedo = decode_albedo(packed.d);
-    surfel.radius = octree::surfel_radius(own, floor);
-    surfel.area = octree::surfel_area(own, floor);
+    const bool stray = surfel_is_stray(packed.b, packed.d);
+    surfel.radius = stray ? 0.0f : octree::surfel_radius(own, floor);
+    surfel.area = stray ? 0.0f : octree::surfel_area(own, floor);
     surfel.material = surfel_material(packed.b);
     return surfel;
 }

@@ -56,10 +56,12 @@ float surfel_area_floor(uint item, PackedSurfel surfel) {
     return uintBitsToFloat(facts.z);
 }
 
-// Disc radius (m) and share of the surface (m^2).
+// Disc radius (m) and share of the surface (m^2); none of either for a stray point.
 float cut_surfel_radius(uint item, PackedSurfel surfel) {
+    if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;
     return surfel_radius(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));
 }
 float cut_surfel_area(uint item, PackedSurfel surfel) {
+    if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;
     return surfel_area(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));
 }

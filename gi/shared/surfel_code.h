@@ -55,6 +55,11 @@ const uint kOctantLevels = 16u;
 
 // The surfel's own share of the surface in m^2, 0 when unknown; `size` is the node's, m.
 const uint kUnknownArea = 255u;
+// With no normal: a point known to hang in the air (a mixed pixel), which is not drawn and has no share.
+const uint kStrayArea = 254u;
+LUCARNE_FN bool surfel_is_stray(uint b, uint d) {
+    return (b >> 16 & 255u) == kStrayArea && (d & kSurfelHasNormal) == 0u;
+}
 LUCARNE_FN float surfel_own_area(uint b, float size) {
     uint code = b >> 16 & 255u;
     return code == kUnknownArea ? 0.0f : size * size * exp2(-0.125f * float(code));

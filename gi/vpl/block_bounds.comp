@@ -14,7 +14,7 @@ void main() {
     vec4 low = vec4(vec3(3e38), 0.0), high = vec4(vec3(-3e38), 0.0);
     for (uint i = 0u; i < kBlockSurfels; ++i) {
         Caster caster = read_caster(block * kBlockSurfels + i);
-        if (caster.radius == 0.0) break;  // ids fill a block from its start
+        if (caster.radius == 0.0) continue;  // a stray point, or past the last
         low = vec4(min(low.xyz, caster.position), max(low.w, caster.lod_area));
         high = vec4(max(high.xyz, caster.position), max(high.w, caster.radius));
     }

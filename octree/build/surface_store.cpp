@@ -121,7 +121,8 @@ Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals
     for (size_t i = 0; i < count; ++i) {
         if (i < found.normals.size()) points[i].normal = found.normals[i];
         if (i < found.areas.size()) points[i].area = found.areas[i];
-        if (points[i].area > 0) ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
+        if (points[i].area > kStrayArea)
+            ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
         if (i < found.components.size()) points[i].component = found.components[i];
     }
     return file_.write_at(first_[chunk] * sizeof(Point), std::as_bytes(std::span(points)));

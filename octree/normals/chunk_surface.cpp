@@ -76,16 +76,16 @@ class SurfaceEstimator {
         if (sample.rim) {
             if (!around.knows(sample.rim->widest_search())) return sample.rim->widest_search();
             cut_further(*sample.rim, around);
-            if (sample.area_if_stray && !sample.rim->closed()) {
+            if (sample.apart && !sample.rim->closed()) {
                 deviations_[site] = kNoPlane;
-                surface_.areas[site] = *sample.area_if_stray;
+                surface_.areas[site] = kStrayArea;
                 return 0;
             }
             sample.area = sample.rim->area_at_rim();
         }
-        if (sample.area_if_stray) {
+        if (sample.apart) {
             const std::lock_guard lock(mutex_);
-            surface_.apart.emplace_back(site, *sample.area_if_stray);
+            surface_.apart.push_back(site);
         }
         deviations_[site] = sample.deviation;
         surface_.normals[site] = sample.normal;

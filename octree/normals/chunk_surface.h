@@ -27,9 +27,8 @@ struct ChunkSurface {
     std::vector<float> areas;        ///< of the site, to be shared by its points; 0: unknown
     std::vector<SiteEdges> edges;
     std::vector<BorderEdge> border;  ///< sorted by site and other point
-    /// Sites whose share is that of a sparse surface beside a dense patch, and the share they have if they
-    /// are stray points after all. By site.
-    std::vector<std::pair<uint32_t, float>> apart;
+    std::vector<uint32_t>
+        apart;  ///< sites whose share is that of a sparse surface beside a dense patch; sorted
 };
 
 /// Normals and areas of all sites from `k` neighbours, and from four times as many where those leave the

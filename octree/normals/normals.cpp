@@ -35,12 +35,12 @@ struct ChunkEstimate {
 /// surface: mixed pixels behind a silhouette lie on the rays that graze it, a curtain in the silhouette's
 /// tangent plane.
 void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
-    for (const auto& [site, area] : surface.apart) {
+    for (const uint32_t site : surface.apart) {
         const glm::dvec3& ray = ray_of_site[site];
         const double facing = std::abs(glm::dot(glm::dvec3(surface.normals[site]), ray));
         if (glm::length(ray) > 0 && facing <= kSilhouette * glm::length(ray)) {
             surface.normals[site] = glm::vec3(0.0f);
-            surface.areas[site] = area;
+            surface.areas[site] = kStrayArea;
         }
     }
 }

@@ -42,10 +42,14 @@ struct NormalOptions {
     bool normals = true;  ///< false: only areas (the input has its own normals)
 };
 
+/// The area of a point that hangs in the air, isolated: not a share of anything, and not to be drawn. Small
+/// enough to come out as the smallest that a cache can hold.
+inline constexpr float kStrayArea = 1e-30f;
+
 /// Of one chunk, in the order of its positions.
 struct ChunkNormals {
     std::vector<glm::vec3> normals;    ///< unit, or zero: no stable plane
-    std::vector<float> areas;          ///< surface share (unit squared), 0: unknown
+    std::vector<float> areas;          ///< surface share (unit squared), 0: unknown, or kStrayArea
     std::vector<uint32_t> components;  ///< which of the chunk's orientation components the point belongs to
 };
 

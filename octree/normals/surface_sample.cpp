@@ -8,6 +8,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "octree/normals/normals.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -140,10 +142,11 @@ SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_cou
     const float reach2 = glm::dot(near.back(), near.back());
     const bool sees_from_afar = glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2;
     if (!whole_cloud && near.size() > kOwnRank && (sees_from_afar || stands_apart(offsets))) {
-        sample.area = share_of_neighbours(offsets);
-        const bool near_enough = glm::dot(near[1], near[1]) < kMostApart * kMostApart * sample.area;
+        sample.area = kStrayArea;
+        const bool near_enough =
+            glm::dot(near[1], near[1]) < kMostApart * kMostApart * share_of_neighbours(offsets);
         if (!near_enough || !lies_in_plane_of_others(near, fitter)) return sample;
-        sample.area_if_stray = sample.area;
+        sample.apart = true;
     }
 
     Plane plane = fitter.fit(offsets);

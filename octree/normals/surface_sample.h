@@ -17,13 +17,13 @@ inline constexpr float kNoPlane = 1e9f;
 struct SurfaceSample {
     glm::vec3 normal{0.0f};      ///< unit, sign arbitrary; zero where there is no plane at all
     float deviation = kNoPlane;  ///< standard error of the normal, radians
-    float area = 0.0f;  ///< the location's share of the surface (in the air: its neighbours'); 0: unknown
+    float area = 0.0f;           ///< the location's share of the surface, kStrayArea in the air; 0: unknown
     /// At the rim of a sheet or of a patch denser than what is around it: the known neighbours leave the cell
     /// open. Its area_at_rim() counts, once cut by what else it wants.
     std::optional<ShareCell> rim;
     /// The point stands apart from its neighbours, in their plane: a sparse point beside a dense patch if the
-    /// surface goes on beyond it, on all sides that are open; else a stray one, and this is its share.
-    std::optional<float> area_if_stray;
+    /// surface goes on beyond it, on all sides that are open; else a stray one.
+    bool apart = false;
 };
 
 /// A normal whose standard error is larger is asked from more neighbours (3 degrees: what millimetres of

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/synthetic/synthetic.h"
+#include "octree/normals/point_index.h"
 #include "tests/octree/normal_clouds.h"
 
 namespace lucarne::octree {
@@ -90,6 +91,39 @@ TEST(ScanNormals, FollowTheTruthIndoorsWithoutStations) {
             const Score s = print(std::string(scene) + ", no stations", scan.cloud, {}, parts);
             EXPECT_GT(s.oriented, 0.95) << scene << " " << parts;
         }
+    }
+}
+
+/// Mixed pixels are known by their distance from an even sampling of the scene, which is some millimetres
+/// dense.
+TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
+    constexpr double kInTheAir = 0.05;
+    for (const char* scene : {"two-rooms", "nave", "statue"}) {
+        const Scan scan = scan_of(scene, 400000);
+        const Scan truth = scan_of(scene, 2000000, true);
+        NormalOptions options;
+        options.stations = scan.stations;
+        const Estimate found = estimate(scan.cloud, options);
+        const PointIndex index(truth.cloud.points);
+        size_t mixed = 0, mixed_drawn = 0, real = 0, real_left_out = 0;
+        for (size_t i = 0; i < scan.cloud.points.size(); ++i) {
+            Neighbour nearest;
+            index.merge_nearest(scan.cloud.points[i], std::span(&nearest, 1), 0, 0);
+            const bool stray = found.normals[i] == glm::vec3(0.0f) && found.areas[i] <= kStrayArea;
+            if (nearest.distance2 > kInTheAir * kInTheAir)
+                ++mixed, mixed_drawn += !stray;
+            else
+                ++real, real_left_out += stray;
+        }
+        const double drawn =
+            static_cast<double>(mixed_drawn) / static_cast<double>(std::max<size_t>(1, mixed));
+        const double lost =
+            static_cast<double>(real_left_out) / static_cast<double>(std::max<size_t>(1, real));
+        std::printf("%s: of %zu points in the air %.3f are left out; of %zu on a surface %.5f\n", scene,
+                    mixed, 1 - drawn, real, lost);
+        EXPECT_GT(mixed, 10u) << scene;
+        EXPECT_LT(drawn, 0.7) << scene;
+        EXPECT_LT(lost, 0.002) << scene;
     }
 }
 
