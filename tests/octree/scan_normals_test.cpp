@@ -98,7 +98,7 @@ TEST(ScanNormals, FollowTheTruthIndoorsWithoutStations) {
 /// dense.
 TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
     constexpr double kInTheAir = 0.05;
-    for (const char* scene : {"two-rooms", "nave", "statue"}) {
+    for (const char* scene : {"two-rooms", "nave"}) {
         const Scan scan = scan_of(scene, 400000);
         const Scan truth = scan_of(scene, 2000000, true);
         NormalOptions options;
