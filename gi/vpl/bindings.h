@@ -13,13 +13,17 @@ inline constexpr uint32_t kBindLarge = 6;
 inline constexpr uint32_t kBindPoints = 7;  // Halton points
 inline constexpr uint32_t kBindMeetings = 7;
 inline constexpr uint32_t kBindImportance = 8;
+inline constexpr uint32_t kBindSources = 8;
 inline constexpr uint32_t kBindLights = 9;  // VplLight[]
 inline constexpr uint32_t kBindAtlas = 10;
 inline constexpr uint32_t kBindCoarse = 11;
 inline constexpr uint32_t kBindQueue = 11;
+inline constexpr uint32_t kBindLonely = 11;
 inline constexpr uint32_t kBindDiffuse = 12;   // irradiance from the VPLs, a pixel
 inline constexpr uint32_t kBindSpecular = 13;  // radiance by the receiver's lobe, a pixel
 inline constexpr uint32_t kBindRadiance = 14;
+inline constexpr uint32_t kBindOdds = 14;    // redistribution.glsl
+inline constexpr uint32_t kBindJoints = 15;  // join.glsl
 
 // Texture units of what is read as texels; 0 to 2 are the cut's.
 inline constexpr uint32_t kUnitLights = 3;
@@ -29,5 +33,9 @@ inline constexpr uint32_t kUnitCasters = 6;
 inline constexpr uint32_t kUnitBounds = 7;
 inline constexpr uint32_t kUnitDiffuse = 8;
 inline constexpr uint32_t kUnitSpecular = 9;
+inline constexpr uint32_t kUnitOwnDiffuse = 10;
+inline constexpr uint32_t kUnitOwnSpecular = 11;
+inline constexpr uint32_t kUnitSources = 12;
+inline constexpr uint32_t kUnitOdds = 13;
 
 }  // namespace lucarne::gi::vpl

@@ -51,15 +51,24 @@ void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
     last = min(ivec2(floor((high * 0.5 + 0.5) * float(map_side) - 0.5)), ivec2(map_side) - 1);
 }
 
-void take_texel(uint map, Disc disc, float offset, uint surface, ivec2 at) {
+#ifdef LUCARNE_SOURCES
+#include "gi/vpl/sources.glsl"
+#endif
+
+void take_texel(uvec2 pair, Disc disc, float offset, uint surface, ivec2 at) {
     vec2 uv = texel_centre(uvec2(at));
     float norm2 = dot(uv, uv);
     vec3 ray = vec3(2.0 * uv, 1.0 - norm2);
     float t = offset / dot(disc.normal, ray);
     vec3 hit = t * ray;
     vec3 from_centre = hit - disc.centre;
-    if (t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest)
-        atomicMin(atlas[texel_index(map, uvec2(at))], pack_map_texel(t * (1.0 + norm2), surface));
+    if (t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest) {
+        uint index = texel_index(pair.y, uvec2(at));
+        atomicMin(atlas[index], pack_map_texel(t * (1.0 + norm2), surface));
+#ifdef LUCARNE_SOURCES
+        atomicMin(sources[index], pack_source(t * (1.0 + norm2), pair.x));
+#endif
+    }
 }
 
 // What all texels of a disc share: dot(normal, centre), and the code of its surface.

@@ -61,42 +61,52 @@ float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
     return kPi * 0.5 * (cut + max((size * size + facing) / (size + 1.0), 0.0));
 }
 
-// Every `stride`-th VPL from `first` on, each a disc of its footprint A: as one, it sends what its surface would to
-// what is near, where a point would be without bounds. For lobes: G = cos cos' / sqrt(d^4 + (A/pi)^2).
+// What VPL `i` sends to a receiver where nothing is in between. Each VPL is a disc of its footprint A: as one, it sends
+// what its surface would to what is near, where a point would be without bounds. For lobes:
+// G = cos cos' / sqrt(d^4 + (A/pi)^2).
 //
 // Points of one plane do not light each other, whichever side they are on: positions are rounded, and the G-buffer lets
 // the rim of a disc stick out of what hides it by a share of its radius (kRimPush). A lamp on the roof would shine at
 // the ceiling under it.
+struct Arriving {
+    Gathered light;
+    float geometry;  // 1/m^2: cos cos' / d^2; 0: none
+};
+Arriving from_vpl(uint i, Receiver receiver) {
+    Arriving result = Arriving(Gathered(vec3(0.0), vec3(0.0)), 0.0);
+    vec4 position = vpl_position(i);
+    vec4 light_normal = vpl_normal(i);
+    vec3 offset = receiver.position - position.xyz;
+    float cosines = -dot(receiver.normal, offset);
+    float light_cosine = dot(light_normal.xyz, offset);
+    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also the dead
+    float distance2 = dot(offset, offset);
+    float r2 = max(position.w / kPi, 1e-12);
+    float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
+    float form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
+    vec4 diffuse = vpl_diffuse(i);
+    vec3 arriving = diffuse.xyz;
+    result.geometry = cosines * light_cosine / (distance2 * distance2);
+#ifdef LUCARNE_GLOSSY
+    float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, r2)));
+    vec3 direction = offset * inversesqrt(distance2);
+    arriving += vpl_lobe(i, light_normal.xyz, diffuse.w, direction);
+    result.light.specular =
+        arriving * geometry * specular_brdf(receiver.reflectance, receiver.normal, -direction, receiver.to_viewer);
+#endif
+    result.light.irradiance = arriving * form_factor;
+    return result;
+}
+
+// Every `stride`-th VPL from `first` on.
 Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     for (uint i = first; i < count; i += stride) {
-        vec4 position = vpl_position(i);
-        vec4 light_normal = vpl_normal(i);
-        vec3 offset = receiver.position - position.xyz;
-        float cosines = -dot(receiver.normal, offset);
-        float light_cosine = dot(light_normal.xyz, offset);
-        if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) continue;  // also the dead
-        float distance2 = dot(offset, offset);
-        if (!vpl_sees(i, light_normal, offset + receiver.normal * receiver.radius, receiver.normal)) continue;
-        float r2 = max(position.w / kPi, 1e-12);
-        float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
-        float form_factor =
-            clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
-        vec4 diffuse = vpl_diffuse(i);
-        vec3 arriving = diffuse.xyz;
-#ifdef LUCARNE_GLOSSY
-        float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, r2)));
-        vec3 direction = offset * inversesqrt(distance2);
-        Reflectance source;
-        source.kd = vec3(0.0);
-        vec4 incident = vpl_incident(i);
-        source.ks = incident.w;
-        source.exponent = diffuse.w;
-        arriving += vpl_flux(i).xyz * specular_brdf(source, light_normal.xyz, incident.xyz, direction);
-        sum.specular += arriving * geometry *
-                        specular_brdf(receiver.reflectance, receiver.normal, -direction, receiver.to_viewer);
-#endif
-        sum.irradiance += arriving * form_factor;
+        Arriving arriving = from_vpl(i, receiver);
+        vec3 lifted = receiver.position - vpl_position(i).xyz + receiver.normal * receiver.radius;
+        if (arriving.geometry <= 0.0 || !vpl_sees(i, vpl_normal(i), lifted, receiver.normal)) continue;
+        sum.irradiance += arriving.light.irradiance;
+        sum.specular += arriving.light.specular;
     }
     return sum;
 }

@@ -12,7 +12,7 @@ layout(std430, binding = 5) readonly buffer LightIds { uint light_ids[]; };
 layout(std430, binding = 7) readonly buffer Points { vec2 points[]; };
 layout(std430, binding = 9) writeonly buffer Lights { VplLight lights[]; };
 
-uniform uint light_count;
+uniform uint first_light, light_count;
 
 // Below this cosine a footprint would grow without bound; it is a grazing angle of a twentieth of a degree.
 const float kLeastCosine = 1e-3;
@@ -50,14 +50,13 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
-    if (index >= uint(lights.length())) return;
-    WarpedPoint warped = WarpedPoint(vec2(0.0), 0.0);
-    if (index < light_count) warped = warp(points[index]);
+    if (index >= light_count) return;
+    WarpedPoint warped = warp(points[index]);
     VplLight light = dead_light();
     uvec2 pixel = uvec2(warped.at);
     if (warped.probability > 0.0 && pixel.x < light_view.width && pixel.y < light_view.height) {
         GBufferTexel texel = light_texels[pixel.y * light_view.width + pixel.x];
         if (texel.depth > 0.0) light = light_on(texel, pixel, warped.probability);
     }
-    lights[index] = light;
+    lights[first_light + index] = light;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "gi/gbuffer/uniforms.h"
 #include "gi/vpl/bindings.h"
+#include "gi/vpl/halton.h"
 #include "gi/vpl/vpl_light.h"
 
 namespace lucarne::gi::vpl {
@@ -36,47 +38,102 @@ void clear_rims(std::span<VplLight> lights) {
     }
 }
 
-}  // namespace
+uint32_t importance_side(const CameraView& view) {
+    return std::bit_ceil(std::max({view.width, view.height, 1u}));
+}
 
-Result<void> seed_lights(Device& device, const Light& spot, const CameraView& view, const DeviceCut& cut,
-                         const GBuffer& seen, const Buffer& materials, std::span<const glm::vec2> points,
-                         Seeds& target) {
+void set_view(const Program& program, const LightView& view) {
+    program.set("importance_side", importance_side(view.view));
+    set(program, "light_view", view.view);
+    set(program, "spot", view.light);
+}
+
+/// The importance map of what a light sees, with its mip chain. The sum of its weights: the flux that leaves what the
+/// light lands on, W, lobes counted as importance.comp says.
+Result<double> map_importance(Device& device, const LightView& view, Buffer& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/vpl/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/vpl/importance_mip.comp"));
-    LUCARNE_ASSIGN(const Program* seed, device.program("gi/vpl/seed.comp"));
-
-    const uint32_t side = std::bit_ceil(std::max({view.width, view.height, 1u}));
+    const uint32_t side = importance_side(view.view);
     size_t texels = 0;
     for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
-    const auto count = static_cast<uint32_t>(points.size());
-    LUCARNE_TRY(device.reserve(target.importance, texels * sizeof(glm::vec2), "importance map"));
-    LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
-    LUCARNE_TRY(device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
-    target.points.upload(0, std::as_bytes(points));
-
-    cut.bind();
-    seen.texels.bind(kBindGBuffer);
-    seen.ids.bind(kBindLightIds);
-    materials.bind(kBindMaterials);
-    target.points.bind(kBindPoints);
-    target.importance.bind(kBindImportance);
-    target.lights.bind(kBindLights);
-    for (const Program* program : {importance, mip, seed}) {
-        program->set("importance_side", side);
-        set(*program, "light_view", view);
-        set(*program, "spot", spot);
-    }
+    LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
+    view.seen.texels.bind(kBindGBuffer);
+    target.bind(kBindImportance);
+    set_view(*importance, view);
+    set_view(*mip, view);
     importance->dispatch(side, side);
     for (uint32_t level = 1; side >> level > 0; ++level) {
         mip->set("level", level);
         mip->dispatch(side >> level, side >> level);
     }
-    seed->set("light_count", count);
-    seed->dispatch(count);
-    target.host_lights = target.lights.download_all<VplLight>(count);
-    clear_rims(target.host_lights);
-    target.lights.upload_all(target.host_lights);
+    glm::vec2 sum;
+    target.download((texels - 1) * sizeof(glm::vec2), std::as_writable_bytes(std::span(&sum, 1)));
+    // Where all is black but something is lit, VPLs stand there evenly: they may be glossy at another wavelength.
+    return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
+}
+
+}  // namespace
+
+Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials, uint32_t count,
+                         uint64_t seed, Seeds& target) {
+    LUCARNE_ASSIGN(const Program* place, device.program("gi/vpl/seed.comp"));
+    LUCARNE_TRY(device.reserve(target.points, count * sizeof(glm::vec2), "Halton points"));
+    LUCARNE_TRY(device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
+    target.importance.resize(std::max(target.importance.size(), views.size()));
+    materials.bind(kBindMaterials);
+    std::vector<double> weights;
+    for (size_t i = 0; i < views.size(); ++i) {
+        LUCARNE_ASSIGN(const double weight, map_importance(device, views[i], target.importance[i]));
+        weights.push_back(weight);
+    }
+    target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
+    const std::vector<uint32_t> shares = share_out(weights, count);
+    uint32_t first = 0;
+    for (size_t i = 0; i < views.size(); ++i) {
+        if (shares[i] == 0) continue;
+        const auto points = halton_points(shares[i], seed, i);
+        target.points.upload(0, std::as_bytes(std::span(points)));
+        views[i].cut.bind();
+        views[i].seen.texels.bind(kBindGBuffer);
+        views[i].seen.ids.bind(kBindLightIds);
+        target.points.bind(kBindPoints);
+        target.importance[i].bind(kBindImportance);
+        target.lights.bind(kBindLights);
+        set_view(*place, views[i]);
+        place->set("first_light", first);
+        place->set("light_count", shares[i]);
+        place->dispatch(shares[i]);
+        first += shares[i];
+    }
+    settle_lights(target, count);
     return {};
+}
+
+std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count) {
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    std::vector<uint32_t> shares(weights.size(), 0);
+    if (!(sum > 0)) return shares;
+    // Every light that lands any gets one; the rest goes by where the running sum crosses whole numbers.
+    uint32_t left = count;
+    for (size_t i = 0; i < weights.size() && left > 0; ++i)
+        if (weights[i] > 0) shares[i] = 1, --left;
+    const uint32_t free = left;
+    double running = 0;
+    uint32_t given = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        running += weights[i];
+        const auto upto = static_cast<uint32_t>(std::floor(running / sum * free + 0.5));
+        shares[i] += upto - given;
+        given = upto;
+    }
+    return shares;
+}
+
+void settle_lights(Seeds& seeds, uint32_t count) {
+    seeds.host_lights = seeds.lights.download_all<VplLight>(count);
+    clear_rims(seeds.host_lights);
+    seeds.lights.upload_all(seeds.host_lights);
 }
 
 }  // namespace lucarne::gi::vpl

@@ -6,8 +6,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/vpl/pixel.glsl"
 
-layout(std430, binding = 12) writeonly buffer DiffuseLight { vec4 diffuse_light[]; };    // irradiance, W/m^2
-layout(std430, binding = 13) writeonly buffer SpecularLight { vec4 specular_light[]; };  // radiance, W/(sr m^2)
+layout(std430, binding = 12) buffer DiffuseLight { vec4 diffuse_light[]; };    // irradiance, W/m^2
+layout(std430, binding = 13) buffer SpecularLight { vec4 specular_light[]; };  // radiance, W/(sr m^2)
 
 void main() {
     uint pane = gl_GlobalInvocationID.z;
@@ -15,10 +15,10 @@ void main() {
     if (pixel.x >= camera.width || pixel.y >= camera.height) return;
     uint index = pixel.y * camera.width + pixel.x;
     GBufferTexel texel = camera_texel(index);
-    Gathered gathered = Gathered(vec3(0.0), vec3(0.0));
-    if (texel.depth > 0.0) gathered = gather_pane(pixel_receiver(pixel, texel), pane);
-    diffuse_light[index] = vec4(gathered.irradiance, 0.0);
+    if (texel.depth <= 0.0) return;
+    Gathered gathered = gather_pane(pixel_receiver(pixel, texel), pane);
+    diffuse_light[index] += vec4(gathered.irradiance, 0.0);
 #ifdef LUCARNE_GLOSSY
-    specular_light[index] = vec4(gathered.specular, 0.0);
+    specular_light[index] += vec4(gathered.specular, 0.0);
 #endif
 }

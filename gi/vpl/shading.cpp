@@ -4,40 +4,78 @@
 #include "gi/vpl/bindings.h"
 
 namespace lucarne::gi::vpl {
+namespace {
+
+Defines defines(const Panes& panes) {
+    return panes.glossy ? Defines{{"LUCARNE_GLOSSY", "1"}} : Defines{};
+}
+
+void bind_pixels(const Frame& frame, const Program& program) {
+    frame.gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
+    program.set("interleave", frame.settings.interleave);
+    set(program, "camera", frame.camera);
+}
+
+}  // namespace
+
+Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
+    LUCARNE_ASSIGN(const Program* join, frame.device.program("gi/vpl/join.comp"));
+    const size_t pixels = size_t{frame.gbuffer.width} * frame.gbuffer.height;
+    const size_t bytes = pixels * 4 * sizeof(float), one = 4 * sizeof(float);
+    target.glossy = glossy;
+    LUCARNE_TRY(frame.device.reserve(target.diffuse, bytes, "indirect irradiance"));
+    LUCARNE_TRY(frame.device.reserve(target.own_diffuse, bytes, "indirect irradiance"));
+    LUCARNE_TRY(frame.device.reserve(target.specular, glossy ? bytes : one, "indirect specular light"));
+    LUCARNE_TRY(frame.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
+    LUCARNE_TRY(frame.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "panes"));
+    LUCARNE_TRY(frame.device.reserve(target.lonely, (1 + pixels) * sizeof(uint32_t), "panes"));
+    for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
+        light->clear(0);
+    target.lonely.upload_all(std::vector<uint32_t>{0});
+    target.joints.bind(kBindJoints);
+    target.lonely.bind(kBindLonely);
+    bind_pixels(frame, *join);
+    join->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    return {};
+}
 
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         bool glossy, Panes& target) {
-    const Defines defines = glossy ? Defines{{"LUCARNE_GLOSSY", "1"}} : Defines{};
-    LUCARNE_ASSIGN(const Program* shade, frame.device.program("gi/vpl/shade.comp", defines));
-    LUCARNE_ASSIGN(const Program* merge, frame.device.program("gi/vpl/merge.comp", defines));
-    const GBuffer& gbuffer = frame.gbuffer;
-    const size_t bytes = size_t{gbuffer.width} * gbuffer.height * 4 * sizeof(float);
-    LUCARNE_TRY(frame.device.reserve(target.diffuse, bytes, "indirect irradiance"));
-    LUCARNE_TRY(
-        frame.device.reserve(target.specular, glossy ? bytes : 4 * sizeof(float), "indirect specular light"));
+                         Panes& target) {
+    LUCARNE_ASSIGN(const Program* shade, frame.device.program("gi/vpl/shade.comp", defines(target)));
+    LUCARNE_ASSIGN(const Program* shade_lonely,
+                   frame.device.program("gi/vpl/shade_lonely.comp", defines(target)));
     materials.bind(kBindMaterials);
-    gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
+    for (const Program* program : {shade, shade_lonely}) {
+        bind_pixels(frame, *program);
+        set_layout(*program, maps.layout);
+        program->set("light_count", maps.layout.maps);
+    }
+    const uint32_t n = frame.settings.interleave;
     target.diffuse.bind(kBindDiffuse);
     target.specular.bind(kBindSpecular);
-    target.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
-    target.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
+    shade->dispatch((frame.gbuffer.width + n - 1) / n, (frame.gbuffer.height + n - 1) / n, n * n);
+    if (n == 1) return {};
+    target.joints.bind(kBindJoints);
+    target.lonely.bind(kBindLonely);
+    target.own_diffuse.bind(kBindDiffuse);
+    target.own_specular.bind(kBindSpecular);
+    shade_lonely->dispatch(target.lonely.download_all<uint32_t>(1)[0]);
+    return {};
+}
+
+Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes) {
+    LUCARNE_ASSIGN(const Program* merge, frame.device.program("gi/vpl/merge.comp", defines(panes)));
+    materials.bind(kBindMaterials);
+    panes.joints.bind(kBindJoints);
+    panes.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
+    panes.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
+    panes.own_diffuse.bind_texels(kUnitOwnDiffuse, TexelView::four_floats);
+    panes.own_specular.bind_texels(kUnitOwnSpecular, TexelView::four_floats);
     frame.radiance.bind(kBindRadiance);
-    const uint32_t n = frame.settings.interleave;
-    for (const Program* program : {shade, merge}) {
-        program->set("map_side", maps.layout.side);
-        program->set("splat_angle", maps.layout.splat_angle);
-        program->set("light_count", maps.layout.maps);
-        program->set("interleave", n);
-        set(*program, "camera", frame.camera);
-    }
-    frame.times.begin("VPL shading");
-    shade->dispatch((gbuffer.width + n - 1) / n, (gbuffer.height + n - 1) / n, n * n);
-    frame.times.end();
-    frame.times.begin("VPL merge");
-    merge->dispatch(gbuffer.width, gbuffer.height);
-    frame.times.end();
+    bind_pixels(frame, *merge);
+    merge->dispatch(frame.gbuffer.width, frame.gbuffer.height);
     return {};
 }
 

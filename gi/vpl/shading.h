@@ -6,16 +6,24 @@
 
 namespace lucarne::gi::vpl {
 
-/// What the VPLs send to every pixel, one pane's VPLs a pixel.
+/// What the VPLs of all bounces send to every pixel, one pane's VPLs a pixel.
 struct Panes {
-    Buffer diffuse;   ///< vec4, irradiance
-    Buffer specular;  ///< vec4, radiance by the receiver's lobe; one texel where nothing is glossy
+    Buffer diffuse;                    ///< vec4, irradiance
+    Buffer specular;                   ///< vec4, radiance by the receiver's lobe; one texel where nothing is glossy
+    Buffer own_diffuse, own_specular;  ///< the same, from the panes that lonely pixels lack
+    Buffer joints, lonely;             ///< join.glsl
+    bool glossy = false;
 };
 
-/// Shades every pixel of the camera's G-buffer by its pane's VPLs, filters the panes into one picture and
-/// writes the indirect light to frame.radiance. `materials` is what upload_materials made; `glossy` says
-/// whether any of them has a specular lobe. Errors: no device memory, a shader that fails.
+/// Decides which pixels' panes join to a pixel's light, and clears the light. `glossy` says whether any material has a
+/// specular lobe. Errors: no device memory, a shader that fails.
+Result<void> join_panes(Frame& frame, bool glossy, Panes& target);
+
+/// Adds what these VPLs send to every pixel. `materials` is what upload_materials made. Errors: a shader that fails.
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         bool glossy, Panes& target);
+                         Panes& target);
+
+/// Writes the light of all panes to frame.radiance. Errors: a shader that fails.
+Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes);
 
 }  // namespace lucarne::gi::vpl

@@ -1,6 +1,7 @@
 #include "gi/vpl/shadow_maps.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -25,12 +26,6 @@ constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 constexpr uint32_t kQueuePairs = 4 << 20;  // 32 MiB; an atlas of 2048 x 2048 has some 2M
 constexpr uint32_t kLargeDiscs = 65535;    // a workgroup each: the least that OpenGL promises of them
 constexpr uint32_t kLargeGroup = 16;       // local size of splat_large.comp
-
-void set_layout(const Program& program, const AtlasLayout& layout) {
-    program.set("map_side", layout.side);
-    program.set("maps", layout.maps);
-    program.set("splat_angle", layout.splat_angle);
-}
 
 struct Range {
     uint32_t first, end;
@@ -102,8 +97,9 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     if (cut.blocks() == 0) return {};
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/vpl/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
-    LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp"));
-    LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp"));
+    const Defines defines = target.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
+    LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp", defines));
+    LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp", defines));
     LUCARNE_TRY(decode_casters(device, cut, target));
     LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
     LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
@@ -118,7 +114,9 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     for (const Program* program : {meet, enter, draw, draw_large}) {
         set_layout(*program, target.layout);
         program->set("cut_size", cut.size());
+        program->set("id_bits", target.id_bits);
     }
+    if (target.id_bits) target.sources.bind(kBindSources);
     for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
         splat_range(programs, {0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)},
                     target);
@@ -126,6 +124,12 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
 }
 
 }  // namespace
+
+void set_layout(const Program& program, const AtlasLayout& layout) {
+    program.set("map_side", layout.side);
+    program.set("maps", layout.maps);
+    program.set("splat_angle", layout.splat_angle);
+}
 
 size_t AtlasLayout::coarse_texels() const {
     size_t sum = 0;
@@ -152,10 +156,16 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
 }
 
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, PassTimes& times, ShadowMaps& target) {
+                              const AtlasLayout& layout, bool sources, PassTimes& times,
+                              ShadowMaps& target) {
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
     target.layout = layout;
+    target.id_bits = sources ? static_cast<uint32_t>(std::bit_width(cut.blocks() * kBlockSurfels)) : 0;
+    if (sources) {
+        LUCARNE_TRY(device.reserve(target.sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
+        target.sources.clear(kNothing);
+    }
     times.begin("ISM splat");
     target.atlas.clear(kNothing);
     LUCARNE_TRY(splat(device, cut, seeds, target));

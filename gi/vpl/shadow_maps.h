@@ -23,16 +23,20 @@ struct AtlasLayout {
 /// map would have fewer than 8 x 8 texels.
 Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps);
 
+void set_layout(const Program& program, const AtlasLayout& layout);
+
 /// The shadow maps of all VPLs. Binding 10 when bound.
 struct ShadowMaps {
     AtlasLayout layout;
     Buffer atlas, coarse;
+    Buffer sources;        ///< which surfel is in a texel of the atlas (sources.glsl), if it was asked for
+    uint32_t id_bits = 0;  ///< of the surfels' ids there; 0: not asked for
     Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
 /// Draws `cut` into the maps of `seeds` and closes the holes between the splats.
-/// Errors: no device memory, a shader that fails.
+/// `sources` keeps which surfels they show. Errors: no device memory, a shader that fails.
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, PassTimes& times, ShadowMaps& target);
+                              const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target);
 
 }  // namespace lucarne::gi::vpl

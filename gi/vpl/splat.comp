@@ -21,5 +21,5 @@ void main() {
     uint surface = disc_surface(disc);
     // One loop for both axes: neighbours with smaller discs wait less.
     for (ivec2 at = first; at.x <= last.x; at = at.y < last.y ? at + ivec2(0, 1) : ivec2(at.x + 1, first.y))
-        take_texel(pair.y, disc, offset, surface, at);
+        take_texel(pair, disc, offset, surface, at);
 }

@@ -14,5 +14,5 @@ void main() {
     float offset = disc_offset(disc);
     uint surface = disc_surface(disc);
     for (int i = int(gl_LocalInvocationID.x); i < texels; i += 16)
-        take_texel(pair.y, disc, offset, surface, first + ivec2(i % width, i / width));
+        take_texel(pair, disc, offset, surface, first + ivec2(i % width, i / width));
 }

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "gi/gbuffer/direct_light.h"
-#include "gi/vpl/halton.h"
+#include "gi/vpl/redistribution.h"
 #include "gi/vpl/seeding.h"
 #include "gi/vpl/shading.h"
 #include "gi/vpl/shadow_maps.h"
-#include "io/core/log.h"
+#include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace vpl {
@@ -23,17 +23,16 @@ class VplEngine : public Engine {
     std::vector<std::pair<std::string, double>> stats() const override;
 
  private:
-    Result<void> add_direct(Frame& frame, const std::vector<LightView>& views, const LightView* seeds);
-    Result<void> light_indirectly(Frame& frame, const LightView& from);
+    Result<void> add_direct(Frame& frame);
+    Result<void> light_indirectly(Frame& frame);
 
     Buffer materials_;
-    Sky sky_;
-    GBuffer seen_[2];  ///< by the light that VPLs are seeded from, and by one view after another
+    std::vector<GBuffer> seen_;  ///< by each light: its G-buffer and its shadow map
     Seeds seeds_;
     ShadowMaps maps_;
     Panes panes_;
+    Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
-    bool said_first_bounce_ = false, said_first_light_ = false;
     std::string said_left_out_;
 };
 
@@ -41,19 +40,12 @@ bool wants_direct(const EngineSettings& s) {
     return s.only_bounce <= 0;
 }
 bool wants_indirect(const EngineSettings& s) {
-    return s.only_bounce < 0 ? s.bounces > 0 : s.only_bounce == 1;
+    return s.only_bounce < 0 ? s.bounces > 0 : s.only_bounce > 0;
 }
 
 bool glossy(const Frame& frame) {
     return std::any_of(frame.materials.begin(), frame.materials.end(),
                        [](const Material& m) { return m.diffuse.w > 0; });
-}
-
-/// The view that VPLs are seeded from: of the first spot.
-const LightView* first_spot(const Frame& frame, const std::vector<LightView>& views) {
-    const auto found = std::ranges::find_if(
-        views, [&](const LightView& v) { return frame.lights[v.light].kind == kSpotLight; });
-    return found == views.end() ? nullptr : &*found;
 }
 
 const EngineInfo& VplEngine::info() const {
@@ -69,63 +61,74 @@ Result<void> VplEngine::prepare(Frame& frame) {
     LUCARNE_TRY(atlas_layout(s.atlas, s.vpls));
     if (frame.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
-    if (!said_first_bounce_ && (s.only_bounce > 1 || (s.only_bounce < 0 && s.bounces > 1))) {
-        log::warn("vpl: light beyond the first bounce is not computed");
-        said_first_bounce_ = true;
-    }
     warn_of_lights_left_out(frame, "vpl", said_left_out_);
-    if (!said_first_light_ && frame.lights.size() > 1 && wants_indirect(s)) {
-        log::warn("vpl: indirect light comes from the first spot alone");
-        said_first_light_ = true;
-    }
-    LUCARNE_TRY(upload_sky(frame, sky_));
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
-/// VPLs on what the light sees, their shadow maps, interleaved shading: frame.radiance becomes the first
-/// bounce. Another bounce will put new VPLs in the place of these and repeat the last two, adding up the
-/// panes.
-Result<void> VplEngine::light_indirectly(Frame& frame, const LightView& from) {
+/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the next
+/// bounce: frame.radiance becomes the bounces asked for.
+Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
-    frame.times.begin("VPL seeding");
-    LUCARNE_TRY(seed_lights(frame.device, frame.lights[from.light], from.view,
-                            *frame.cuts.light_views[from.light], seen_[0], materials_,
-                            halton_points(s.vpls, s.seed, frame.index), seeds_));
-    frame.times.end();
+    const uint32_t last = s.only_bounce < 0 ? s.bounces : static_cast<uint32_t>(s.only_bounce);
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
-    LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, frame.times, maps_));
-    return shade_panes(frame, materials_, seeds_, maps_, glossy(frame), panes_);
+    const auto pass = [&](const char* name, auto&& body) -> Result<void> {
+        frame.times.begin(name);
+        auto done = body();
+        frame.times.end();
+        return done;
+    };
+    const bool shiny = glossy(frame);
+    LUCARNE_TRY(pass("VPL join", [&] { return join_panes(frame, shiny, panes_); }));
+    std::vector<LightView> views;
+    for (size_t i = 0; i < frame.lights.size(); ++i)
+        if (casts_shadow_map(frame.lights[i]))
+            views.push_back({frame.lights[i], spot_view(frame.lights[i], s.light_resolution),
+                             *frame.cuts.light_views[i], seen_[i]});
+    LUCARNE_TRY(pass("VPL seeding", [&] {
+        return seed_lights(frame.device, views, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
+    }));
+    for (uint32_t bounce = 1; bounce <= last; ++bounce) {
+        LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last, frame.times,
+                                     maps_));
+        if (s.only_bounce < 0 || bounce == last)
+            LUCARNE_TRY(
+                pass("VPL shading", [&] { return shade_panes(frame, materials_, seeds_, maps_, panes_); }));
+        if (bounce == last) break;
+        const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
+        LUCARNE_TRY(pass("VPL redistribution", [&] {
+            return redistribute(frame.device, *frame.cuts.light, maps_, materials_, shiny, salt, redistribution_,
+                                seeds_);
+        }));
+    }
+    return pass("VPL merge", [&] { return merge_panes(frame, materials_, panes_); });
 }
 
-/// Emission, background and what the lights' first reflection sends to the eye. `seeds` is the view that
-/// seen_[0] holds.
-Result<void> VplEngine::add_direct(Frame& frame, const std::vector<LightView>& views,
-                                   const LightView* seeds) {
+/// Emission, background and what the lights' first reflection sends to the eye.
+Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
-    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
-    for (const LightView& from : views) {
-        GBuffer& seen = seen_[&from == seeds ? 0 : 1];
-        if (&from != seeds)
-            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[from.light], from.view, seen));
-        LUCARNE_TRY(add_light(frame, materials_, from, seen));
-    }
+    LUCARNE_TRY(add_own_light(frame, materials_, true));
+    for (size_t i = 0; i < frame.lights.size(); ++i)
+        if (casts_shadow_map(frame.lights[i]))
+            LUCARNE_TRY(add_spot_light(frame, materials_, frame.lights[i], seen_[i]));
     frame.times.end();
     return {};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    const std::vector<LightView> views = light_views(frame);
-    const LightView* seeds = wants_indirect(frame.settings) ? first_spot(frame, views) : nullptr;
-    indirect_ = seeds != nullptr;
-    if (seeds) {
-        frame.times.begin("light G-buffer");
-        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[seeds->light], seeds->view, seen_[0]));
-        frame.times.end();
-        LUCARNE_TRY(light_indirectly(frame, *seeds));
-    } else {
+    seen_.resize(frame.lights.size());
+    frame.times.begin("light G-buffer");
+    for (size_t i = 0; i < frame.lights.size(); ++i)
+        if (casts_shadow_map(frame.lights[i]))
+            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
+                                  spot_view(frame.lights[i], frame.settings.light_resolution), seen_[i]));
+    frame.times.end();
+    indirect_ = wants_indirect(frame.settings) &&
+                std::any_of(frame.lights.begin(), frame.lights.end(), casts_shadow_map);
+    if (indirect_)
+        LUCARNE_TRY(light_indirectly(frame));
+    else
         frame.radiance.clear(0);
-    }
-    return wants_direct(frame.settings) ? add_direct(frame, views, seeds) : Result<void>{};
+    return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};
 }
 
 std::vector<std::pair<std::string, double>> VplEngine::stats() const {

@@ -1,0 +1,52 @@
+// The estimates of all races together: any VPL of the bounce before might have put a new one here. With the density of
+// all of them, sum over k of p_k(x), the irradiance by all of them over it is the flux of each (multiple importance
+// sampling, the balance heuristic; Veach and Guibas 1995), which varies less than what its own race alone tells; and the
+// footprint is the density's inverse. One invocation a new VPL. A lobe needs one direction of light: it keeps its race's
+// flux.
+layout(local_size_x = 16) in;
+
+#include "gi/vpl/redistribution.glsl"
+
+layout(std430, binding = 9) buffer Next { VplLight next[]; };
+layout(binding = 13) uniform usamplerBuffer odds;
+
+uniform uint light_count;
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= light_count) return;
+    VplLight light = next[index];
+    Receiver receiver;
+    receiver.position = light.position.xyz;
+    receiver.normal = light.normal.xyz;
+    receiver.radius = light.normal.w;
+    receiver.to_viewer = light.normal.xyz;
+    receiver.reflectance = Reflectance(vec3(0.0), 0.0, 1.0);
+    vec3 irradiance = vec3(0.0);
+    float density = 0.0;  // 1/m^2
+    for (uint i = 0u; i < light_count; ++i) {
+        float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
+        Arriving arriving = from_vpl(i, receiver);
+        vec3 lifted = receiver.position - vpl_position(i).xyz + receiver.normal * receiver.radius;
+        bool seen = i == index || vpl_sees(i, vpl_normal(i), lifted, receiver.normal);
+        if (!(sum > 0.0) || arriving.geometry <= 0.0 || !seen) continue;
+        vec3 intensity = vpl_diffuse(i).xyz;
+#ifdef LUCARNE_GLOSSY
+        intensity += vpl_lobe(i, vpl_normal(i).xyz, vpl_diffuse(i).w, normalize(receiver.position - vpl_position(i).xyz));
+#endif
+        density += luminance(intensity) * arriving.geometry / sum;
+        irradiance += arriving.light.irradiance;
+    }
+    if (light.flux.w < 1.0) return;
+    if (!(density > 0.0)) {  // nearer to its parent than surfaces can be told apart
+        next[index].flux.w = 0.0;
+        return;
+    }
+    density *= reflected_share(Reflectance(light.diffuse.xyz * kPi, light.incident.w, 1.0));
+    next[index].position.w = 1.0 / density;
+#ifdef LUCARNE_BEST_CANDIDATE
+    next[index].diffuse.xyz *= light.flux.xyz;
+#else
+    next[index].diffuse.xyz *= irradiance / density;
+#endif
+}
