@@ -37,9 +37,8 @@ void main() {
         density += luminance(intensity) * arriving.geometry / sum;
         irradiance += arriving.light.irradiance;
     }
-    if (light.flux.w < 1.0) return;
     if (!(density > 0.0)) {  // nearer to its parent than surfaces can be told apart
-        next[index].flux.w = 0.0;
+        next[index].diffuse.xyz *= light.flux.xyz;
         return;
     }
     density *= reflected_share(Reflectance(light.diffuse.xyz * kPi, light.incident.w, 1.0));

@@ -62,13 +62,8 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
     PackedSurfel surfel;
     cut_surfel(id, item, surfel);
     vec3 direction = frame * sight.direction;
-    vec3 centre = vpl_map_centre(map);
     vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : -direction;
     if (dot(normal, direction) > 0.0) normal = -normal;
-    // On the surfel's own plane, which the map holds less exactly.
-    vec3 surfel_at = surfel_position(item, surfel);
-    float plane = dot(normal, surfel_at - centre) / min(dot(normal, direction), -1e-3);
-    float distance_m = abs(plane / sight.distance_m - 1.0) < 0.1 ? plane : sight.distance_m;
     Reflectance r = reflectance_of(item, surfel);
     float radius = cut_surfel_radius(item, surfel);
     vec4 diffuse = vpl_diffuse(map);
@@ -77,11 +72,10 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
     intensity += vpl_lobe(map, vpl_normal(map).xyz, diffuse.w, direction);
 #endif
     vec3 flux = intensity * sight.solid_angle * inverse_probability;
-    // Where the middle of the surfel is hidden, the texel shows a rim that sticks out.
-    vec3 lifted = surfel_at + normal * radius - vpl_position(map).xyz;
-    float clear = vpl_sees(map, vpl_normal(map), lifted, normal) ? 1.0 : 0.0;
-    next[map] = VplLight(vec4(centre + direction * distance_m, 0.0), vec4(normal, radius),
-                         vec4(r.kd / kPi, r.exponent), vec4(flux, clear), vec4(-direction, r.ks));
+    // It stands in the middle of the surfel, which lies on the scanned surface; where the texel's ray ends, the disc's
+    // rim may stick out, even out of a sealed room.
+    next[map] = VplLight(vec4(surfel_position(item, surfel), cut_surfel_area(item, surfel)), vec4(normal, radius),
+                         vec4(r.kd / kPi, r.exponent), vec4(flux, 1.0), vec4(-direction, r.ks));
 }
 
 void main() {

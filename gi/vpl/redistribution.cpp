@@ -6,8 +6,9 @@
 
 namespace lucarne::gi::vpl {
 
-Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps& maps, const Buffer& materials,
-                          bool glossy, uint32_t seed, Redistribution& scratch, Seeds& seeds) {
+Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps& maps,
+                          const Buffer& materials, bool glossy, uint32_t seed, Redistribution& scratch,
+                          Seeds& seeds) {
     Defines defines;
     if (glossy) defines.emplace_back("LUCARNE_GLOSSY", "1");
     if (scratch.best_candidate) defines.emplace_back("LUCARNE_BEST_CANDIDATE", "1");

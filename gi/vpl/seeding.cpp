@@ -48,8 +48,8 @@ void set_view(const Program& program, const LightView& view) {
     set(program, "spot", view.light);
 }
 
-/// The importance map of what a light sees, with its mip chain. The sum of its weights: the flux that leaves what the
-/// light lands on, W, lobes counted as importance.comp says.
+}  // namespace
+
 Result<double> map_importance(Device& device, const LightView& view, Buffer& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/vpl/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/vpl/importance_mip.comp"));
@@ -68,19 +68,36 @@ Result<double> map_importance(Device& device, const LightView& view, Buffer& tar
     }
     glm::vec2 sum;
     target.download((texels - 1) * sizeof(glm::vec2), std::as_writable_bytes(std::span(&sum, 1)));
-    // Where all is black but something is lit, VPLs stand there evenly: they may be glossy at another wavelength.
+    // Where all is black but something is lit, VPLs stand there evenly: they may be glossy at another
+    // wavelength.
     return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
 }
 
-}  // namespace
+Result<void> seed_view(Device& device, const LightView& view, const Buffer& importance,
+                       const Buffer& materials, std::span<const glm::vec2> points, uint32_t first,
+                       Seeds& target) {
+    LUCARNE_ASSIGN(const Program* seed, device.program("gi/vpl/seed.comp"));
+    LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
+    target.points.upload(0, std::as_bytes(points));
+    view.cut.bind();
+    view.seen.texels.bind(kBindGBuffer);
+    view.seen.ids.bind(kBindLightIds);
+    materials.bind(kBindMaterials);
+    importance.bind(kBindImportance);
+    target.points.bind(kBindPoints);
+    target.lights.bind(kBindLights);
+    set_view(*seed, view);
+    seed->set("first_light", first);
+    seed->set("light_count", static_cast<uint32_t>(points.size()));
+    seed->dispatch(static_cast<uint32_t>(points.size()));
+    return {};
+}
 
-Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials, uint32_t count,
-                         uint64_t seed, Seeds& target) {
-    LUCARNE_ASSIGN(const Program* place, device.program("gi/vpl/seed.comp"));
-    LUCARNE_TRY(device.reserve(target.points, count * sizeof(glm::vec2), "Halton points"));
+Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials,
+                         uint32_t count, uint64_t seed, Seeds& target) {
     LUCARNE_TRY(device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
     target.importance.resize(std::max(target.importance.size(), views.size()));
-    materials.bind(kBindMaterials);
+    materials.bind(kBindMaterials);  // for the importance
     std::vector<double> weights;
     for (size_t i = 0; i < views.size(); ++i) {
         LUCARNE_ASSIGN(const double weight, map_importance(device, views[i], target.importance[i]));
@@ -91,18 +108,8 @@ Result<void> seed_lights(Device& device, std::span<const LightView> views, const
     uint32_t first = 0;
     for (size_t i = 0; i < views.size(); ++i) {
         if (shares[i] == 0) continue;
-        const auto points = halton_points(shares[i], seed, i);
-        target.points.upload(0, std::as_bytes(std::span(points)));
-        views[i].cut.bind();
-        views[i].seen.texels.bind(kBindGBuffer);
-        views[i].seen.ids.bind(kBindLightIds);
-        target.points.bind(kBindPoints);
-        target.importance[i].bind(kBindImportance);
-        target.lights.bind(kBindLights);
-        set_view(*place, views[i]);
-        place->set("first_light", first);
-        place->set("light_count", shares[i]);
-        place->dispatch(shares[i]);
+        LUCARNE_TRY(seed_view(device, views[i], target.importance[i], materials,
+                              halton_points(shares[i], seed, i), first, target));
         first += shares[i];
     }
     settle_lights(target, count);

@@ -27,17 +27,29 @@ struct LightView {
     const GBuffer& seen;
 };
 
-/// Places `count` VPLs on what the lights see, shared out among them by the light they land and surfaces give back:
-/// importance map, mip chain, hierarchical warping. The same for the same `seed`. `materials` is what upload_materials
-/// made. Errors: no device memory, a shader that fails.
-Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials, uint32_t count,
-                         uint64_t seed, Seeds& target);
+/// Places `count` VPLs on what the lights see, shared out among them by the light they land and surfaces give
+/// back: importance map, mip chain, hierarchical warping. The same for the same `seed`. `materials` is what
+/// upload_materials made. Errors: no device memory, a shader that fails.
+Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials,
+                         uint32_t count, uint64_t seed, Seeds& target);
 
-/// How many of `count` VPLs each light gets: in proportion to `weights`, at least one where there is any; their sum is
-/// `count` unless all weights are 0.
+/// The importance map of what a light sees, with its mip chain, for materials that are bound. The sum of its
+/// weights: the flux that leaves what the light lands on, W, lobes counted as importance.comp says. Errors as
+/// above.
+Result<double> map_importance(Device& device, const LightView& view, Buffer& target);
+
+/// Places one VPL a point of `points`, in [0, 1)^2, by a view's importance map, from VPL `first` of the
+/// target on. Errors as above.
+Result<void> seed_view(Device& device, const LightView& view, const Buffer& importance,
+                       const Buffer& materials, std::span<const glm::vec2> points, uint32_t first,
+                       Seeds& target);
+
+/// How many of `count` VPLs each light gets: in proportion to `weights`, at least one where there is any;
+/// their sum is `count` unless all weights are 0.
 std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count);
 
-/// Takes the VPLs to the host; those that stand on rims give their flux to the others there and on the device.
+/// Takes the VPLs to the host; those that stand on rims give their flux to the others there and on the
+/// device.
 void settle_lights(Seeds& seeds, uint32_t count);
 
 }  // namespace lucarne::gi::vpl

@@ -156,8 +156,7 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
 }
 
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, bool sources, PassTimes& times,
-                              ShadowMaps& target) {
+                              const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target) {
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
     target.layout = layout;

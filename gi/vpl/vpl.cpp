@@ -65,8 +65,8 @@ Result<void> VplEngine::prepare(Frame& frame) {
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
-/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the next
-/// bounce: frame.radiance becomes the bounces asked for.
+/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
+/// next bounce: frame.radiance becomes the bounces asked for.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s.only_bounce < 0 ? s.bounces : static_cast<uint32_t>(s.only_bounce);
@@ -88,16 +88,16 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         return seed_lights(frame.device, views, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
     }));
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
-        LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last, frame.times,
-                                     maps_));
+        LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last,
+                                     frame.times, maps_));
         if (s.only_bounce < 0 || bounce == last)
             LUCARNE_TRY(
                 pass("VPL shading", [&] { return shade_panes(frame, materials_, seeds_, maps_, panes_); }));
         if (bounce == last) break;
         const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
         LUCARNE_TRY(pass("VPL redistribution", [&] {
-            return redistribute(frame.device, *frame.cuts.light, maps_, materials_, shiny, salt, redistribution_,
-                                seeds_);
+            return redistribute(frame.device, *frame.cuts.light, maps_, materials_, shiny, salt,
+                                redistribution_, seeds_);
         }));
     }
     return pass("VPL merge", [&] { return merge_panes(frame, materials_, panes_); });

@@ -9,6 +9,7 @@
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/vpl/bindings.h"
 #include "gi/vpl/seeding.h"
 #include "gi/vpl/vpl_light.h"
 #include "tests/gi/surfel_cloud.h"
@@ -16,14 +17,14 @@
 namespace lucarne::gi::vpl::testing {
 
 /// A spot at the origin that looks down (-z), seen through a square view around its cone.
-struct LightView {
+struct SpotSight {
     Light spot;
     CameraView view;
 };
 
-inline LightView downward_spot(uint32_t resolution, float half_angle, float cos_inner, float intensity) {
+inline SpotSight downward_spot(uint32_t resolution, float half_angle, float cos_inner, float intensity) {
     const float t = std::tan(half_angle);
-    LightView v;
+    SpotSight v;
     v.spot = {glm::vec4(0, 0, 0, std::cos(half_angle)), glm::vec4(0, 0, -1, cos_inner), glm::vec4(intensity)};
     v.view = {glm::vec4(0, 0, 0, .001f),
               glm::vec4(0, 0, -1, 0),
@@ -53,7 +54,7 @@ inline GBufferTexel floor_texel(float height, float albedo) {
 }
 
 /// What seed_lights makes of the texels for the given points.
-inline Result<std::vector<VplLight>> seed_on(Device& device, const LightView& light,
+inline Result<std::vector<VplLight>> seed_on(Device& device, const SpotSight& light,
                                              const std::vector<GBufferTexel>& texels,
                                              const std::vector<Material>& materials,
                                              const std::vector<glm::vec2>& points) {
@@ -69,9 +70,15 @@ inline Result<std::vector<VplLight>> seed_on(Device& device, const LightView& li
     const SurfelCloud nothing(std::vector<Surfel>{});
     LUCARNE_ASSIGN(const auto loaded, load_cloud(device, nothing));
     Seeds seeds;
-    LUCARNE_TRY(
-        seed_lights(device, light.spot, light.view, loaded->cut, gbuffer, material_buffer, points, seeds));
-    return seeds.lights.download_all<VplLight>(points.size());
+    const vpl::LightView view{light.spot, light.view, loaded->cut, gbuffer};
+    Buffer importance;
+    LUCARNE_ASSIGN(seeds.lights, device.buffer(points.size() * sizeof(VplLight), "lights"));
+    material_buffer.bind(kBindMaterials);
+    LUCARNE_ASSIGN(const double weight, map_importance(device, view, importance));
+    EXPECT_GE(weight, 0);
+    LUCARNE_TRY(seed_view(device, view, importance, material_buffer, points, 0, seeds));
+    settle_lights(seeds, static_cast<uint32_t>(points.size()));
+    return seeds.host_lights;
 }
 
 }  // namespace lucarne::gi::vpl::testing

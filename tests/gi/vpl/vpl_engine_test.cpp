@@ -74,6 +74,42 @@ TEST_F(VplEngineTest, oneBounceAgreesWithTheReference) {
     EXPECT_NEAR(mean(scene) / truth, 1, .04);
 }
 
+TEST_F(VplEngineTest, furtherBouncesAgreeWithTheReference) {
+    AnalyticScene scene = box_with_a_block();
+    scene.settings.vpls = 1024;
+    scene.settings.interleave = 1;
+    for (const int bounce : {2, 3}) {
+        scene.settings.only_bounce = bounce;
+        EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .06) << bounce;
+    }
+}
+
+TEST_F(VplEngineTest, bouncesTogetherAreTheSumOfBouncesApart) {
+    AnalyticScene scene = box_with_a_block();
+    double sum = 0;
+    for (int bounce = 0; bounce <= 3; ++bounce) {
+        scene.settings.only_bounce = bounce;
+        sum += mean(scene);
+    }
+    scene.settings.only_bounce = -1;
+    scene.settings.bounces = 3;
+    EXPECT_NEAR(mean(scene) / sum, 1, 1e-4);  // the same VPLs
+}
+
+TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
+    AnalyticScene scene = box_with_a_block();
+    scene.settings.vpls = 1024;
+    const Light strong = scene.lights[0];
+    const Light weak = spot(glm::vec3(.4f, .6f, 1.9f), glm::vec3(.1f, 1.6f, .6f), .5f, .4f, 3);
+    scene.lights = {weak};
+    const double alone = mean(scene);
+    scene.lights = {strong};
+    const double sum = alone + mean(scene);
+    EXPECT_GT(alone, .05 * sum);
+    scene.lights = {strong, weak};
+    EXPECT_NEAR(mean(scene) / sum, 1, .02);
+}
+
 TEST_F(VplEngineTest, atlasSizeAndSeedHardlyChangeTheMean) {
     AnalyticScene scene = box_with_a_block();
     const double first = mean(scene);

@@ -22,7 +22,7 @@ class VplSeeding : public ::testing::Test {
         ASSERT_TRUE(made) << made.error().line();
         device = std::move(*made);
     }
-    std::vector<VplLight> seed(const LightView& light, const std::vector<GBufferTexel>& texels,
+    std::vector<VplLight> seed(const SpotSight& light, const std::vector<GBufferTexel>& texels,
                                const std::vector<glm::vec2>& points,
                                const std::vector<Material>& materials = kPlain) {
         auto lights = seed_on(*device, light, texels, materials, points);
@@ -33,7 +33,7 @@ class VplSeeding : public ::testing::Test {
 };
 
 /// The mean luminance intensity over a texel as the importance map takes it: centre and corners.
-double texel_intensity(const LightView& light, uint32_t x, uint32_t y) {
+double texel_intensity(const SpotSight& light, uint32_t x, uint32_t y) {
     double sum = 0;
     for (const auto& [dx, dy] :
          std::array<std::pair<float, float>, 5>{{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {.5, .5}}}) {
@@ -46,13 +46,13 @@ double texel_intensity(const LightView& light, uint32_t x, uint32_t y) {
     return sum * light.spot.strength.x;
 }
 
-double texel_solid_angle(const LightView& light, uint32_t x, uint32_t y) {
+double texel_solid_angle(const SpotSight& light, uint32_t x, uint32_t y) {
     const glm::dvec3 ray = ray_of(light.view, static_cast<float>(x) + .5f, static_cast<float>(y) + .5f);
     return 4.0 * light.view.right.x * light.view.up.y / (light.view.width * light.view.height) /
            std::pow(glm::length(ray), 3);
 }
 
-double full_flux(const LightView& light) {  // of the whole cone: the edge's smoothstep has a mean of 1/2
+double full_flux(const SpotSight& light) {  // of the whole cone: the edge's smoothstep has a mean of 1/2
     const double inner = light.spot.direction.w, outer = light.spot.position.w;
     return 2 * std::numbers::pi * light.spot.strength.x * (1 - inner + (inner - outer) / 2);
 }
@@ -67,6 +67,18 @@ TEST(VplHalton, radicalInversesMirrorTheDigits) {
     EXPECT_DOUBLE_EQ(radical_inverse(2, 6), 3 / 8.);          // 110 -> .011
     EXPECT_DOUBLE_EQ(radical_inverse(3, 5), 7 / 9.);          // 12 -> .21
     EXPECT_DOUBLE_EQ(radical_inverse(3, 1000), 760 / 2187.);  // 1101001 -> .1001011
+}
+
+TEST(VplShares, followTheWeightsAndAddUp) {
+    const std::vector<double> weights = {6, 3, 0, 1e-9, 1};
+    const auto shares = share_out(weights, 103);
+    EXPECT_EQ(std::accumulate(shares.begin(), shares.end(), 0u), 103u);
+    EXPECT_EQ(shares[2], 0u);
+    EXPECT_EQ(shares[3], 1u);  // little light, but no light is left out
+    EXPECT_NEAR(shares[0], 60, 2);
+    EXPECT_NEAR(shares[1], 30, 2);
+    EXPECT_EQ(share_out(std::vector<double>{0, 0}, 8), (std::vector<uint32_t>{0, 0}));
+    EXPECT_EQ(share_out(std::vector<double>{1, 1, 1}, 2), (std::vector<uint32_t>{1, 1, 0}));
 }
 
 TEST(VplHalton, everyCellOfAGridGetsItsShareForAnySeedAndFrame) {
@@ -108,7 +120,7 @@ double chi_square_deviate(const std::vector<double>& expected, const std::vector
 TEST_F(VplSeeding, warpedIndependentPointsFollowTheImportanceByChiSquare) {
     constexpr uint32_t kSide = 24;  // not a power of two: the map is padded
     constexpr size_t kPoints = 60'000;
-    const LightView light = downward_spot(kSide, .6f, .95f, 3);
+    const SpotSight light = downward_spot(kSide, .6f, .95f, 3);
     Random random(11);
     std::vector<GBufferTexel> texels;
     std::vector<double> weights, lit;
@@ -150,7 +162,7 @@ TEST_F(VplSeeding, warpedIndependentPointsFollowTheImportanceByChiSquare) {
 
 TEST_F(VplSeeding, incidentFluxOverManySeedsIsTheFluxThatLands) {
     constexpr uint32_t kSide = 128;
-    const LightView light = downward_spot(kSide, .7f, .9f, 5);
+    const SpotSight light = downward_spot(kSide, .7f, .9f, 5);
     Random random(3);
     std::vector<GBufferTexel> whole, half;
     for (uint32_t i = 0; i < kSide * kSide; ++i) {
@@ -172,7 +184,7 @@ TEST_F(VplSeeding, incidentFluxOverManySeedsIsTheFluxThatLands) {
 
 TEST_F(VplSeeding, lightsLieOnTheSurfaceFaceTheSpotAndStandForTheirShareOfIt) {
     constexpr uint32_t kSide = 64;
-    const LightView light = downward_spot(kSide, .5f, .99f, 1);
+    const SpotSight light = downward_spot(kSide, .5f, .99f, 1);
     const std::vector<GBufferTexel> floor(kSide * kSide, floor_texel(2, .5f));
     double footprints = 0;
     const auto lights = seed(light, floor, halton_points(512, 1, 0));
@@ -190,7 +202,7 @@ TEST_F(VplSeeding, lightsLieOnTheSurfaceFaceTheSpotAndStandForTheirShareOfIt) {
 
 TEST_F(VplSeeding, shinySurfacesGetMoreLightsThanDullOnesOfTheSameReflectance) {
     constexpr uint32_t kSide = 64;
-    const LightView light = downward_spot(kSide, .5f, .9f, 1);
+    const SpotSight light = downward_spot(kSide, .5f, .9f, 1);
     std::vector<GBufferTexel> floor;
     for (uint32_t i = 0; i < kSide * kSide; ++i) {
         floor.push_back(floor_texel(2, .5f));
@@ -205,7 +217,7 @@ TEST_F(VplSeeding, shinySurfacesGetMoreLightsThanDullOnesOfTheSameReflectance) {
 }
 
 TEST_F(VplSeeding, whatSeesNoLightHasNoLights) {
-    const LightView dark = downward_spot(32, .5f, .9f, 0), lit = downward_spot(32, .5f, .9f, 1);
+    const SpotSight dark = downward_spot(32, .5f, .9f, 0), lit = downward_spot(32, .5f, .9f, 1);
     const std::vector<GBufferTexel> floor(32 * 32, floor_texel(2, .5f)), nothing(32 * 32);
     for (const auto& lights :
          {seed(dark, floor, halton_points(16, 1, 0)), seed(lit, nothing, halton_points(16, 1, 0))})
@@ -216,7 +228,7 @@ TEST_F(VplSeeding, whatSeesNoLightHasNoLights) {
 }
 
 TEST_F(VplSeeding, brokenDepthsGiveNoLightsThatAreNotFinite) {
-    const LightView light = downward_spot(32, .5f, .9f, 1);
+    const SpotSight light = downward_spot(32, .5f, .9f, 1);
     std::vector<GBufferTexel> floor(32 * 32, floor_texel(2, .5f));
     for (size_t i = 0; i < floor.size(); i += 3) floor[i].depth = std::numeric_limits<float>::quiet_NaN();
     for (size_t i = 1; i < floor.size(); i += 3)

@@ -1,0 +1,124 @@
+// VPLs of one bounce become those of the next.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "gi/gbuffer/direct_light.h"
+#include "gi/vpl/redistribution.h"
+#include "tests/gi/on_device.h"
+#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+constexpr float kAlbedo = .5f, kSide = 2;
+
+class VplRedistribution : public OnDevice {
+ protected:
+    /// VPLs on the floor of a closed white box, and those that follow.
+    struct Step {
+        std::vector<VplLight> before, after;
+    };
+    Step redistributed(uint32_t seed, bool best_candidate = false) {
+        constexpr uint32_t kCount = 256;
+        Step step;
+        for (uint32_t i = 0; i < kCount; ++i) {
+            VplLight light = kDeadLight;
+            const float x = .1f + 1.8f * static_cast<float>(i % 16) / 15,
+                        y = .1f + 1.8f * static_cast<float>(i / 16) / 15;
+            light.position = {x, y, 0, kSide * kSide / kCount};
+            light.normal = {0, 0, 1, .02f};
+            light.flux = {1, 1, 1, 1};
+            light.diffuse = glm::vec4(glm::vec3(kAlbedo / 3.14159265f), 1);
+            light.incident = {0, 0, 1, 0};
+            step.before.push_back(light);
+        }
+        const SurfelCloud cloud(scenes::closed_box(kSide, 150, glm::vec3(kAlbedo)));
+        auto loaded = load_cloud(*device, cloud);
+        EXPECT_TRUE(loaded);
+        const std::vector<Material> white = {{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)}};
+        Buffer materials;
+        EXPECT_TRUE(upload_materials(*device, white, materials));
+        Seeds seeds;
+        seeds.lights = *device->buffer(kCount * sizeof(VplLight), "lights");
+        seeds.lights.upload_all(step.before);
+        seeds.host_lights = step.before;
+        PassTimes times(*device);
+        ShadowMaps maps;
+        const auto layout = atlas_layout(1024, kCount);
+        EXPECT_TRUE(draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, true, times, maps));
+        Redistribution scratch;
+        scratch.best_candidate = best_candidate;
+        EXPECT_TRUE(redistribute(*device, (*loaded)->cut, maps, materials, false, seed, scratch, seeds));
+        step.after = seeds.host_lights;
+        return step;
+    }
+};
+
+double sum_of_flux(const std::vector<VplLight>& lights) {
+    double sum = 0;
+    for (const VplLight& l : lights) sum += l.flux.x;
+    return sum;
+}
+
+TEST_F(VplRedistribution, inAClosedBoxAllReflectedFluxLands) {
+    double landed = 0, returned = 0, left = 0;
+    for (uint32_t seed = 0; seed < 4; ++seed) {
+        const Step step = redistributed(seed);
+        left += kAlbedo * sum_of_flux(step.before);
+        landed += sum_of_flux(step.after);
+        for (const VplLight& l : step.after) returned += 3.14159265 * l.diffuse.x / kAlbedo;
+    }
+    EXPECT_NEAR(landed / left, 1, .02);    // each by its own race
+    EXPECT_NEAR(returned / left, 1, .04);  // by all races together, and by discs instead of points
+}
+
+TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
+    size_t on_the_floor = 0;
+    for (const VplLight& l : redistributed(1).after) {
+        const glm::vec3 p(l.position), n(l.normal), middle(kSide / 2);
+        const glm::vec3 off = glm::abs(p - middle);
+        EXPECT_NEAR(std::max({off.x, off.y, off.z}), kSide / 2, 1e-3);
+        EXPECT_GT(glm::dot(n, middle - p), .9f);
+        on_the_floor += p.z < 1e-3f;
+    }
+    EXPECT_EQ(on_the_floor, 0u);  // points of a plane do not see each other
+}
+
+TEST_F(VplRedistribution, footprintsShareOutTheSurfaceThatIsLit) {
+    double area = 0;
+    for (const VplLight& l : redistributed(2).after) area += l.position.w;
+    EXPECT_NEAR(area / (5 * kSide * kSide), 1,
+                .25);  // 1 / density, a noisy estimate of the walls and the ceiling
+}
+
+TEST_F(VplRedistribution, theSameEveryRunAndAnotherForAnotherSeed) {
+    const Step first = redistributed(3), again = redistributed(3), other = redistributed(4);
+    size_t differ = 0;
+    for (size_t i = 0; i < first.after.size(); ++i) {
+        EXPECT_EQ(first.after[i].position, again.after[i].position);
+        EXPECT_EQ(first.after[i].diffuse, again.after[i].diffuse);
+        differ += first.after[i].position != other.after[i].position;
+    }
+    EXPECT_GT(differ, first.after.size() / 2);
+}
+
+TEST_F(VplRedistribution, theBestCandidateClumpsWhereTheRaceSpreads) {
+    // All lights look at the middle of the ceiling at its strongest: the paper's choice puts them all there.
+    const auto spread = [](const Step& step) {
+        double sum = 0;
+        for (const VplLight& l : step.after)
+            sum += glm::length(glm::vec3(l.position) - glm::vec3(kSide / 2, kSide / 2, kSide));
+        return sum / static_cast<double>(step.after.size());
+    };
+    double strayed = 0;
+    const Step best = redistributed(1, true);
+    for (size_t i = 0; i < best.after.size(); ++i)
+        strayed += glm::length(glm::vec2(best.after[i].position) - glm::vec2(best.before[i].position));
+    EXPECT_LT(strayed / static_cast<double>(best.after.size()), .3);  // straight above each, always
+    EXPECT_GT(spread(redistributed(1)), .5);
+}
+
+}  // namespace
+}  // namespace lucarne::gi::vpl
