@@ -29,6 +29,7 @@ struct EngineSettings {
     uint32_t atlas = 2048;            ///< texels along a side of the ISM atlas
     uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
     uint32_t samples = 64;            ///< reference: paths a pixel
+    bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/vpl/README.md)
     uint64_t seed = 1;
 
     bool operator==(const EngineSettings&) const = default;

@@ -26,7 +26,7 @@ std::span<const Preset> presets() {
                {.bounces = 1,
                 .vpls = 256,
                 .interleave = 4,
-                .atlas = 2048,
+                .atlas = 1024,
                 .light_resolution = 512,
                 .samples = 16},
                {.view = 2'000'000, .light_view = 1'000'000, .light = 1'000'000, .pixel_spacing = 1.0}},

@@ -75,24 +75,6 @@ void splat_range(const SplatPrograms& splat, Range blocks, Range maps, ShadowMap
     splat.draw_large->dispatch(large * kLargeGroup);
 }
 
-/// What the passes below read of the cut: its surfels decoded, and bounds of its blocks.
-Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& target) {
-    LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
-    LUCARNE_ASSIGN(const Program* bounds, device.program("gi/vpl/block_bounds.comp"));
-    const size_t ids = size_t{cut.blocks()} * kBlockSurfels;
-    LUCARNE_TRY(device.reserve(target.casters, ids * kCasterBytes, "ISM casters"));
-    LUCARNE_TRY(device.reserve(target.bounds, cut.blocks() * kBoundsBytes, "ISM casters"));
-    for (const Program* program : {casters, bounds}) program->set("cut_size", cut.size());
-    bounds->set("block_count", cut.blocks());
-    cut.bind();
-    target.casters.bind(kBindCasters);
-    casters->dispatch(static_cast<uint32_t>(ids));
-    target.casters.bind_texels(kUnitCasters, TexelView::four_words);
-    target.bounds.bind(kBindCasters);
-    bounds->dispatch(cut.blocks());
-    return {};
-}
-
 Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, ShadowMaps& target) {
     if (cut.blocks() == 0) return {};
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/vpl/meet.comp"));
@@ -100,7 +82,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     const Defines defines = target.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp", defines));
     LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp", defines));
-    LUCARNE_TRY(decode_casters(device, cut, target));
+    target.casters.bind_texels(kUnitCasters, TexelView::four_words);
     LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
     LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
     LUCARNE_TRY(device.reserve(target.large, kLargeDiscs * sizeof(uint32_t), "ISM queue"));
@@ -153,6 +135,23 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
     layout.splat_angle = static_cast<float>(kSplatTexels * texel_angle);
     layout.levels = 1;
     return layout;
+}
+
+Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& target) {
+    LUCARNE_ASSIGN(const Program* casters, device.program("gi/vpl/casters.comp"));
+    LUCARNE_ASSIGN(const Program* bounds, device.program("gi/vpl/block_bounds.comp"));
+    const size_t ids = size_t{cut.blocks()} * kBlockSurfels;
+    LUCARNE_TRY(device.reserve(target.casters, ids * kCasterBytes, "ISM casters"));
+    LUCARNE_TRY(device.reserve(target.bounds, cut.blocks() * kBoundsBytes, "ISM casters"));
+    for (const Program* program : {casters, bounds}) program->set("cut_size", cut.size());
+    bounds->set("block_count", cut.blocks());
+    cut.bind();
+    target.casters.bind(kBindCasters);
+    casters->dispatch(static_cast<uint32_t>(ids));
+    target.casters.bind_texels(kUnitCasters, TexelView::four_words);
+    target.bounds.bind(kBindCasters);
+    bounds->dispatch(cut.blocks());
+    return {};
 }
 
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,

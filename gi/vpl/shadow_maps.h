@@ -34,7 +34,11 @@ struct ShadowMaps {
     Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
-/// Draws `cut` into the maps of `seeds` and closes the holes between the splats.
+/// Decodes what the maps of all bounces are drawn from: the cut's surfels, and bounds of its blocks. Errors: no device
+/// memory, a shader that fails.
+Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& target);
+
+/// Draws `cut`, decoded before, into the maps of `seeds` and closes the holes between the splats.
 /// `sources` keeps which surfels they show. Errors: no device memory, a shader that fails.
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
                               const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target);

@@ -78,6 +78,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         return done;
     };
     const bool shiny = glossy(frame);
+    redistribution_.best_candidate = s.best_candidate;
     LUCARNE_TRY(pass("VPL join", [&] { return join_panes(frame, shiny, panes_); }));
     std::vector<LightView> views;
     for (size_t i = 0; i < frame.lights.size(); ++i)
@@ -87,6 +88,8 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     LUCARNE_TRY(pass("VPL seeding", [&] {
         return seed_lights(frame.device, views, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
     }));
+    LUCARNE_TRY(
+        pass("ISM casters", [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
         LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last,
                                      frame.times, maps_));

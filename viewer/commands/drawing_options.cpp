@@ -51,6 +51,8 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_option("--vpls", options.vpls, "Virtual point lights")
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
+    command.add_flag("--best-candidate", options.best_candidate,
+                     "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
     command.add_option("--interleave", options.interleave, "Pixels along a side that share out the lights")
         ->check(CLI::IsMember({1, 2, 4}))
         ->type_name("N");
@@ -80,6 +82,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     override_with(engine.only_bounce, options.only_bounce);
     override_with(engine.vpls, options.vpls);
     override_with(engine.interleave, options.interleave);
+    engine.best_candidate = options.best_candidate;
     override_with(engine.atlas, options.atlas);
     override_with(engine.samples, options.samples);
     override_with(engine.seed, options.seed);

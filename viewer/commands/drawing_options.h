@@ -28,11 +28,12 @@ struct DrawingOptions {
     std::optional<int32_t> only_bounce;
     std::optional<uint64_t> points, seed;
     std::optional<double> exposure;
+    bool best_candidate = false;
 };
 
 /// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
 /// --samples
-/// --seed --exposure. `options` outlives the command.
+/// --seed --exposure --best-candidate. `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
 
 /// The same, looked up and checked.

@@ -47,6 +47,7 @@ class VplRedistribution : public OnDevice {
         PassTimes times(*device);
         ShadowMaps maps;
         const auto layout = atlas_layout(1024, kCount);
+        EXPECT_TRUE(decode_casters(*device, (*loaded)->cut, maps));
         EXPECT_TRUE(draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, true, times, maps));
         Redistribution scratch;
         scratch.best_candidate = best_candidate;

@@ -72,6 +72,7 @@ class VplShadowMaps : public OnDevice {
         EXPECT_TRUE(loaded) << loaded.error().line();
         PassTimes times(*device);
         ShadowMaps drawn;
+        EXPECT_TRUE(decode_casters(*device, (*loaded)->cut, drawn));
         const auto done = draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, false, times, drawn);
         EXPECT_TRUE(done) << done.error().line();
         maps.texels = drawn.atlas.download_all<uint32_t>(layout->texels());
