@@ -55,20 +55,24 @@ void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
 #include "gi/vpl/sources.glsl"
 #endif
 
-void take_texel(uvec2 pair, Disc disc, float offset, uint surface, ivec2 at) {
-    vec2 uv = texel_centre(uvec2(at));
-    float norm2 = dot(uv, uv);
-    vec3 ray = vec3(2.0 * uv, 1.0 - norm2);
+// How far along the central ray of a texel, times (1 + u^2 + v^2), the disc lies; 0 where it is not met.
+float disc_hit(Disc disc, float offset, vec2 uv) {
+    vec3 ray = map_ray(uv);
     float t = offset / dot(disc.normal, ray);
     vec3 hit = t * ray;
     vec3 from_centre = hit - disc.centre;
-    if (t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest) {
-        uint index = texel_index(pair.y, uvec2(at));
-        atomicMin(atlas[index], pack_map_texel(t * (1.0 + norm2), surface));
+    bool met = t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest;
+    return met ? t : 0.0;
+}
+
+void take_texel(uvec2 pair, Disc disc, float offset, uint surface, uvec2 at) {
+    vec2 uv = texel_centre(at);
+    float distance_m = disc_hit(disc, offset, uv) * (1.0 + dot(uv, uv));
+    uint index = texel_index(pair.y, at);
+    atomicMin(atlas[index], pack_map_texel(distance_m, surface));
 #ifdef LUCARNE_SOURCES
-        atomicMin(sources[index], pack_source(t * (1.0 + norm2), pair.x));
+    atomicMin(sources[index], pack_source(distance_m, pair.x));
 #endif
-    }
 }
 
 // What all texels of a disc share: dot(normal, centre), and the code of its surface.

@@ -1,7 +1,7 @@
 // What meet.comp, enter.comp, splat.comp and splat_large.comp hand on to each other.
 layout(std430, binding = 11) buffer Queue {
     uint pair_count;   // that asked for a place; more than there is room for: the range is drawn in halves
-    uint large_count;  // discs that asked for a place among the large
+    uint large_count;  // of them too large for splat.comp; as many places as pairs
     uint queue_unused[2];
     uvec2 pairs[];     // surfel's id, map
 };
@@ -13,10 +13,3 @@ const uint kRunWords = 8u;
 // A block's bounds: least position and largest lod_area of its casters; greatest position and largest radius.
 layout(binding = 7) uniform usamplerBuffer block_bounds;
 
-// False where there is no room: then the disc is drawn at once, more slowly.
-bool queue_large(uint place) {
-    uint index = atomicAdd(large_count, 1u);
-    if (index >= uint(large_places.length())) return false;
-    large_places[index] = place;
-    return true;
-}

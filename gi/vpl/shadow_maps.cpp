@@ -24,7 +24,7 @@ constexpr uint32_t kRunMaps = 256;
 constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 constexpr uint32_t kQueuePairs = 4 << 20;  // 32 MiB; an atlas of 2048 x 2048 has some 2M
-constexpr uint32_t kLargeDiscs = 65535;    // a workgroup each: the least that OpenGL promises of them
+constexpr uint32_t kLargeGroups = 65535;   // the most that OpenGL promises; they share out the large discs
 constexpr uint32_t kLargeGroup = 16;       // local size of splat_large.comp
 
 struct Range {
@@ -71,7 +71,7 @@ void splat_range(const SplatPrograms& splat, Range blocks, Range maps, ShadowMap
         return;
     }
     splat.draw->dispatch(pairs);
-    const uint32_t large = std::min(target.queue.download_all<uint32_t>(2)[1], kLargeDiscs);
+    const uint32_t large = std::min(target.queue.download_all<uint32_t>(2)[1], kLargeGroups);
     splat.draw_large->dispatch(large * kLargeGroup);
 }
 
@@ -85,7 +85,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
     LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
     LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
-    LUCARNE_TRY(device.reserve(target.large, kLargeDiscs * sizeof(uint32_t), "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.large, kQueuePairs * sizeof(uint32_t), "ISM queue"));
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     target.bounds.bind_texels(kUnitBounds, TexelView::four_words);
     target.atlas.bind(kBindAtlas);

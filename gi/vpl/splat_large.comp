@@ -3,8 +3,7 @@ layout(local_size_x = 16) in;
 
 #include "gi/vpl/disc.glsl"
 
-void main() {
-    uvec2 pair = pairs[large_places[gl_WorkGroupID.x]];
+void draw(uvec2 pair) {
     Disc disc;
     ivec2 first, last;
     if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
@@ -13,6 +12,13 @@ void main() {
     int texels = width * (last.y - first.y + 1);
     float offset = disc_offset(disc);
     uint surface = disc_surface(disc);
-    for (int i = int(gl_LocalInvocationID.x); i < texels; i += 16)
-        take_texel(pair, disc, offset, surface, first + ivec2(i % width, i / width));
+    for (int i = int(gl_LocalInvocationID.x); i < texels; i += 16) {
+        int row = int((float(i) + 0.5) / float(width));  // exact below 2^23, and faster than integers
+        uvec2 at = uvec2(first + ivec2(i - row * width, row));
+        if (disc_hit(disc, offset, texel_centre(at)) > 0.0) take_texel(pair, disc, offset, surface, at);
+    }
+}
+
+void main() {
+    for (uint i = gl_WorkGroupID.x; i < large_count; i += gl_NumWorkGroups.x) draw(pairs[large_places[i]]);
 }
