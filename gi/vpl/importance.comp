@@ -23,8 +23,9 @@ void main() {
         float intensity = 0.0;
         for (uint i = 0u; i < 5u; ++i) {
             vec2 offset = i == 4u ? vec2(0.5) : vec2(i & 1u, i >> 1);
-            vec3 away = normalize(view_ray(light_view, vec2(at) + offset));
-            intensity += 0.2 * luminance(light_intensity(spot, away));
+            vec3 ray = view_ray(light_view, vec2(at) + offset);
+            float distance2 = texel.depth * texel.depth * dot(ray, ray);
+            intensity += 0.2 * luminance(view_intensity(normalize(ray), distance2));
         }
         if (texel.depth > 0.0 && intensity > 0.0) {
             Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));

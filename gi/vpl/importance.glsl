@@ -10,7 +10,8 @@
 layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
-uniform Light spot;
+uniform Light light;
+uniform uint face;  // of a point light's cube that light_view shows
 
 // The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
 // surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).
@@ -20,6 +21,14 @@ uint importance_level(uint level) {  // where a level begins
     uint first = 0u;
     for (uint l = 0u; l < level; ++l) first += (importance_side >> l) * (importance_side >> l);
     return first;
+}
+
+// What leaves the view's pinhole in a unit direction, W/sr, to what it meets at a squared distance there. A directional
+// light's pinhole is so far away that its irradiance is spread like the flux through the solid angle.
+vec3 view_intensity(vec3 away, float distance2) {
+    if (light.kind == kDirectionalLight) return light.strength.xyz * distance2;
+    if (light.kind == kPointLight && cube_face(away) != face) return vec3(0.0);
+    return light_intensity(light, away);
 }
 
 // Solid angle of one pixel of the light's view about the point `at` (pixels): dA cos^3 at unit depth, sr.

@@ -38,10 +38,10 @@ VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     vec3 ray = view_ray(light_view, centre);
     vec3 away = normalize(ray);
     float density = probability / ray_solid_angle(centre);  // 1/sr
-    vec3 flux = light_intensity(spot, away) / (float(light_count) * density);
+    vec3 offset = position - light_view.origin.xyz;
+    vec3 flux = view_intensity(away, dot(offset, offset)) / (float(light_count) * density);
     Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
     float cosine = max(-dot(normal, away), kLeastCosine);
-    vec3 offset = position - light_view.origin.xyz;
     float footprint = dot(offset, offset) / (float(light_count) * density * cosine);
     return VplLight(vec4(position, footprint), vec4(normal, texel_radius(texel)), vec4(flux * r.kd / kPi, r.exponent),
                     vec4(flux, stands_clear(light_ids[pixel.y * light_view.width + pixel.x], normal, texel_radius(texel))),
@@ -52,11 +52,11 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= light_count) return;
     WarpedPoint warped = warp(points[index]);
-    VplLight light = dead_light();
+    VplLight seeded = dead_light();
     uvec2 pixel = uvec2(warped.at);
     if (warped.probability > 0.0 && pixel.x < light_view.width && pixel.y < light_view.height) {
         GBufferTexel texel = light_texels[pixel.y * light_view.width + pixel.x];
-        if (texel.depth > 0.0) light = light_on(texel, pixel, warped.probability);
+        if (texel.depth > 0.0) seeded = light_on(texel, pixel, warped.probability);
     }
-    lights[first_light + index] = light;
+    lights[first_light + index] = seeded;
 }

@@ -42,25 +42,26 @@ uint32_t importance_side(const CameraView& view) {
     return std::bit_ceil(std::max({view.width, view.height, 1u}));
 }
 
-void set_view(const Program& program, const LightView& view) {
-    program.set("importance_side", importance_side(view.view));
-    set(program, "light_view", view.view);
-    set(program, "spot", view.light);
+void set_sight(const Program& program, const Sight& sight) {
+    program.set("importance_side", importance_side(sight.view));
+    set(program, "light_view", sight.view);
+    set(program, "light", sight.light);
+    program.set("face", sight.face);
 }
 
 }  // namespace
 
-Result<double> map_importance(Device& device, const LightView& view, Buffer& target) {
+Result<double> map_importance(Device& device, const Sight& sight, Buffer& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/vpl/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/vpl/importance_mip.comp"));
-    const uint32_t side = importance_side(view.view);
+    const uint32_t side = importance_side(sight.view);
     size_t texels = 0;
     for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
     LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
-    view.seen.texels.bind(kBindGBuffer);
+    sight.seen.texels.bind(kBindGBuffer);
     target.bind(kBindImportance);
-    set_view(*importance, view);
-    set_view(*mip, view);
+    set_sight(*importance, sight);
+    set_sight(*mip, sight);
     importance->dispatch(side, side);
     for (uint32_t level = 1; side >> level > 0; ++level) {
         mip->set("level", level);
@@ -73,46 +74,22 @@ Result<double> map_importance(Device& device, const LightView& view, Buffer& tar
     return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
 }
 
-Result<void> seed_view(Device& device, const LightView& view, const Buffer& importance,
-                       const Buffer& materials, std::span<const glm::vec2> points, uint32_t first,
-                       Seeds& target) {
+Result<void> seed_view(Device& device, const Sight& sight, const Buffer& importance, const Buffer& materials,
+                       std::span<const glm::vec2> points, uint32_t first, Seeds& target) {
     LUCARNE_ASSIGN(const Program* seed, device.program("gi/vpl/seed.comp"));
     LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
     target.points.upload(0, std::as_bytes(points));
-    view.cut.bind();
-    view.seen.texels.bind(kBindGBuffer);
-    view.seen.ids.bind(kBindLightIds);
+    sight.cut.bind();
+    sight.seen.texels.bind(kBindGBuffer);
+    sight.seen.ids.bind(kBindLightIds);
     materials.bind(kBindMaterials);
     importance.bind(kBindImportance);
     target.points.bind(kBindPoints);
     target.lights.bind(kBindLights);
-    set_view(*seed, view);
+    set_sight(*seed, sight);
     seed->set("first_light", first);
     seed->set("light_count", static_cast<uint32_t>(points.size()));
     seed->dispatch(static_cast<uint32_t>(points.size()));
-    return {};
-}
-
-Result<void> seed_lights(Device& device, std::span<const LightView> views, const Buffer& materials,
-                         uint32_t count, uint64_t seed, Seeds& target) {
-    LUCARNE_TRY(device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
-    target.importance.resize(std::max(target.importance.size(), views.size()));
-    materials.bind(kBindMaterials);  // for the importance
-    std::vector<double> weights;
-    for (size_t i = 0; i < views.size(); ++i) {
-        LUCARNE_ASSIGN(const double weight, map_importance(device, views[i], target.importance[i]));
-        weights.push_back(weight);
-    }
-    target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
-    const std::vector<uint32_t> shares = share_out(weights, count);
-    uint32_t first = 0;
-    for (size_t i = 0; i < views.size(); ++i) {
-        if (shares[i] == 0) continue;
-        LUCARNE_TRY(seed_view(device, views[i], target.importance[i], materials,
-                              halton_points(shares[i], seed, i), first, target));
-        first += shares[i];
-    }
-    settle_lights(target, count);
     return {};
 }
 

@@ -34,8 +34,8 @@ struct ShadowMaps {
     Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
-/// Decodes what the maps of all bounces are drawn from: the cut's surfels, and bounds of its blocks. Errors: no device
-/// memory, a shader that fails.
+/// Decodes what the maps of all bounces are drawn from: the cut's surfels, and bounds of its blocks. Errors:
+/// no device memory, a shader that fails.
 Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& target);
 
 /// Draws `cut`, decoded before, into the maps of `seeds` and closes the holes between the splats.

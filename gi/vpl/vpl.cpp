@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "gi/gbuffer/direct_light.h"
+#include "gi/vpl/light_sights.h"
 #include "gi/vpl/redistribution.h"
-#include "gi/vpl/seeding.h"
 #include "gi/vpl/shading.h"
 #include "gi/vpl/shadow_maps.h"
 #include "io/core/random.h"
@@ -27,7 +27,8 @@ class VplEngine : public Engine {
     Result<void> light_indirectly(Frame& frame);
 
     Buffer materials_;
-    std::vector<GBuffer> seen_;  ///< by each light: its G-buffer and its shadow map
+    Sky sky_;
+    LightSights sights_;
     Seeds seeds_;
     ShadowMaps maps_;
     Panes panes_;
@@ -62,6 +63,7 @@ Result<void> VplEngine::prepare(Frame& frame) {
     if (frame.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
     warn_of_lights_left_out(frame, "vpl", said_left_out_);
+    LUCARNE_TRY(upload_sky(frame, sky_));
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
@@ -80,16 +82,10 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const bool shiny = glossy(frame);
     redistribution_.best_candidate = s.best_candidate;
     LUCARNE_TRY(pass("VPL join", [&] { return join_panes(frame, shiny, panes_); }));
-    std::vector<LightView> views;
-    for (size_t i = 0; i < frame.lights.size(); ++i)
-        if (casts_shadow_map(frame.lights[i]))
-            views.push_back({frame.lights[i], spot_view(frame.lights[i], s.light_resolution),
-                             *frame.cuts.light_views[i], seen_[i]});
     LUCARNE_TRY(pass("VPL seeding", [&] {
-        return seed_lights(frame.device, views, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
+        return sights_.seed(frame, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
     }));
-    LUCARNE_TRY(
-        pass("ISM casters", [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
+    LUCARNE_TRY(pass("ISM casters", [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
         LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last,
                                      frame.times, maps_));
@@ -109,24 +105,21 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
 /// Emission, background and what the lights' first reflection sends to the eye.
 Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
-    LUCARNE_TRY(add_own_light(frame, materials_, true));
-    for (size_t i = 0; i < frame.lights.size(); ++i)
-        if (casts_shadow_map(frame.lights[i]))
-            LUCARNE_TRY(add_spot_light(frame, materials_, frame.lights[i], seen_[i]));
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
+    for (size_t i = 0; i < sights_.views().size(); ++i) {
+        LUCARNE_ASSIGN(const GBuffer* seen, sights_.look(frame, i));
+        LUCARNE_TRY(add_light(frame, materials_, sights_.views()[i], *seen));
+    }
     frame.times.end();
     return {};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    seen_.resize(frame.lights.size());
+    sights_.begin(frame);
     frame.times.begin("light G-buffer");
-    for (size_t i = 0; i < frame.lights.size(); ++i)
-        if (casts_shadow_map(frame.lights[i]))
-            LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[i],
-                                  spot_view(frame.lights[i], frame.settings.light_resolution), seen_[i]));
+    if (!sights_.views().empty()) LUCARNE_TRY(sights_.look(frame, 0));
     frame.times.end();
-    indirect_ = wants_indirect(frame.settings) &&
-                std::any_of(frame.lights.begin(), frame.lights.end(), casts_shadow_map);
+    indirect_ = wants_indirect(frame.settings) && !sights_.views().empty();
     if (indirect_)
         LUCARNE_TRY(light_indirectly(frame));
     else

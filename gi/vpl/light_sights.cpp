@@ -1,0 +1,66 @@
+#include "gi/vpl/light_sights.h"
+
+#include <algorithm>
+
+#include "gi/vpl/bindings.h"
+#include "gi/vpl/halton.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+constexpr size_t kMostHeld = 6;  // a point light's
+constexpr size_t kNoView = SIZE_MAX;
+
+}  // namespace
+
+void LightSights::begin(const Frame& frame) {
+    views_ = light_views(frame);
+    held_.resize(std::min(views_.size(), kMostHeld));
+    for (Held& held : held_) held.view = kNoView;
+}
+
+Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
+    Held& held = held_[index % kMostHeld];
+    if (held.view == index) return &held.gbuffer;
+    held.view = kNoView;
+    const LightView& view = views_[index];
+    LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[view.light], view.view, held.gbuffer));
+    held.view = index;
+    return &held.gbuffer;
+}
+
+Result<Sight> LightSights::sight(Frame& frame, size_t index) {
+    LUCARNE_ASSIGN(const GBuffer* seen, look(frame, index));
+    const LightView& view = views_[index];
+    return Sight{frame.lights[view.light], view.face, view.view, *frame.cuts.light_views[view.light], *seen};
+}
+
+Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,
+                               Seeds& target) {
+    LUCARNE_TRY(frame.device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
+    std::vector<double> weights;
+    for (size_t i = 0; i < views_.size(); ++i) {
+        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        materials.bind(kBindMaterials);
+        LUCARNE_ASSIGN(const double weight, map_importance(frame.device, from, importance_));
+        weights.push_back(weight);
+    }
+    target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
+    const std::vector<uint32_t> shares = share_out(weights, count);
+    uint32_t first = 0;
+    for (size_t i = 0; i < views_.size(); ++i) {
+        if (shares[i] == 0) continue;
+        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        if (views_.size() > 1) {
+            materials.bind(kBindMaterials);
+            LUCARNE_TRY(map_importance(frame.device, from, importance_));
+        }
+        LUCARNE_TRY(seed_view(frame.device, from, importance_, materials, halton_points(shares[i], seed, i),
+                              first, target));
+        first += shares[i];
+    }
+    settle_lights(target, count);
+    return {};
+}
+
+}  // namespace lucarne::gi::vpl
