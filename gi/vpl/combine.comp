@@ -23,7 +23,7 @@ void main() {
     receiver.to_viewer = light.normal.xyz;
     receiver.reflectance = Reflectance(vec3(0.0), 0.0, 1.0);
     vec3 irradiance = vec3(0.0);
-    float density = 0.0;  // 1/m^2
+    float density = 0.0, own = 0.0;  // 1/m^2; of all races, of its own
     for (uint i = 0u; i < light_count; ++i) {
         float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
         Arriving arriving = from_vpl(i, receiver);
@@ -34,10 +34,14 @@ void main() {
 #ifdef LUCARNE_GLOSSY
         intensity += vpl_lobe(i, vpl_normal(i).xyz, vpl_diffuse(i).w, normalize(receiver.position - vpl_position(i).xyz));
 #endif
-        density += luminance(intensity) * arriving.geometry / sum;
+        float chance = luminance(intensity) * arriving.geometry / sum;
+        density += chance;
+        if (i == index) own = chance;
         irradiance += arriving.light.irradiance;
     }
-    if (!(density > 0.0)) {  // nearer to its parent than surfaces can be told apart
+    // Where its own race would not come by this rule (nearer to its parent's plane than surfaces can be told apart), what
+    // the others send must not count, or it would count twice.
+    if (!(own > 0.0)) {
         next[index].diffuse.xyz *= light.flux.xyz;
         return;
     }

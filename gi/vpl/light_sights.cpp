@@ -13,6 +13,12 @@ constexpr size_t kNoView = SIZE_MAX;
 
 }  // namespace
 
+bool emits(const Frame& frame) {
+    return std::any_of(frame.materials.begin(), frame.materials.end(), [](const Material& m) {
+        return m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0;
+    });
+}
+
 void LightSights::begin(const Frame& frame) {
     views_ = light_views(frame);
     held_.resize(std::min(views_.size(), kMostHeld));
@@ -45,9 +51,14 @@ Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t c
         LUCARNE_ASSIGN(const double weight, map_importance(frame.device, from, importance_));
         weights.push_back(weight);
     }
+    emitters_.running.clear();
+    if (emits(frame)) LUCARNE_TRY(weigh_emitters(frame.device, *frame.cuts.light, materials, emitters_));
+    weights.push_back(emitters_.flux());
     target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
     const std::vector<uint32_t> shares = share_out(weights, count);
-    uint32_t first = 0;
+    LUCARNE_TRY(
+        seed_emitters(frame.device, *frame.cuts.light, materials, emitters_, shares.back(), seed, 0, target));
+    uint32_t first = shares.back();
     for (size_t i = 0; i < views_.size(); ++i) {
         if (shares[i] == 0) continue;
         LUCARNE_ASSIGN(const Sight from, sight(frame, i));

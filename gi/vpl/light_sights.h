@@ -5,12 +5,17 @@
 
 #include "gi/engine.h"
 #include "gi/gbuffer/light_view.h"
+#include "gi/vpl/emitters.h"
 #include "gi/vpl/seeding.h"
 
 namespace lucarne::gi::vpl {
 
-/// G-buffers of the lights' views. A few are held; of many lights, the others are drawn again whenever they
-/// are looked at, so that the memory does not grow with their number.
+/// Whether any material shines by itself.
+bool emits(const Frame& frame);
+
+/// What seeds VPLs: surfels that shine by themselves, and G-buffers of the lights' views. A few are held; of
+/// many lights, the others are drawn again whenever they are looked at, so that the memory does not grow with
+/// their number.
 class LightSights {
  public:
     /// The views of a new frame; nothing is drawn yet.
@@ -35,6 +40,7 @@ class LightSights {
     std::vector<LightView> views_;
     std::vector<Held> held_;
     Buffer importance_;
+    Emitters emitters_;
 };
 
 }  // namespace lucarne::gi::vpl

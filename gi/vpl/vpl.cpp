@@ -119,7 +119,7 @@ Result<void> VplEngine::render(Frame& frame) {
     frame.times.begin("light G-buffer");
     if (!sights_.views().empty()) LUCARNE_TRY(sights_.look(frame, 0));
     frame.times.end();
-    indirect_ = wants_indirect(frame.settings) && !sights_.views().empty();
+    indirect_ = wants_indirect(frame.settings) && (!sights_.views().empty() || emits(frame));
     if (indirect_)
         LUCARNE_TRY(light_indirectly(frame));
     else

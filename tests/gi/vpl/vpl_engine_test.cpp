@@ -110,6 +110,43 @@ TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
     EXPECT_NEAR(mean(scene) / sum, 1, .02);
 }
 
+TEST_F(VplEngineTest, lightsOfEveryKindWithAShadowMapLightIndirectlyAsInTheReference) {
+    AnalyticScene scene = box_with_a_block();
+    scene.settings.vpls = 1024;
+    scene.settings.interleave = 1;
+    Light point{};
+    point.kind = kPointLight;
+    point.position = {1.5f, .5f, 1.2f, 0};
+    point.strength = {3, 3, 3, 0};
+    Light sun{};
+    sun.kind = kDirectionalLight;
+    const glm::vec3 down = glm::normalize(glm::vec3(.2f, 1, -.6f));  // through the open front
+    sun.direction = {down.x, down.y, down.z, 0};
+    sun.strength = {4, 4, 4, 0};
+    for (const Light& light : {point, sun}) {
+        scene.lights = {light};
+        const double truth = mean(scene, "reference");
+        EXPECT_GT(truth, .01);
+        EXPECT_NEAR(mean(scene) / truth, 1, .05) << light.kind;
+    }
+}
+
+TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
+    AnalyticScene scene = box_with_a_block();
+    scene.settings.vpls = 1024;
+    scene.settings.interleave = 1;
+    scene.lights.clear();
+    scene.materials = {material(1, 0, 1, 0), material(.5f, 0, 1, 4)};
+    for (Surfel& s : scene.surfels)  // a lamp in the ceiling
+        if (s.position.z > 1.99f && std::abs(s.position.x - 1) < .3f && std::abs(s.position.y - 1) < .3f)
+            s.material = 1;
+    // Half of the VPLs shine at the outside and light nothing, of all bounces.
+    for (const int bounce : {1, 2}) {
+        scene.settings.only_bounce = bounce;
+        EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << bounce;
+    }
+}
+
 TEST_F(VplEngineTest, atlasSizeAndSeedHardlyChangeTheMean) {
     AnalyticScene scene = box_with_a_block();
     const double first = mean(scene);

@@ -1,0 +1,20 @@
+// How much every surfel of the light cut shines: its share of the surface times the luminance of its emission, W/sr.
+layout(local_size_x = 256) in;
+
+#include "gi/shared/brdf.h"
+#include "gi/shared/cut.glsl"
+
+layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 5) writeonly buffer Weights { float weights[]; };
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+    uint item;
+    PackedSurfel surfel;
+    float weight = 0.0;
+    if (cut_surfel(id, item, surfel)) {
+        vec3 emission = materials[surfel_material(surfel.b)].emission.xyz;
+        weight = dot(emission, vec3(0.2126, 0.7152, 0.0722)) * cut_surfel_area(item, surfel);
+    }
+    weights[id] = weight;
+}
