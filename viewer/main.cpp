@@ -19,6 +19,10 @@ int main(int argc, char** argv) {
             complain(done.error().line());
             return static_cast<int>(done.error().kind);
         }
+        if (std::fflush(stdout) != 0) {  // what was printed is the result
+            complain("output: cannot be written; look at where it is sent");
+            return static_cast<int>(ErrorKind::failed);
+        }
         return 0;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help

@@ -51,20 +51,23 @@ void Progress::print(bool last) {
     const double elapsed = std::max(seconds(), 1e-6);
     const auto done = static_cast<double>(done_.load());
     const double rate = done / elapsed;
+    const char *start = terminal_ ? "\r" : "", *end = terminal_ ? "\x1b[K" : "\n";
+    std::string line;
     if (last) {
-        fmt::print(stderr, "{}lucarne: {}: {} {} in {:.1f} s ({}/s){}\n", terminal_ ? "\r" : "", label_,
-                   count_text(done), unit_, elapsed, count_text(rate), terminal_ ? "\x1b[K" : "");
+        line = fmt::format("{}lucarne: {}: {} {} in {:.1f} s ({}/s){}\n", start, label_, count_text(done), unit_, elapsed,
+                           count_text(rate), terminal_ ? end : "");
     } else if (total_ == 0) {
-        fmt::print(stderr, "{}lucarne: {}: {} {}, {}/s{}", terminal_ ? "\r" : "", label_, count_text(done), unit_,
-                   count_text(rate), terminal_ ? "\x1b[K" : "\n");
+        line = fmt::format("{}lucarne: {}: {} {}, {}/s{}", start, label_, count_text(done), unit_, count_text(rate), end);
     } else {
         const double share = std::min(1.0, done / static_cast<double>(total_));
         const double left = rate > 0 ? (static_cast<double>(total_) - done) / rate : 0;
         const auto filled = static_cast<size_t>(share * 20);
         const std::string bar = terminal_ ? fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", 20 - filled) : "";
-        fmt::print(stderr, "{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", terminal_ ? "\r" : "", label_, bar,
-                   share * 100, count_text(rate), unit_, std::max(0.0, left), terminal_ ? "\x1b[K" : "\n");
+        line = fmt::format("{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", start, label_, bar, share * 100,
+                           count_text(rate), unit_, std::max(0.0, left), end);
     }
+    // fmt::print would throw where stderr cannot be written (a log on a full disk): no reason to stop the work.
+    std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }
 

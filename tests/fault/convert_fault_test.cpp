@@ -171,6 +171,18 @@ TEST(ConvertFaults, RejectEveryBadSharedScanOrConvertIt) {
     EXPECT_GT(files, 10u);
 }
 
+TEST(Commands, GoOnWhereTheirProgressCannotBeWrittenAndFailWhereTheirResultCannot) {
+    const TempFolder folder;
+    const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc");
+    ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
+    // The comment sign keeps lucarne() from joining stderr again.
+    EXPECT_EQ(lucarne("convert --normals none " + scan + " -o " + cache + " 2>/dev/full #").code, 0);
+    EXPECT_EQ(lucarne("verify " + cache).code, 0);
+    const auto info = lucarne("info " + cache + " 2>&1 >/dev/full #");
+    EXPECT_EQ(info.code, 1);
+    EXPECT_NE(info.text.find("cannot be written"), std::string::npos) << info.text;
+}
+
 TEST(Commands, ConvertInfoVerifyAndExportWorkTogether) {
     const TempFolder folder;
     const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc");
