@@ -145,7 +145,8 @@ TEST_F(RenderCommand, FiguresNameEngineSizePointsAndPasses) {
 
 TEST_F(RenderCommand, PointsCapEveryCut) {
     ASSERT_EQ(render("p.png", "--engine direct --points 1000 --json " + at("figures.json")).code, 0);
-    for (const auto& [cut, points] : json("figures.json")["points"].items()) EXPECT_LE(points, 1000) << cut;
+    const auto figures = json("figures.json");
+    for (const auto& [cut, points] : figures["points"].items()) EXPECT_LE(points, 1000) << cut;
 }
 
 TEST_F(RenderCommand, RawScanIsRenderedThroughATemporaryCacheThatGoes) {
