@@ -1,0 +1,19 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "viewer/flythrough/path.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    const auto path = lucarne::viewer::parse_path({reinterpret_cast<const char*>(data), size}, "fuzz");
+    if (!path) return 0;
+    const size_t frames = std::min<size_t>(path->frames(), 100);
+    for (size_t i = 0; i < frames; ++i) {
+        const auto camera = path->at(path->start() + static_cast<double>(i) / path->frames_per_second);
+        // Whoever accepts a path can fly it.
+        if (!std::isfinite(camera.position.x + camera.target.x + camera.up.x + camera.vertical_fov))
+            std::abort();
+    }
+    return 0;
+}

@@ -1,0 +1,86 @@
+// make_cache_seed FILE: a cache of few points and several levels in the form that fuzz_cache takes. The
+// converter makes caches of one node of so few points.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <glm/common.hpp>
+
+#include "octree/cache_writer.h"
+
+namespace lucarne::octree {
+namespace {
+
+SourceHeader header() {
+    SourceHeader header;
+    header.schema.position = io::PositionType::f32;
+    header.schema.stride = 12;
+    header.schema.add(std::string(io::names::color), io::ScalarType::u8, 3);
+    header.schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
+    header.schema.add(std::string(io::names::area), io::ScalarType::u16);
+    header.schema.add(std::string(io::names::classification), io::ScalarType::u8);
+    header.min = glm::dvec3(1);  // add_node() widens them
+    header.max = glm::dvec3(0);
+    io::ScanInfo scan;
+    scan.path = "a.las";
+    scan.stations.push_back({1, {0.5, 0.5, 0.5}});
+    header.scans = {scan};
+    return header;
+}
+
+/// `count` points spread over the node's cube.
+Result<void> add_node(CacheWriter& writer, SourceHeader& whole, NodeKey key, uint8_t children, uint32_t count,
+                      uint64_t below) {
+    const uint32_t stride = whole.schema.stride;
+    std::vector<std::byte> records(size_t{count} * stride, std::byte{64});
+    const Cube cube = whole.root.of(key);
+    for (uint32_t i = 0; i < count; ++i) {
+        const glm::vec3 point(cube.min + cube.size * (i + 0.5) / static_cast<double>(count));
+        for (int axis = 0; axis < 3; ++axis)
+            io::store(&records[i * stride + 4 * static_cast<size_t>(axis)], point[axis]);
+        whole.min = glm::min(whole.min, glm::dvec3(point));
+        whole.max = glm::max(whole.max, glm::dvec3(point));
+    }
+    format::Entry entry;
+    entry.key = key;
+    entry.child_mask = children;
+    entry.count = count;
+    entry.subtree_count = count + below;
+    entry.payload_bytes = static_cast<uint32_t>(records.size());
+    LUCARNE_ASSIGN(entry.payload_offset, writer.append(records));
+    entry.checksum = format::checksum(records);
+    entry.area_floor = {0.1f, 0.2f, 0.3f, 0.4f};
+    whole.points += count;
+    return writer.add(entry);
+}
+
+Result<void> write(const std::filesystem::path& path) {
+    SourceHeader whole = header();
+    LUCARNE_ASSIGN(auto writer, CacheWriter::create(path, true, path.parent_path()));
+    const NodeKey root, six = root.child(6);
+    LUCARNE_TRY(add_node(writer, whole, root.child(1), 0, 2, 0));
+    LUCARNE_TRY(add_node(writer, whole, six.child(3), 0, 3, 0));
+    LUCARNE_TRY(add_node(writer, whole, six, 1 << 3, 2, 3));
+    LUCARNE_TRY(add_node(writer, whole, root, 1 << 1 | 1 << 6, 4, 7));
+    return writer.finish(whole);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
+
+int main(int count, char** arguments) {
+    if (count != 2) return 2;
+    const std::filesystem::path path = std::filesystem::absolute(arguments[1]);
+    const auto written = lucarne::octree::write(path);
+    if (!written) {
+        std::fputs((written.error().line() + "\n").c_str(), stderr);
+        return 1;
+    }
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(std::istreambuf_iterator<char>(in), {});
+    bytes.erase(88, lucarne::octree::format::kFirstPayload - 88);
+    std::ofstream(path, std::ios::binary) << bytes;
+    return 0;
+}
