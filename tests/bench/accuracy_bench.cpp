@@ -1,0 +1,230 @@
+// The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
+// with its preset, its figure and its target. A program and no test: `./run accuracy` takes some minutes, and
+// misses are printed, not hidden. Pictures go into FOLDER (default: a temporary one that is removed).
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "gi/compare/metrics.h"
+#include "io/image/image.h"
+#include "tests/gi/analytic_frame.h"
+#include "tests/gi/surfel_scenes.h"
+#include "viewer/presets.h"
+
+namespace lucarne {
+namespace {
+
+void row(const std::string& scene, const std::string& measure, double value, double target, bool percent) {
+    const double scale = percent ? 100 : 1;
+    fmt::print("{:<44} {:<28} {:>9.4g} {:1} target {:>6.4g}  {}\n", scene, measure, scale * value,
+               percent ? "%" : "", scale * target, std::abs(value) <= target ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+
+gi::EngineSettings high() {
+    return viewer::find_preset("high")->engine;
+}
+
+Result<void> furnace(gi::Device& device) {
+    gi::scenes::AnalyticScene scene;
+    scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
+    scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
+    scene.camera = gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 128);
+    scene.settings = high();
+    for (uint32_t bounces = 1; bounces <= 4; ++bounces) {
+        scene.settings.bounces = bounces;
+        const double truth = 1 - std::pow(0.5, bounces + 1);
+        double sum = 0;
+        constexpr int kFrames = 4;
+        for (int i = 0; i < kFrames; ++i) {
+            LUCARNE_ASSIGN(const auto rendered,
+                           gi::scenes::render(device, "vpl", scene, static_cast<uint64_t>(i)));
+            const double mean = gi::mean_luminance(rendered.radiance);
+            if (i == 0)
+                row(fmt::format("closed furnace, {} bounces, high", bounces), "mean", mean / truth - 1, .02,
+                    true);
+            sum += mean / kFrames;
+        }
+        row(fmt::format("closed furnace, {} bounces, 4 frames", bounces), "mean", sum / truth - 1, .005,
+            true);
+    }
+    return {};
+}
+
+/// The mean radiance of a unit square of albedo .5 by another that shines with radiance 1, over .5: the form
+/// factor between them (Howell's catalogue, C-11 and C-14).
+Result<void> form_factor(gi::Device& device, const std::string& name, const glm::vec3& corner,
+                         const glm::vec3& u, const glm::vec3& v, double truth) {
+    gi::scenes::AnalyticScene scene;
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), o(0.0f);
+    gi::scenes::add_rectangle(scene.surfels, o, x, y, 150, glm::vec3(.5f), 0);
+    gi::scenes::add_rectangle(scene.surfels, corner, u, v, 150, glm::vec3(0.0f), 1);
+    scene.materials = {gi::scenes::material(1, 0, 1, 0), gi::scenes::material(0, 0, 1, 1)};
+    // From far away and low, so that every part of the receiver counts alike and the emitter is not in the
+    // way.
+    scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, 256);
+    scene.settings = high();
+    scene.settings.only_bounce = 1;
+    double sum = 0;
+    constexpr int kFrames = 4;
+    for (int i = 0; i < kFrames; ++i) {
+        LUCARNE_ASSIGN(const auto rendered,
+                       gi::scenes::render(device, "vpl", scene, static_cast<uint64_t>(i)));
+        double mean = 0;
+        size_t pixels = 0;
+        for (size_t p = 0; p < rendered.texels.size(); ++p) {
+            if (!(rendered.texels[p].depth > 0) || (rendered.texels[p].material & 0xffffu) != 0) continue;
+            mean += rendered.radiance[p].y / .5;
+            ++pixels;
+        }
+        mean /= static_cast<double>(std::max<size_t>(pixels, 1));
+        if (i == 0) row("form factor, " + name + ", high", "mean", mean / truth - 1, .02, true);
+        sum += mean / kFrames;
+    }
+    row("form factor, " + name + ", 4 frames", "mean", sum / truth - 1, .005, true);
+    return {};
+}
+
+/// A scan of a scene as a cache, and pictures of it by the program.
+class Scan {
+ public:
+    Scan(std::string scene, const std::string& points, const std::filesystem::path& folder)
+        : scene_(std::move(scene)), folder_(folder) {
+        const std::string scan = folder / (scene_ + ".ply");
+        cache_ = folder / (scene_ + ".luc");
+        run("generate " + scene_ + " --even --normals --points " + points + " -o " + scan + " --overwrite");
+        run("convert " + scan + " -o " + cache_ + " --overwrite");
+        std::filesystem::remove(scan);
+    }
+
+    Result<std::vector<glm::vec4>> picture(const std::string& name, const std::string& arguments) {
+        LUCARNE_ASSIGN(io::Image image, io::read_exr(render(name, arguments)));
+        return std::move(image.pixels);
+    }
+
+    struct Truth {
+        std::vector<glm::vec4> whole, first, second;
+    };
+    Result<Truth> truth(const std::string& name, const std::string& arguments) {
+        const std::string file = render(name, "--engine reference --layers " + arguments);
+        const std::string stem = file.substr(0, file.size() - 4);
+        LUCARNE_ASSIGN(io::Image whole, io::read_exr(file));
+        LUCARNE_ASSIGN(io::Image first, io::read_exr(stem + ".a.exr"));
+        LUCARNE_ASSIGN(io::Image second, io::read_exr(stem + ".b.exr"));
+        return Truth{std::move(whole.pixels), std::move(first.pixels), std::move(second.pixels)};
+    }
+
+ private:
+    static void run(const std::string& arguments) {
+        if (std::system((LUCARNE_BINARY " " + arguments + " > /dev/null 2>&1").c_str()) != 0)
+            fmt::print(stderr, "lucarne {} failed\n", arguments);
+    }
+    std::string render(const std::string& name, const std::string& arguments) {
+        const std::string file = folder_ / (scene_ + "-" + name + ".exr");
+        run("render " + cache_ + " -o " + file + " --overwrite --scene " + LUCARNE_SOURCE_DIR +
+            "/data/scenes/" + scene_ + ".json " + arguments);
+        return file;
+    }
+
+    std::string scene_, cache_;
+    std::filesystem::path folder_;
+};
+
+Result<void> judge(const std::string& what, const std::vector<glm::vec4>& picture, const Scan::Truth& truth,
+                   double rel_mse, double energy) {
+    LUCARNE_ASSIGN(const gi::ImageMetrics metrics, gi::compare_images(picture, truth.whole));
+    LUCARNE_ASSIGN(const gi::HalvesError unbiased,
+                   gi::compare_with_halves(picture, truth.first, truth.second));
+    if (rel_mse > 0) {
+        row(what, "relMSE, unbiased", unbiased.rel_mse, rel_mse, false);
+        row(what, "relMSE without the worst .1 %", metrics.rel_mse_trimmed, rel_mse, false);
+    }
+    row(what, "energy", metrics.luminance_error, energy, true);
+    return {};
+}
+
+Result<void> cornell(const std::filesystem::path& folder) {
+    Scan scan("cornell", "2M", folder);
+    const std::string size = "--size 256x256 --preset high ";
+    Scan::Truth first;
+    for (const std::string preset : {"interactive", "high"}) {
+        const std::string common = "--size 256x256 --only-bounce 1 --preset " + preset;
+        LUCARNE_ASSIGN(first, scan.truth("b1", common + " --samples 256"));
+        LUCARNE_ASSIGN(const auto picture, scan.picture(preset, common));
+        LUCARNE_TRY(judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
+    }
+    for (const int bounce : {2, 3, 4}) {
+        const std::string only = fmt::format("--only-bounce {} ", bounce);
+        LUCARNE_ASSIGN(const auto truth, scan.truth("b", size + only + "--samples 128"));
+        LUCARNE_ASSIGN(const auto picture, scan.picture("p", size + only));
+        LUCARNE_TRY(judge(fmt::format("cornell, bounce {}, high", bounce), picture, truth, 0, .05));
+    }
+    LUCARNE_ASSIGN(const auto all, scan.truth("all", size + "--bounces 4 --samples 128"));
+    LUCARNE_ASSIGN(const auto together, scan.picture("all-vpl", size + "--bounces 4"));
+    LUCARNE_TRY(judge("cornell, bounces 0 to 4, high", together, all, 0, .03));
+    LUCARNE_ASSIGN(const auto minute,
+                   scan.picture("minute", "--size 256x256 --preset high --only-bounce 1 --seconds 60"));
+    LUCARNE_TRY(judge("cornell, bounce 1, high, 60 s", minute, first, .001, .01));
+
+    double whole = 0;
+    for (const std::string n : {"1", "2", "4"}) {
+        LUCARNE_ASSIGN(const auto picture, scan.picture("n", size + "--only-bounce 1 --interleave " + n));
+        const double mean = gi::mean_luminance(picture);
+        if (n == "1") whole = mean;
+        row("cornell, bounce 1, high, interleave " + n, "mean against interleave 1", mean / whole - 1, .01,
+            true);
+    }
+    double small = 0;
+    for (const std::string atlas : {"1024", "2048", "4096"}) {
+        LUCARNE_ASSIGN(
+            const auto picture,
+            scan.picture("a", "--size 256x256 --preset interactive --only-bounce 1 --atlas " + atlas));
+        const double mean = gi::mean_luminance(picture);
+        if (atlas == "1024") small = mean;
+        row("cornell, bounce 1, interactive, atlas " + atlas, "mean against atlas 1024", mean / small - 1,
+            .01, true);
+    }
+    return {};
+}
+
+Result<void> nave(const std::filesystem::path& folder) {
+    Scan scan("nave", "8M", folder);
+    for (const std::string camera : {"nave", "carpet", "aisle", "altar", "vault"}) {
+        const std::string common = "--size 192x192 --preset high --bounces 3 --camera " + camera + " ";
+        LUCARNE_ASSIGN(const auto truth, scan.truth(camera, common + "--samples 256"));
+        LUCARNE_ASSIGN(const auto picture, scan.picture(camera + "-vpl", common));
+        LUCARNE_TRY(judge("nave, " + camera + ", bounces 0 to 3, high", picture, truth, .03, .03));
+    }
+    return {};
+}
+
+Result<void> measure(const std::filesystem::path& folder) {
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    LUCARNE_TRY(furnace(*device));
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
+    LUCARNE_TRY(form_factor(*device, "parallel at 1", z, y, x, .199825));
+    LUCARNE_TRY(form_factor(*device, "parallel at .5", .5f * z, y, x, .415253));
+    LUCARNE_TRY(form_factor(*device, "at a right angle", o, y, z, .200044));
+    LUCARNE_TRY(cornell(folder));
+    return nave(folder);
+}
+
+}  // namespace
+}  // namespace lucarne
+
+int main(int argc, char** argv) {
+    std::string name = (std::filesystem::temp_directory_path() / "lucarne-accuracy-XXXXXX").string();
+    const bool own = argc < 2;
+    if (own && !mkdtemp(name.data())) return 1;
+    const std::filesystem::path folder = own ? name : argv[1];
+    const auto done = lucarne::measure(folder);
+    if (own) std::filesystem::remove_all(folder);
+    if (!done) fmt::print(stderr, "lucarne_accuracy: {}\n", done.error().line());
+    return done ? 0 : 1;
+}
