@@ -46,6 +46,7 @@ struct FrameCuts {
 
 struct Bounds {
     glm::vec3 min{0.0f}, max{0.0f};
+    bool operator==(const Bounds&) const = default;
 };
 
 /// One picture to be lit. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused), row 0 on top; the engine

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include <xxhash.h>
 
 #include "gi/shared/surfel_code.h"
+#include "io/core/random.h"
 #include "octree/footprint.h"
 
 namespace lucarne::gi {
@@ -30,13 +34,19 @@ float stage_area(const octree::NodeInfo& info, double points, double metres_per_
                  float above) {
     if (points < 1 || info.count == 0) return above;
     const double share = std::min(points / info.count, 1.0);
-    const double even = share > 0.5 ? info.area_floor[1] * 0.5 / share * metres_per_unit * metres_per_unit : 0.0;
+    const double even =
+        share > 0.5 ? info.area_floor[1] * 0.5 / share * metres_per_unit * metres_per_unit : 0.0;
     const float floor = sane_floor(info, static_cast<uint32_t>(points), metres_per_unit, item.size);
     return std::min(above, std::max(floor, even > 0 ? static_cast<float>(even) : 0.0f));
 }
 
 uint32_t area_code(float area) {
     return static_cast<uint32_t>(std::clamp((std::log2(area) + 64) * 512 + 0.5f, 0.0f, 65535.0f));
+}
+
+template <class T>
+uint64_t hash(std::span<const T> values) {
+    return XXH3_64bits(values.data(), values.size_bytes());
 }
 
 /// The same walk as gi/shared/cut.glsl's.
@@ -98,7 +108,7 @@ Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfe
     fits->count -= pages;
     if (fits->count == 0) free_.erase(fits);
     used_pages_ += pages;
-    resident_[node] = {first, static_cast<uint32_t>(surfels.size())};
+    resident_[node] = {first, static_cast<uint32_t>(surfels.size()), hash(surfels)};
     buffer_.upload(size_t{first} * sizeof(PackedSurfel), std::as_bytes(surfels));
     return true;
 }
@@ -149,6 +159,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     std::vector<CutItem> items;
     std::vector<CutBlock> blocks;
     uint64_t surfels = 0;
+    cut.fingerprint_ = 0;
     for (const CutEntry& entry : sorted) {
         const auto resident = resident_.find(entry.node);
         if (entry.node >= nodes.size() || resident == resident_.end() || item_of.contains(entry.node))
@@ -167,6 +178,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         item.origin = glm::vec3((cube.min - local_origin) * unit);
         item.size = static_cast<float>(cube.size * unit);
         item.first = resident->second.first;
+        cut.fingerprint_ = mix64(cut.fingerprint_, resident->second.content);
         item.count = std::min(entry.count, resident->second.count);
         item.area_floor = sane_floor(info, item.count, unit, item.size);
         const bool whole = areas_known && item.count == info.count && info.child_mask != 0;
@@ -187,6 +199,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     }
     LUCARNE_TRY(device.reserve(cut.items_, items.size() * sizeof(CutItem), "cut"));
     LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(CutBlock), "cut"));
+    cut.fingerprint_ = mix64(cut.fingerprint_, hash(std::span<const CutItem>(items)));
     cut.items_.upload_all(items);
     cut.blocks_buffer_.upload_all(blocks);
     cut.pool_ = &buffer_;

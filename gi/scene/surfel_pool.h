@@ -37,6 +37,8 @@ class DeviceCut {
     uint32_t surfels() const { return surfels_; }  ///< points drawn
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
     float size() const { return host_items_.empty() ? 1.0f : host_items_[0].size; }  ///< m, side of its root
+    /// Of what the cut shows: equal for equal surfels at equal places.
+    uint64_t fingerprint() const { return fingerprint_; }
     /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
     void bind() const;
 
@@ -46,6 +48,7 @@ class DeviceCut {
     Buffer items_, blocks_buffer_;
     std::vector<CutItem> host_items_;
     uint32_t surfels_ = 0, blocks_ = 0;
+    uint64_t fingerprint_ = 0;
 };
 
 /// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's
@@ -76,6 +79,7 @@ class SurfelPool {
  private:
     struct Span {
         uint32_t first, count;
+        uint64_t content = 0;  ///< hash of its surfels
     };
     void release(Span pages);
 

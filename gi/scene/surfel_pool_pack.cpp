@@ -33,8 +33,8 @@ class Packer {
         scan_ = find(io::names::scan, 1);
     }
 
-    /// Scans without a camera often come with colour fields that were never filled: a node in which every colour is
-    /// zero has none.
+    /// Scans without a camera often come with colour fields that were never filled: a node in which every
+    /// colour is zero has none.
     void drop_empty_colours(const octree::NodeData& data) {
         if (!color_) return;
         const size_t stride = header_.schema.stride;

@@ -31,6 +31,9 @@ struct Light {
     vec4 strength;
     vec4 extent;
     uint kind, pad0, pad1, pad2;
+#ifdef __cplusplus
+    bool operator==(const Light&) const = default;
+#endif
 };
 
 // Radiant intensity, W/sr, of a spot or point light in the unit direction `away` from it.

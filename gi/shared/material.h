@@ -15,6 +15,9 @@ using vec4 = glm::vec4;
 struct Material {
     vec4 diffuse;   // rgb scale of the scan's colour; w: ks, specular intensity
     vec4 emission;  // rgb radiance, W/(sr m^2); w: n, Phong exponent
+#ifdef __cplusplus
+    bool operator==(const Material&) const = default;
+#endif
 };
 
 #ifdef __cplusplus

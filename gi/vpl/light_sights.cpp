@@ -20,6 +20,10 @@ bool emits(const Frame& frame) {
 }
 
 void LightSights::begin(const Frame& frame) {
+    Basis basis{frame.lights, {}, frame.bounds, frame.settings.light_resolution};
+    for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
+    if (basis == basis_) return;
+    basis_ = std::move(basis);
     views_ = light_views(frame);
     held_.resize(std::min(views_.size(), kMostHeld));
     for (Held& held : held_) held.view = kNoView;

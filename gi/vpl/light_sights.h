@@ -18,7 +18,7 @@ bool emits(const Frame& frame);
 /// their number.
 class LightSights {
  public:
-    /// The views of a new frame; nothing is drawn yet.
+    /// The views of a new frame. What was drawn of them holds if neither lights nor their cuts have changed.
     void begin(const Frame& frame);
 
     const std::vector<LightView>& views() const { return views_; }
@@ -37,6 +37,15 @@ class LightSights {
     };
     Result<Sight> sight(Frame& frame, size_t index);
 
+    /// What the G-buffers were drawn from.
+    struct Basis {
+        std::vector<Light> lights;
+        std::vector<uint64_t> cuts;
+        Bounds bounds;
+        uint32_t resolution = 0;
+        bool operator==(const Basis&) const = default;
+    };
+    Basis basis_;
     std::vector<LightView> views_;
     std::vector<Held> held_;
     Buffer importance_;

@@ -1,28 +1,26 @@
 #include "gi/vpl/redistribution.h"
 
-#include <utility>
-
 #include "gi/vpl/bindings.h"
 
 namespace lucarne::gi::vpl {
 
 Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps& maps,
-                          const Buffer& materials, bool glossy, uint32_t seed, Redistribution& scratch,
-                          Seeds& seeds) {
+                          const Buffer& materials, bool glossy, uint32_t seed, const Seeds& from,
+                          Redistribution& scratch, Seeds& to) {
     Defines defines;
     if (glossy) defines.emplace_back("LUCARNE_GLOSSY", "1");
     if (scratch.best_candidate) defines.emplace_back("LUCARNE_BEST_CANDIDATE", "1");
     LUCARNE_ASSIGN(const Program* race, device.program("gi/vpl/redistribute.comp", defines));
     LUCARNE_ASSIGN(const Program* combine, device.program("gi/vpl/combine.comp", defines));
     const uint32_t count = maps.layout.maps;
-    LUCARNE_TRY(device.reserve(scratch.next, count * sizeof(VplLight), "virtual point lights"));
+    LUCARNE_TRY(device.reserve(to.lights, count * sizeof(VplLight), "virtual point lights"));
     LUCARNE_TRY(device.reserve(scratch.odds, count * sizeof(float), "virtual point lights"));
     cut.bind();
     materials.bind(kBindMaterials);
-    seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
+    from.lights.bind_texels(kUnitLights, TexelView::four_words);
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
     maps.sources.bind_texels(kUnitSources, TexelView::one_word);
-    scratch.next.bind(kBindLights);
+    to.lights.bind(kBindLights);
     scratch.odds.bind(kBindOdds);
     for (const Program* program : {race, combine}) {
         set_layout(*program, maps.layout);
@@ -34,8 +32,7 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
     race->dispatch(count * kRaceGroup);
     scratch.odds.bind_texels(kUnitOdds, TexelView::one_word);
     combine->dispatch(count);
-    std::swap(seeds.lights, scratch.next);
-    settle_lights(seeds, count);
+    settle_lights(to, count);
     return {};
 }
 

@@ -1,6 +1,7 @@
 #include "gi/vpl/vpl.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,26 @@
 namespace lucarne::gi {
 namespace vpl {
 namespace {
+
+/// What VPLs and maps are made from.
+struct Basis {
+    EngineSettings settings;
+    std::vector<Light> lights;
+    std::vector<Material> materials;
+    std::vector<uint64_t> cuts;
+    Bounds bounds;
+    uint64_t index = UINT64_MAX;
+    bool operator==(const Basis&) const = default;
+};
+
+/// One bounce's VPLs, and their maps.
+struct Bounce {
+    Seeds seeds;
+    Buffer atlas;
+};
+
+// Bytes of maps that are held from frame to frame: sixteen bounces of `interactive`, one of `high`.
+constexpr size_t kMostKept = size_t{64} << 20;
 
 class VplEngine : public Engine {
  public:
@@ -29,8 +50,9 @@ class VplEngine : public Engine {
     Buffer materials_;
     Sky sky_;
     LightSights sights_;
-    Seeds seeds_;
-    ShadowMaps maps_;
+    std::vector<Bounce> bounces_;
+    ShadowMaps maps_;  ///< its atlas is a bounce's while that is drawn or read
+    Basis basis_;      ///< of bounces_
     Panes panes_;
     Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
@@ -47,6 +69,14 @@ bool wants_indirect(const EngineSettings& s) {
 bool glossy(const Frame& frame) {
     return std::any_of(frame.materials.begin(), frame.materials.end(),
                        [](const Material& m) { return m.diffuse.w > 0; });
+}
+
+template <class Body>
+Result<void> pass(Frame& frame, const char* name, const Body& body) {
+    frame.times.begin(name);
+    auto done = body();
+    frame.times.end();
+    return done;
 }
 
 const EngineInfo& VplEngine::info() const {
@@ -67,39 +97,56 @@ Result<void> VplEngine::prepare(Frame& frame) {
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
+/// Everything that the VPLs and their maps follow from.
+Basis basis_of(const Frame& frame) {
+    Basis basis{frame.settings, frame.lights, frame.materials, {frame.cuts.light->fingerprint()},
+                frame.bounds,   frame.index};
+    for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
+    return basis;
+}
+
 /// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
-/// next bounce: frame.radiance becomes the bounces asked for.
+/// next bounce: frame.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the camera
+/// moves.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s.only_bounce < 0 ? s.bounces : static_cast<uint32_t>(s.only_bounce);
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
-    const auto pass = [&](const char* name, auto&& body) -> Result<void> {
-        frame.times.begin(name);
-        auto done = body();
-        frame.times.end();
-        return done;
-    };
-    const bool shiny = glossy(frame);
+    const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
+    Basis basis = basis_of(frame);
+    const bool held = keep && basis == basis_;
+    basis_ = {};  // until all is drawn
+    bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s.best_candidate;
-    LUCARNE_TRY(pass("VPL join", [&] { return join_panes(frame, shiny, panes_); }));
-    LUCARNE_TRY(pass("VPL seeding", [&] {
-        return sights_.seed(frame, materials_, s.vpls, mix64(s.seed, frame.index), seeds_);
-    }));
-    LUCARNE_TRY(pass("ISM casters", [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
-    for (uint32_t bounce = 1; bounce <= last; ++bounce) {
-        LUCARNE_TRY(draw_shadow_maps(frame.device, *frame.cuts.light, seeds_, layout, bounce < last,
-                                     frame.times, maps_));
-        if (s.only_bounce < 0 || bounce == last)
-            LUCARNE_TRY(
-                pass("VPL shading", [&] { return shade_panes(frame, materials_, seeds_, maps_, panes_); }));
-        if (bounce == last) break;
-        const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
-        LUCARNE_TRY(pass("VPL redistribution", [&] {
-            return redistribute(frame.device, *frame.cuts.light, maps_, materials_, shiny, salt,
-                                redistribution_, seeds_);
+    LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_panes(frame, glossy(frame), panes_); }));
+    if (!held) {
+        LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
+            return sights_.seed(frame, materials_, s.vpls, mix64(s.seed, frame.index), bounces_[0].seeds);
         }));
+        LUCARNE_TRY(pass(frame, "ISM casters",
+                         [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
     }
-    return pass("VPL merge", [&] { return merge_panes(frame, materials_, panes_); });
+    for (uint32_t bounce = 1; bounce <= last; ++bounce) {
+        Seeds& seeds = bounces_[bounce - 1].seeds;
+        Buffer& atlas = bounces_[keep ? bounce - 1 : 0].atlas;
+        std::swap(maps_.atlas, atlas);
+        Result<void> done = held ? Result<void>{}
+                                 : draw_shadow_maps(frame.device, *frame.cuts.light, seeds, layout,
+                                                    bounce < last, frame.times, maps_);
+        if (done && (s.only_bounce < 0 || bounce == last))
+            done = pass(frame, "VPL shading",
+                        [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
+        if (done && !held && bounce < last)
+            done = pass(frame, "VPL redistribution", [&] {
+                const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
+                return redistribute(frame.device, *frame.cuts.light, maps_, materials_, glossy(frame), salt,
+                                    seeds, redistribution_, bounces_[bounce].seeds);
+            });
+        std::swap(maps_.atlas, atlas);
+        LUCARNE_TRY(done);
+    }
+    basis_ = std::move(basis);
+    return pass(frame, "VPL merge", [&] { return merge_panes(frame, materials_, panes_); });
 }
 
 /// Emission, background and what the lights' first reflection sends to the eye.

@@ -157,7 +157,8 @@ Result<void> cornell(const std::filesystem::path& folder) {
         const std::string common = "--size 256x256 --only-bounce 1 --preset " + preset;
         LUCARNE_ASSIGN(first, scan.truth("b1", common + " --samples 256"));
         LUCARNE_ASSIGN(const auto picture, scan.picture(preset, common));
-        LUCARNE_TRY(judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
+        LUCARNE_TRY(
+            judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
     }
     for (const int bounce : {2, 3, 4}) {
         const std::string only = fmt::format("--only-bounce {} ", bounce);

@@ -91,13 +91,19 @@ struct FrameTimes {
     viewer::FrameStats last;
 };
 
-/// One frame after another with the camera a little further each time, as a user sees them. `pass` picks one.
+/// One frame after another with the camera a little further each time, as a user sees them. `pass` picks one;
+/// with `anew` nothing of a frame serves the next.
 Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameRequest request, int frames,
-                                 std::string_view pass) {
+                                 std::string_view pass, bool anew = false) {
     std::vector<double> wall, cpu;
     FrameTimes times;
     for (int i = 0; i < frames; ++i) {
         request.camera.position.x += 0.01;
+        if (anew) {
+            gi::EngineSettings settings = pipeline.settings();
+            ++settings.seed;
+            pipeline.set_settings(settings);
+        }
         const std::clock_t start = std::clock();
         LUCARNE_ASSIGN(times.last, pipeline.render(request));
         cpu.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
@@ -130,12 +136,24 @@ Result<void> bench_frames(const std::filesystem::path& folder) {
 
     request.size = {512, 512};
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // shaders, first loads
-    LUCARNE_ASSIGN(const FrameTimes interactive, moving_frames(*pipeline, request, 9, ""));
-    row("512x512, preset interactive, one bounce: a frame in all", interactive.wall, "ms", 600);
-    fmt::print("  of all cores: {:.0f} ms; the last frame's passes in ms:", interactive.cpu);
-    for (const auto& entry : interactive.last.passes)
-        fmt::print(" {} {:.0f},", entry.name, 1e3 * entry.seconds);
-    fmt::print("\n");
+    const auto frames = [&](const std::string& what, uint32_t bounces, bool anew,
+                            double target) -> Result<void> {
+        gi::EngineSettings settings = pipeline->settings();
+        settings.bounces = bounces;
+        pipeline->set_settings(settings);
+        LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
+        LUCARNE_ASSIGN(const FrameTimes times, moving_frames(*pipeline, request, 9, "", anew));
+        row("512x512, preset interactive, " + what, times.wall, "ms", target);
+        fmt::print("  of all cores: {:.0f} ms; the last frame's passes in ms:", times.cpu);
+        for (const auto& entry : times.last.passes)
+            fmt::print(" {} {:.0f},", entry.name, 1e3 * entry.seconds);
+        fmt::print("\n");
+        return {};
+    };
+    LUCARNE_TRY(frames("one bounce, VPLs anew", 1, true, 600));
+    LUCARNE_TRY(frames("one bounce, the camera moves", 1, false, 200));
+    LUCARNE_TRY(frames("three bounces, VPLs anew", 3, true, 500));
+    LUCARNE_TRY(frames("three bounces, the camera moves", 3, false, 500));
 
     LUCARNE_TRY(pipeline->set_engine("direct"));
     pipeline->set_budgets(

@@ -50,9 +50,11 @@ class VplRedistribution : public OnDevice {
         EXPECT_TRUE(decode_casters(*device, (*loaded)->cut, maps));
         EXPECT_TRUE(draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, true, times, maps));
         Redistribution scratch;
+        Seeds next;
         scratch.best_candidate = best_candidate;
-        EXPECT_TRUE(redistribute(*device, (*loaded)->cut, maps, materials, false, seed, scratch, seeds));
-        step.after = seeds.host_lights;
+        EXPECT_TRUE(
+            redistribute(*device, (*loaded)->cut, maps, materials, false, seed, seeds, scratch, next));
+        step.after = next.host_lights;
         return step;
     }
 };
