@@ -180,13 +180,15 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         item.first = resident->second.first;
         cut.fingerprint_ = mix64(cut.fingerprint_, resident->second.content);
         item.count = std::min(entry.count, resident->second.count);
-        item.area_floor = sane_floor(info, item.count, unit, item.size);
+        // A few points of a node among many of its ancestors' leave those as large as they were, and no
+        // larger.
+        const float above =
+            parent != item_of.end() ? items[parent->second].area_floor : item.size * item.size;
+        item.area_floor = std::min(sane_floor(info, item.count, unit, item.size), above);
         const bool whole = areas_known && item.count == info.count && info.child_mask != 0;
         for (uint32_t octant = 0; octant < 8; ++octant)
             item.child[octant] = whole && !(info.child_mask >> octant & 1) ? kWholeOctant : kCoarseOctant;
         item.inner = whole && info.child_mask != 0xff;
-        const float above =
-            parent != item_of.end() ? items[parent->second].area_floor : item.size * item.size;
         const auto lod = [&](uint32_t points) {
             return area_code(stage_area(info, points, unit, item, above));
         };

@@ -158,6 +158,25 @@ TEST_F(SurfelPoolTest, ShorterPrefixHasALargerFloor) {
         EXPECT_GE(s.area, cloud.nodes()[0].area_floor[2] * 0.999f);
 }
 
+TEST_F(SurfelPoolTest, OnePointOfANodeLeavesItsAncestorsAsLargeAsTheyWere) {
+    const SurfelCloud cloud(random_surfels(40'000, 5), {{-8, -8, -8}, 16}, 256);
+    const auto loaded = load_cloud(*device, cloud);
+    ASSERT_TRUE(loaded);
+    const SurfelPool& pool = (*loaded)->pool;
+    std::vector<CutEntry> entries = {{0, cloud.nodes()[0].count}};
+    const auto largest = [&] {
+        DeviceCut cut;
+        EXPECT_TRUE(pool.make_cut(*device, cloud, entries, glm::dvec3(0.0), cut));
+        float radius = 0;
+        for (const Surfel& s : pool.download(cut)) radius = std::max(radius, s.radius);
+        return radius;
+    };
+    const float root_alone = largest();
+    ASSERT_NE(cloud.nodes()[0].child_mask, 0);
+    entries.push_back({cloud.nodes()[0].first_child, 1});
+    EXPECT_LE(largest(), root_alone * 1.001f);
+}
+
 TEST_F(SurfelPoolTest, CutLeavesOutWhatIsNotResidentWithItsDescendants) {
     const SurfelCloud cloud(random_surfels(40000, 1), {{-8, -8, -8}, 16}, 256);
     auto loaded = load_cloud(*device, cloud);
