@@ -83,11 +83,14 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
     Progress progress("building", points, "points");
     FirstError error;
     size_t next = 0;
+    HandOver begun, built_chunks;
     const auto source = [&](tbb::flow_control& control) -> size_t {
+        const HandOver::Piece handed(begun, begun);
         if (next == store.chunks().size() || error.any()) control.stop();
         return next++;
     };
     const auto build = [&](size_t chunk) {
+        const HandOver::Piece handed(begun, built_chunks);
         auto built = std::make_shared<Built>(Built{chunk, {}});
         if (error.any()) return built;
         if (auto tree = build_subtree(loader, chunk, limits, memory.chunk_points))
@@ -97,6 +100,7 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
         return built;
     };
     const auto assemble = [&](const std::shared_ptr<Built>& built) {
+        const HandOver::Piece handed(built_chunks, built_chunks);
         if (error.any()) return;
         const uint64_t count = store.chunks()[built->chunk].count;
         const bool whole =
@@ -106,11 +110,14 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
             error.report(built->chunk, std::move(done).error());
         if (whole) store.discard(built->chunk);
     };
+    begun.give();
     tbb::parallel_pipeline(
         memory.workers,
         tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, source) &
             tbb::make_filter<size_t, std::shared_ptr<Built>>(tbb::filter_mode::parallel, build) &
             tbb::make_filter<std::shared_ptr<Built>, void>(tbb::filter_mode::serial_in_order, assemble));
+    begun.take();
+    built_chunks.take();
     return error.result();
 }
 

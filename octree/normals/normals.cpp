@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
 #include "io/core/parallel.h"
 #include "octree/normals/chunk_surface.h"
@@ -134,7 +133,7 @@ Result<OrientationSigns> estimate_normals(
         last = wave_end(chunks, first, options.memory / 2);
         std::vector<std::optional<ChunkEstimate>> wave(last - first);
         FirstError error;
-        tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+        parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
             if (chunks.point_count(first + i) == 0) return;
             auto estimate = estimate_chunk(cache, first + i, options);
             if (estimate)
@@ -148,7 +147,7 @@ Result<OrientationSigns> estimate_normals(
                 merger.add(estimate->neighbours, estimate->surface, estimate->orientation);
             else
                 merger.add_empty();
-        tbb::parallel_for(size_t{0}, wave.size(), [&](size_t i) {
+        parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
             auto done = sink(first + i, wave[i] ? points_of(*wave[i]) : ChunkNormals{});
             if (!done) error.report(i, std::move(done).error());
         });
