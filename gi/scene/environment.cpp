@@ -20,7 +20,9 @@ size_t Environment::texel(const glm::vec3& direction) const {
 
 Result<Environment> load_environment(const std::filesystem::path& path, const glm::dvec3& scale,
                                      double rotation) {
-    LUCARNE_ASSIGN(const io::Image image, io::read_exr(path, kMostEnvironmentTexels));
+    const bool radiance_picture = path.extension() == ".hdr";
+    LUCARNE_ASSIGN(const io::Image image, radiance_picture ? io::read_hdr(path, kMostEnvironmentTexels)
+                                                           : io::read_exr(path, kMostEnvironmentTexels));
     Environment environment;
     environment.width = image.width;
     environment.height = image.height;

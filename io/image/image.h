@@ -34,6 +34,10 @@ Result<void> write_exr(const std::filesystem::path& path, const Image& image, bo
 /// is 1 where the file has none. Deep pictures, subsampled channels and more than `most_pixels` are rejected.
 Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
 
+/// A Radiance picture (.hdr): RGBE, flat or run-length coded, rows from the top; what its header says of the
+/// exposure is taken out.
+Result<Image> read_hdr(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
+
 /// 8 bits RGB, tagged sRGB. The file appears whole or not at all.
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite);
 /// Any PNG, brought to 8 bits sRGB (its gamma is respected) over black.

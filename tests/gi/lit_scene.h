@@ -65,9 +65,10 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     EXPECT_TRUE(radiance);
     radiance->clear(0x7fc00000u);  // no number: the engine has to write every pixel
     PassTimes times(device);
+    const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(options.lights.size(), &cut), &cut};
     Frame frame{device,
                 (*loaded)->pool,
-                {&cut, {}, &cut},
+                cuts,
                 camera,
                 gbuffer,
                 options.lights,
@@ -78,7 +79,6 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 *radiance,
                 times};
     frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
-    frame.cuts.light_views.assign(options.lights.size(), &cut);
     const auto prepared = engine.prepare(frame);
     EXPECT_TRUE(prepared) << prepared.error().line();
     const auto rendered = engine.render(frame);
