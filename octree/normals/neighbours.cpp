@@ -58,6 +58,18 @@ Box bounds_of(std::span<const glm::dvec3> points) {
     return box;
 }
 
+/// How far the k nearest of a point can be at most, from those of the one before: no farther than that one
+/// and then its k nearest. Spares a search most of what it would take up only to drop it again.
+struct SearchBound {
+    glm::dvec3 previous{0.0};
+    double reach = kInfinity;
+    double limit2(const glm::dvec3& p) const {
+        constexpr double kMoreThanRounding = 1 + 1e-9;
+        const double farthest = (glm::distance(p, previous) + reach) * kMoreThanRounding;
+        return farthest * farthest;
+    }
+};
+
 /// The cells of a grid that lie within one cell of given points.
 class CellSet {
  public:
@@ -158,9 +170,12 @@ Result<void> ChunkNeighbours::search(std::span<const uint32_t> sites, size_t k, 
     parallel_ranges(sites.size(), kGrain, [&](size_t first, size_t last) {
         std::array<Neighbour, kMostNeighbours> nearest;
         std::vector<std::pair<uint32_t, double>> out;
+        SearchBound bound;
         for (const uint32_t site : sites.subspan(first, last - first)) {
-            const size_t found = index_.merge_nearest(sites_[site], std::span(nearest).first(k), 0, 0);
+            const size_t found = index_.merge_nearest(sites_[site], std::span(nearest).first(k), 0, 0,
+                                                      bound.limit2(sites_[site]));
             const double reach2 = found == k ? nearest[k - 1].distance2 : kInfinity;
+            bound = {sites_[site], std::sqrt(reach2)};
             if (reaches_out(site, reach2)) {
                 out.emplace_back(site, std::sqrt(reach2));
                 continue;

@@ -1,5 +1,3 @@
-#include <limits>
-
 #include <flann/flann.hpp>
 
 #include "octree/normals/point_index.h"
@@ -10,8 +8,7 @@ namespace {
 /// A FLANN result set over a caller's sorted array, so that a second index can go on where the first ended.
 class MergingResult final : public flann::ResultSet<double> {
  public:
-    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset,
-                  double limit2 = std::numeric_limits<double>::max(),
+    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset, double limit2,
                   const PointIndex::Wanted* wanted = nullptr)
         : nearest_(nearest), found_(found), offset_(offset), limit2_(limit2), wanted_(wanted) {
         update_worst();
@@ -60,9 +57,9 @@ PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
 PointIndex::~PointIndex() = default;
 
 size_t PointIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
-                                 uint32_t offset) const {
+                                 uint32_t offset, double limit2) const {
     if (!tree_ || nearest.empty()) return found;
-    MergingResult result(nearest, found, offset);
+    MergingResult result(nearest, found, offset, limit2);
     tree_->index.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     return result.found();
 }

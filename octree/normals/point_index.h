@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -27,11 +28,11 @@ class PointIndex {
     ~PointIndex();
 
     /// Merges this index' points into `nearest`, whose first `found` entries are sorted by distance already;
-    /// an index of the result is the point's plus `offset`. Returns how many entries are filled now.
-    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
-                         uint32_t offset) const;
-    /// The same of only those points nearer than the root of `limit2` that `wanted` (asked with the point's
-    /// index) lets through.
+    /// an index of the result is the point's plus `offset`. Points as far as the root of `limit2` are left
+    /// out. Returns how many entries are filled now.
+    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found, uint32_t offset,
+                         double limit2 = std::numeric_limits<double>::max()) const;
+    /// The same of only those points that `wanted` (asked with the point's index) lets through.
     using Wanted = std::function<bool(uint32_t index)>;
     size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found, uint32_t offset,
                          double limit2, const Wanted& wanted) const;

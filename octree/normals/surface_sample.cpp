@@ -51,15 +51,25 @@ float their_reach2(std::span<const glm::vec3> near, size_t i) {
     return best.back();
 }
 
+/// Whether their_reach2(near, i) is less than `limit2`.
+bool reaches_within(std::span<const glm::vec3> near, size_t i, float limit2) {
+    size_t within = 0;  // itself included
+    for (size_t j = 1; j < near.size(); ++j) {
+        const glm::vec3 apart = near[i] - near[j];
+        within += glm::dot(apart, apart) < limit2;
+    }
+    return within > kTheirRank;
+}
+
 /// Whether the neighbourhood of the point is much sparser than those of its neighbours (as the local outlier
 /// factor compares them: Breunig et al. 2000), from the neighbours' distances among themselves. Within a
 /// surface the first neighbour asked ends it.
 bool stands_apart(std::span<const glm::vec3> near) {
     if (near.size() <= kOwnRank) return false;
     const float limit = glm::dot(near[kOwnRank], near[kOwnRank]) / (kSparser * kSparser);
-    if (their_reach2(near, near.size() - 1) > limit && their_reach2(near, kOwnRank) > limit) return false;
+    if (!reaches_within(near, near.size() - 1, limit) && !reaches_within(near, kOwnRank, limit)) return false;
     size_t denser = 0;
-    for (size_t i = 1; i < near.size(); ++i) denser += their_reach2(near, i) < limit;
+    for (size_t i = 1; i < near.size(); ++i) denser += reaches_within(near, i, limit);
     return 2 * denser >= near.size() - 1;
 }
 
@@ -127,8 +137,12 @@ bool lies_in_plane_of_others(std::span<const glm::vec3> near, PlaneFitter& fitte
 ShareCell cell_of(std::span<const glm::vec3> offsets, std::span<const float> heights, const glm::vec3& normal,
                   const Layer& layer) {
     ShareCell cell(normal, glm::length(offsets.back()), offsets.size() - 1);
-    for (size_t i = 1; i < offsets.size(); ++i)
+    const float highest = std::max(-layer.low, layer.high);
+    for (size_t i = 1; i < offsets.size(); ++i) {
+        const float widest = cell.widest_cut();
+        if (glm::dot(offsets[i], offsets[i]) - highest * highest >= widest * widest) break;
         if (layer.holds(heights[i])) cell.cut(offsets[i]);
+    }
     return cell;
 }
 

@@ -47,21 +47,19 @@ ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours)
     : normal_(normal),
       reach_(reach),
       widest_search_(kLook * reach),
-      rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))),
-      count_(4) {
+      rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))) {
     const glm::vec3 size = glm::abs(normal);
     const glm::vec3 axis = size.x <= size.y && size.x <= size.z ? glm::vec3(1, 0, 0)
                            : size.y <= size.z                   ? glm::vec3(0, 1, 0)
                                                                 : glm::vec3(0, 0, 1);
     x_ = glm::normalize(glm::cross(normal, axis));
     y_ = glm::cross(normal, x_);
-    const float half = widest_search_ / 2;
-    corners_[0] = {{-half, -half}, true};
-    corners_[1] = {{half, -half}, true};
-    corners_[2] = {{half, half}, true};
-    corners_[3] = {{-half, half}, true};
+    const float half = widest_search_ / 2, side = half * (std::numbers::sqrt2_v<float> - 1);
+    for (const glm::vec2& at :
+         {glm::vec2(half, -side), glm::vec2(half, side), glm::vec2(side, half), glm::vec2(-side, half),
+          glm::vec2(-half, side), glm::vec2(-half, -side), glm::vec2(-side, -half), glm::vec2(side, -half)})
+        corners_[count_++] = {at, true};
     measure();
-    cut_off(half);
 }
 
 void ShareCell::cut(const glm::vec3& offset) {
@@ -94,7 +92,7 @@ void ShareCell::cut(const glm::vec2& direction, float distance, bool bound) {
         const glm::vec2 at = corners_[i].at + t * (corners_[next].at - corners_[i].at);
         kept[count++] = {at, in ? bound : corners_[i].bound};
     }
-    corners_ = kept;
+    std::copy_n(kept.begin(), count, corners_.begin());
     count_ = count;
     measure();
 }

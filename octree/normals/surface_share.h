@@ -40,8 +40,8 @@ class ShareCell {
 
  private:
     struct Corner {
-        glm::vec2 at{0.0f};
-        bool bound = false;  ///< the side from here to the next corner is no neighbour's, but the octagon's
+        glm::vec2 at;
+        bool bound;  ///< the side from here to the next corner is no neighbour's, but the octagon's
     };
     static constexpr size_t kMostCorners = 32;
 
@@ -54,7 +54,7 @@ class ShareCell {
     float reach_, widest_search_, rim_spacing_,
         farthest_ = 0;                   ///< farthest_: the distance of the farthest corner
     size_t count_ = 0, coincident_ = 0;  ///< neighbours exactly above or below share the cell
-    std::array<Corner, kMostCorners> corners_;
+    std::array<Corner, kMostCorners> corners_;  ///< the first count_ of them, counter-clockwise
 };
 
 }  // namespace lucarne::octree
