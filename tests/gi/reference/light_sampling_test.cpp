@@ -146,13 +146,17 @@ TEST(LightSampling, WhatIsDrawnHasTheDensityThatIsClaimed) {
         const Incident drawn = sampler.sample(random), again = sampler.along(drawn.direction);
         EXPECT_NEAR(glm::length(drawn.direction), 1, 1e-5);
         // At a texel's edge rounding may name its neighbour.
-        if (again.radiance == drawn.radiance) EXPECT_FLOAT_EQ(again.pdf, drawn.pdf);
+        if (again.radiance == drawn.radiance) {
+            EXPECT_FLOAT_EQ(again.pdf, drawn.pdf);
+        }
         mean_inverse[0] += 1 / drawn.pdf / count;
         for (int k = 0; k < 3; ++k) {
             const auto in = sample_light(lights[k], glm::vec3(.2f, .1f, 0), random);
             ASSERT_TRUE(in);
             const auto found = light_along(lights[k], glm::vec3(.2f, .1f, 0), in->direction);
-            if (found) EXPECT_NEAR(found->pdf / in->pdf, 1, 1e-3);
+            if (found) {
+                EXPECT_NEAR(found->pdf / in->pdf, 1, 1e-3);
+            }
             mean_inverse[k + 1] += 1 / in->pdf / count;
         }
     }
