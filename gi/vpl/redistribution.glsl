@@ -1,4 +1,4 @@
-// What redistribution needs to know of every VPL of the bounce before: Odds.
+// What the race (redistribute.comp) and the estimates of all races together (combine.comp) share.
 #include "gi/vpl/gather.glsl"
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
