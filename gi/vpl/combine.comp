@@ -30,10 +30,10 @@ void main() {
         vec3 lifted = receiver.position - vpl_position(i).xyz + receiver.normal * receiver.radius;
         bool seen = i == index || vpl_sees(i, vpl_normal(i), lifted, receiver.normal);
         if (!(sum > 0.0) || arriving.geometry <= 0.0 || !seen) continue;
-        vec3 intensity = vpl_diffuse(i).xyz;
-#ifdef LUCARNE_GLOSSY
-        intensity += vpl_lobe(i, vpl_normal(i).xyz, vpl_diffuse(i).w, normalize(receiver.position - vpl_position(i).xyz));
-#endif
+        vec3 offset = receiver.position - vpl_position(i).xyz;
+        float distance2 = dot(offset, offset);
+        vec3 direction = offset * inversesqrt(distance2);
+        vec3 intensity = raced_intensity(i, direction, dot(direction, vpl_normal(i).xyz), distance2);
         float chance = luminance(intensity) * arriving.geometry / sum;
         density += chance;
         if (i == index) own = chance;

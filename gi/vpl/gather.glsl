@@ -1,5 +1,4 @@
 // What the VPLs send to a point: the sum that shading and the merge's repairs have in common.
-#include "gi/shared/brdf.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/vpl/lights.glsl"
 #include "gi/vpl/parabolic.glsl"
@@ -88,11 +87,16 @@ Arriving from_vpl(uint i, Receiver receiver) {
     vec3 arriving = diffuse.xyz;
     result.geometry = cosines * light_cosine / (distance2 * distance2);
 #ifdef LUCARNE_GLOSSY
-    float geometry = cosines * light_cosine / (distance2 * length(vec2(distance2, r2)));
-    vec3 direction = offset * inversesqrt(distance2);
-    arriving += vpl_lobe(i, light_normal.xyz, diffuse.w, direction);
-    result.light.specular =
-        arriving * geometry * specular_brdf(receiver.reflectance, receiver.normal, -direction, receiver.to_viewer);
+    float near = inversesqrt(distance2);
+    Cone away = vpl_cone(i, offset * near, light_cosine * near, distance2);
+    arriving += vpl_lobe(i, light_normal.xyz, diffuse.w, away);
+    if (receiver.reflectance.ks > 0.0) {
+        vec3 axis = -reflect(-receiver.to_viewer, receiver.normal);
+        float exponent = receiver.reflectance.exponent;
+        float lobe = receiver.reflectance.ks * widened_lobe(exponent, dot(axis, away.axis), away.spread);
+        vec3 seen = diffuse.xyz + vpl_lobe(i, light_normal.xyz, diffuse.w, seen_by_lobe(away, axis, exponent));
+        result.light.specular = seen * lobe * form_factor;
+    }
 #endif
     result.light.irradiance = arriving * form_factor;
     return result;

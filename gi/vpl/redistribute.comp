@@ -50,6 +50,11 @@ Sight look(uint map, uvec2 at) {
     return sight;
 }
 
+// W/sr, toward what a texel shows.
+vec3 intensity_at(uint map, mat3 frame, Sight sight) {
+    return raced_intensity(map, frame * sight.direction, sight.direction.z, sight.distance_m * sight.distance_m);
+}
+
 Reflectance reflectance_of(uint item, PackedSurfel surfel) {
     return make_reflectance(materials[surfel_material(surfel.b)], decode_albedo(surfel.d));
 }
@@ -66,12 +71,7 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
     if (dot(normal, direction) > 0.0) normal = -normal;
     Reflectance r = reflectance_of(item, surfel);
     float radius = cut_surfel_radius(item, surfel);
-    vec4 diffuse = vpl_diffuse(map);
-    vec3 intensity = diffuse.xyz;
-#ifdef LUCARNE_GLOSSY
-    intensity += vpl_lobe(map, vpl_normal(map).xyz, diffuse.w, direction);
-#endif
-    vec3 flux = intensity * sight.solid_angle * inverse_probability;
+    vec3 flux = intensity_at(map, frame, sight) * sight.solid_angle * inverse_probability;
     // It stands in the middle of the surfel, which lies on the scanned surface; where the texel's ray ends, the disc's
     // rim may stick out, even out of a sealed room.
     next[map] = VplLight(vec4(surfel_position(item, surfel), cut_surfel_area(item, surfel)), vec4(normal, radius),
@@ -81,19 +81,13 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
 void main() {
     uint map = gl_WorkGroupID.x;
     uint lane = gl_LocalInvocationID.x;
-    vec3 light_normal = vpl_normal(map).xyz;
-    mat3 frame = frame_about(light_normal);
-    vec4 diffuse = vpl_diffuse(map);
-    float even = luminance(diffuse.xyz);
+    mat3 frame = frame_about(vpl_normal(map).xyz);
     float best = 3e38, sum = 0.0, all = 0.0, found = 0.0;
     uint place = 0u;
     for (uint i = lane; i < map_side * map_side; i += 64u) {
         uvec2 at = uvec2(i % map_side, i / map_side);
         Sight sight = look(map, at);
-        float flux = even * sight.solid_angle;
-#ifdef LUCARNE_GLOSSY
-        flux += luminance(vpl_lobe(map, light_normal, diffuse.w, frame * sight.direction)) * sight.solid_angle;
-#endif
+        float flux = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
         uint source = texelFetch(source_texels, int(texel_index(map, at))).x;
         uint item;
         PackedSurfel surfel;
@@ -132,16 +126,13 @@ void main() {
     uvec2 at = uvec2(place % map_side, place / map_side);
     // 1 / probability of the winner. Texels that pull-push filled have no surfel: the others stand in for them.
     Sight sight = look(map, at);
-    vec3 lobe = vec3(0.0);
-#ifdef LUCARNE_GLOSSY
-    lobe = vpl_lobe(map, light_normal, diffuse.w, frame * sight.direction);
-#endif
+    float luminous = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
     uint item;
     PackedSurfel surfel;
     cut_surfel(texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u), item, surfel);
-    float own = luminance(diffuse.xyz + lobe) * sight.solid_angle * reflected_share(reflectance_of(item, surfel));
+    float own = luminous * reflected_share(reflectance_of(item, surfel));
 #ifdef LUCARNE_BEST_CANDIDATE
-    float scale = all / (luminance(diffuse.xyz + lobe) * sight.solid_angle);
+    float scale = all / luminous;
 #else
     float scale = sum / own * all / found;
 #endif

@@ -25,6 +25,7 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
     for (const Program* program : {race, combine}) {
         set_layout(*program, maps.layout);
         program->set("light_count", count);
+        program->set("footprint_variance", scratch.footprint_variance);
     }
     race->set("seed", seed);
     race->set("id_bits", maps.id_bits);

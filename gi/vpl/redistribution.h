@@ -10,7 +10,8 @@ namespace lucarne::gi::vpl {
 /// What redistribution needs besides the VPLs.
 struct Redistribution {
     Buffer odds;
-    bool best_candidate = false;  ///< the paper's choice: biased, for comparison
+    bool best_candidate = false;     ///< the paper's choice: biased, for comparison
+    float footprint_variance = 6.0f;  ///< lobes.h
 };
 
 /// Makes `to` of one new VPL for every one of `from`, where its light falls by its shadow map, which was

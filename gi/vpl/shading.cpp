@@ -2,6 +2,7 @@
 
 #include "gi/gbuffer/uniforms.h"
 #include "gi/vpl/bindings.h"
+#include "gi/vpl/lobes.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -51,6 +52,7 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
         bind_pixels(frame, *program);
         set_layout(*program, maps.layout);
         program->set("light_count", maps.layout.maps);
+        program->set("footprint_variance", footprint_variance(frame.index));
     }
     const uint32_t n = frame.settings.interleave;
     target.diffuse.bind(kBindDiffuse);

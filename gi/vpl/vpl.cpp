@@ -7,6 +7,7 @@
 
 #include "gi/gbuffer/direct_light.h"
 #include "gi/vpl/light_sights.h"
+#include "gi/vpl/lobes.h"
 #include "gi/vpl/redistribution.h"
 #include "gi/vpl/shading.h"
 #include "gi/vpl/shadow_maps.h"
@@ -118,6 +119,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     basis_ = {};  // until all is drawn
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s.best_candidate;
+    redistribution_.footprint_variance = footprint_variance(frame.index);
     LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_panes(frame, glossy(frame), panes_); }));
     if (!held) {
         LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
