@@ -30,6 +30,8 @@ constexpr std::array kEntries = {
           build_nave},
     Entry{"two-rooms", "two sealed rooms with an open door and a closed door between them", build_two_rooms},
     Entry{"statue", "a smooth closed body on a plinth, seen from outside", build_statue},
+    Entry{"ring", "a metal ring of 70 cm that stands on a floor before a wall", build_ring},
+    Entry{"paraboloid", "a metal mirror of 1.2 m before a wall, focal length 1.2 m", build_paraboloid},
 };
 
 /// A place in a quad by its corners' weights.

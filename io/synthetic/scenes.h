@@ -23,5 +23,7 @@ SceneModel build_furnace();
 SceneModel build_nave();
 SceneModel build_two_rooms();
 SceneModel build_statue();
+SceneModel build_ring();
+SceneModel build_paraboloid();
 
 }  // namespace lucarne::io
