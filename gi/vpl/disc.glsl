@@ -3,6 +3,7 @@
 // Per texel the texel's central ray is intersected with the disc's plane: one flat depth a splat would shadow its own
 // surface.
 #include "gi/vpl/casters.glsl"
+#include "gi/vpl/fringe.glsl"
 #include "gi/vpl/lights.glsl"
 #include "gi/vpl/parabolic.glsl"
 #include "gi/vpl/queue.glsl"
@@ -13,6 +14,7 @@ struct Disc {
     vec3 normal;
     float radius;
     float surfel_radius;
+    float core;  // what of the radius is surface for sure; the rest is the fringe
     float lowest;  // hits up to this height over the VPL's tangent plane do not count
 };
 
@@ -29,7 +31,8 @@ bool disc_over(uint map, Caster caster, out Disc disc) {
     float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
     float top = dot(light_normal, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
     mat3 frame = frame_about(light_normal);
-    disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, lowest);
+    float core = max(caster.radius, kCore * radius);
+    disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, core, lowest);
     return top > lowest;
 }
 
@@ -55,23 +58,31 @@ void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
 #include "gi/vpl/sources.glsl"
 #endif
 
-// How far along the central ray of a texel, times (1 + u^2 + v^2), the disc lies; 0 where it is not met.
-float disc_hit(Disc disc, float offset, vec2 uv) {
+// Where the central ray of a texel meets the disc.
+struct Hit {
+    float t;  // along the ray, times (1 + u^2 + v^2); 0 where it is not met
+    bool core;
+};
+Hit disc_hit(Disc disc, float offset, vec2 uv) {
     vec3 ray = map_ray(uv);
     float t = offset / dot(disc.normal, ray);
     vec3 hit = t * ray;
     vec3 from_centre = hit - disc.centre;
-    bool met = t > 0.0 && dot(from_centre, from_centre) <= disc.radius * disc.radius && hit.z > disc.lowest;
-    return met ? t : 0.0;
+    float square = dot(from_centre, from_centre);
+    bool met = t > 0.0 && square <= disc.radius * disc.radius && hit.z > disc.lowest;
+    return Hit(met ? t : 0.0, square <= disc.core * disc.core);
 }
 
-void take_texel(uvec2 pair, Disc disc, float offset, uint surface, uvec2 at) {
-    vec2 uv = texel_centre(at);
-    float distance_m = disc_hit(disc, offset, uv) * (1.0 + dot(uv, uv));
-    uint index = texel_index(pair.y, at);
+void take_core(uvec2 pair, uint index, float distance_m, uint surface) {
     atomicMin(atlas[index], pack_map_texel(distance_m, surface));
 #ifdef LUCARNE_SOURCES
     atomicMin(sources[index], pack_source(distance_m, pair.x));
+#endif
+}
+void take_fringe(uvec2 pair, uint index, float distance_m, uint surface) {
+    atomicMin(fringe[index], pack_map_texel(distance_m, surface));
+#ifdef LUCARNE_SOURCES
+    atomicMin(fringe_sources[index], pack_source(distance_m, pair.x));
 #endif
 }
 

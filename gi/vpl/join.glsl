@@ -16,9 +16,9 @@ uint window_pane(ivec2 pixel, int n, int i) {
     return uint(pane.y * n + pane.x);
 }
 
-// Every pane alone estimates the whole light; a pixel that finds fewer than a quarter of them is shaded anew by as many
-// as it lacks.
+// Every pane alone estimates the whole light, but a VPL close by counts n^2 times in its own: a pixel that finds fewer
+// than half of the panes is shaded anew by all that it lacks.
 int panes_lacking(int n, uint missing) {
     int found = n * n - bitCount(missing);
-    return max((n * n + 3) / 4 - found, 0);
+    return 2 * found < n * n ? n * n - found : 0;
 }

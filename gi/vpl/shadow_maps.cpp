@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -48,6 +49,26 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     return {};
 }
 
+Defines source_defines(const ShadowMaps& maps) {
+    return maps.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
+}
+
+/// The cores that were drawn, and of the fringes what closes holes between them: the atlas (fringe.glsl).
+Result<void> close(Device& device, ShadowMaps& maps) {
+    LUCARNE_ASSIGN(const Program* close, device.program("gi/vpl/close.comp", source_defines(maps)));
+    maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
+    maps.fringe.bind(kBindFringe);
+    if (maps.id_bits) {
+        maps.sources.bind(kBindSources);
+        maps.fringe_sources.bind(kBindFringeSources);
+    }
+    set_layout(*close, maps.layout);
+    close->dispatch(maps.layout.side, maps.layout.side, maps.layout.maps);
+    std::swap(maps.atlas, maps.fringe);
+    std::swap(maps.sources, maps.fringe_sources);
+    return {};
+}
+
 struct SplatPrograms {
     const Program *meet, *enter, *draw, *draw_large;
 };
@@ -79,7 +100,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     if (cut.blocks() == 0) return {};
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/vpl/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/vpl/enter.comp"));
-    const Defines defines = target.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
+    const Defines defines = source_defines(target);
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/vpl/splat.comp", defines));
     LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp", defines));
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
@@ -89,6 +110,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     target.bounds.bind_texels(kUnitBounds, TexelView::four_words);
     target.atlas.bind(kBindAtlas);
+    target.fringe.bind(kBindFringe);
     target.queue.bind(kBindQueue);
     target.large.bind(kBindLarge);
     target.meetings.bind(kBindMeetings);
@@ -98,7 +120,10 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
         program->set("cut_size", cut.size());
         program->set("id_bits", target.id_bits);
     }
-    if (target.id_bits) target.sources.bind(kBindSources);
+    if (target.id_bits) {
+        target.sources.bind(kBindSources);
+        target.fringe_sources.bind(kBindFringeSources);
+    }
     for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
         splat_range(programs, {0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)},
                     target);
@@ -157,18 +182,23 @@ Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& ta
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
                               const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target) {
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
+    LUCARNE_TRY(device.reserve(target.fringe, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
     target.layout = layout;
     target.id_bits = sources ? static_cast<uint32_t>(std::bit_width(cut.blocks() * kBlockSurfels)) : 0;
     if (sources) {
         LUCARNE_TRY(device.reserve(target.sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
+        LUCARNE_TRY(device.reserve(target.fringe_sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
         target.sources.clear(kNothing);
+        target.fringe_sources.clear(kNothing);
     }
     times.begin("ISM splat");
     target.atlas.clear(kNothing);
+    target.fringe.clear(kNothing);
     LUCARNE_TRY(splat(device, cut, seeds, target));
     times.end();
     times.begin("ISM pull-push");
+    LUCARNE_TRY(close(device, target));
     LUCARNE_TRY(pull_push(device, target));
     times.end();
     return {};

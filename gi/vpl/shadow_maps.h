@@ -31,6 +31,7 @@ struct ShadowMaps {
     Buffer atlas, coarse;
     Buffer sources;        ///< which surfel is in a texel of the atlas (sources.glsl), if it was asked for
     uint32_t id_bits = 0;  ///< of the surfels' ids there; 0: not asked for
+    Buffer fringe, fringe_sources;                   ///< scratch: fringe.glsl
     Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 

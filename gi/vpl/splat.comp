@@ -6,6 +6,18 @@ layout(local_size_x = 256) in;
 
 const int kLargeTexels = 32;  // a bit each
 
+// The texel of the lowest bit of a box from `first` on.
+uvec2 first_of(uint bits, ivec2 first, int width) {
+    int i = findLSB(bits);
+    int row = int((float(i) + 0.5) / float(width));
+    return uvec2(first + ivec2(i - row * width, row));
+}
+
+float distance_at(Disc disc, float offset, uvec2 at) {
+    vec2 uv = texel_centre(at);
+    return offset / dot(disc.normal, map_ray(uv)) * (1.0 + dot(uv, uv));
+}
+
 void main() {
     uint place = gl_GlobalInvocationID.x;
     if (place >= pair_count) return;
@@ -24,18 +36,25 @@ void main() {
     uint surface = disc_surface(disc);
     // First all texels are tested, then those that are met are written: llvmpipe writes one lane after the other, and few
     // lanes meet theirs in the same step. Loops test at their end, for it runs a body that no lane enters.
-    uint met = 0u, bit = 1u;
+    uint core = 0u, rest = 0u, bit = 1u;
     ivec2 at = first;
     do {
-        if (disc_hit(disc, offset, texel_centre(uvec2(at))) > 0.0) met |= bit;
+        Hit hit = disc_hit(disc, offset, texel_centre(uvec2(at)));
+        if (hit.t > 0.0 && hit.core) core |= bit;
+        if (hit.t > 0.0 && !hit.core) rest |= bit;
         bit <<= 1;
         at = at.x < last.x ? at + ivec2(1, 0) : ivec2(first.x, at.y + 1);
     } while (at.y <= last.y);
     do {
-        if (met == 0u) break;
-        int i = findLSB(met);
-        met &= met - 1u;
-        int row = int((float(i) + 0.5) / float(size.x));
-        take_texel(pair, disc, offset, surface, uvec2(first + ivec2(i - row * size.x, row)));
-    } while (met != 0u);
+        if (core == 0u) break;
+        uvec2 texel = first_of(core, first, size.x);
+        take_core(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        core &= core - 1u;
+    } while (core != 0u);
+    do {
+        if (rest == 0u) break;
+        uvec2 texel = first_of(rest, first, size.x);
+        take_fringe(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        rest &= rest - 1u;
+    } while (rest != 0u);
 }

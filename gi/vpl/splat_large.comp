@@ -15,7 +15,12 @@ void draw(uvec2 pair) {
     for (int i = int(gl_LocalInvocationID.x); i < texels; i += 16) {
         int row = int((float(i) + 0.5) / float(width));  // exact below 2^23, and faster than integers
         uvec2 at = uvec2(first + ivec2(i - row * width, row));
-        if (disc_hit(disc, offset, texel_centre(at)) > 0.0) take_texel(pair, disc, offset, surface, at);
+        vec2 uv = texel_centre(at);
+        Hit hit = disc_hit(disc, offset, uv);
+        float distance_m = hit.t * (1.0 + dot(uv, uv));
+        uint index = texel_index(pair.y, at);
+        if (hit.t > 0.0 && hit.core) take_core(pair, index, distance_m, surface);
+        if (hit.t > 0.0 && !hit.core) take_fringe(pair, index, distance_m, surface);
     }
 }
 

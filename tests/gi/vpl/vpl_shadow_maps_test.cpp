@@ -169,7 +169,7 @@ TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
     // Every second VPL is dead: its map stays empty whatever its neighbours in the buffer hold.
     std::vector<VplLight> lights;
     for (int i = 0; i < 16; ++i) lights.push_back(i % 2 ? kDeadLight : upward());
-    const Maps maps = draw(ceiling(1, 20, 1000), lights, 256);
+    const Maps maps = draw(ceiling(1, 60, 1000), lights, 256);
     for (uint32_t map = 0; map < 16; ++map) {
         size_t rays = 0, filled = 0;
         maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
@@ -177,7 +177,7 @@ TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
                 EXPECT_EQ(texel, kEmpty) << map;
                 return;
             }
-            if (ray.z < .1f) return;  // past the end of the ceiling
+            if (ray.z < .12f) return;  // splats are thinner than a texel there
             ++rays;
             filled += texel != kEmpty;
         });
