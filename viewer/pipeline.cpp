@@ -5,15 +5,15 @@
 #include <span>
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include "gi/post/accumulate.h"
 #include "gi/post/tone_map.h"
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
-#include "octree/stream/cut.h"
+#include "io/core/process.h"
 #include "octree/stream/residency.h"
+#include "viewer/cut_choice.h"
 #include "viewer/views.h"
 
 namespace lucarne::viewer {
@@ -25,7 +25,10 @@ using octree::ResidencyEvent;
 // least: it stays about as short, and slow frames do not keep a picture waiting for its nodes.
 constexpr double kUploadShare = 0.25;
 constexpr size_t kNodesAtOnce = 64;  // packed in parallel before they are uploaded
-constexpr double kFocusCells = 32;   // the light cut's focus moves in steps of 1/32 of the root cube
+// Of the device's memory for surfels; the light cut's are held a second time by the shadow maps, and pictures
+// and maps take the rest.
+constexpr uint64_t kPoolShare = 4;
+constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // some nodes of usual size
 
 uint64_t pages(uint64_t surfels) {
     constexpr uint64_t kPage = gi::SurfelPool::kPageSurfels;
@@ -47,20 +50,6 @@ bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector
     });
 }
 
-/// What is chosen for a purpose, and what of it stands on the device.
-struct DrawnCut {
-    octree::Cut chosen;
-    gi::DeviceCut drawn;
-
-    Result<void> build(gi::Device& device, const gi::SurfelPool& pool, const octree::NodeSource& source,
-                       const glm::dvec3& origin) {
-        std::vector<gi::CutEntry> entries;
-        entries.reserve(chosen.nodes.size());
-        for (const auto& node : chosen.nodes) entries.push_back({node.node, node.count});
-        return pool.make_cut(device, source, entries, origin, drawn);
-    }
-};
-
 }  // namespace
 
 struct Pipeline::State {
@@ -70,8 +59,10 @@ struct Pipeline::State {
     void start_stream();
     void choose_cuts(const FrameRequest& request);
     Result<void> stream(bool wait);
-    Result<bool> take_arrivals(bool wait);
-    Result<bool> apply(std::span<const ResidencyEvent> events);
+    Result<void> take_arrivals(bool wait);
+    Result<void> apply(std::span<const ResidencyEvent> events);
+    uint64_t directory_bytes() const { return source->nodes().size_bytes(); }
+    Result<void> build_cut(const octree::Cut& cut, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
     Result<void> finish(const FrameRequest& request);
@@ -86,8 +77,11 @@ struct Pipeline::State {
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
 
-    DrawnCut view, light_cut;
-    std::vector<DrawnCut> light_views;
+    CutChooser chooser;
+    CutSet chosen;
+    // What of them stands on the device.
+    gi::DeviceCut view, light_cut;
+    std::vector<gi::DeviceCut> light_views;
     LocalFrame local;
     bool cuts_stale = true;  // the device's cuts differ from what is chosen and resident
 
@@ -109,13 +103,16 @@ struct Pipeline::State {
 };
 
 /// Begins with nothing resident. What fits the stream's cap fits the pool, because a node costs its pages in
-/// both.
+/// both. A node on its way is held as records and, at most all that were polled, packed.
 void Pipeline::State::start_stream() {
     if (residency) residency.reset();
     for (uint32_t node = 0; node < source->nodes().size(); ++node)
         if (pool.holds(node)) pool.evict(node);
     octree::ResidencyOptions how;
     how.memory = pool_bytes(pool.capacity());
+    const uint64_t stride = source->header().schema.stride, left = options.memory - directory_bytes();
+    how.transit = static_cast<uint64_t>(static_cast<double>(left) * static_cast<double>(stride) /
+                                        static_cast<double>(stride + sizeof(gi::PackedSurfel)));
     how.threads = options.load_threads;
     how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
     residency = std::make_unique<octree::Residency>(*source, how);
@@ -123,69 +120,51 @@ void Pipeline::State::start_stream() {
 }
 
 void Pipeline::State::choose_cuts(const FrameRequest& request) {
-    const double unit = source->header().metres_per_unit;
-    const octree::View eye = octree_view(request.camera, request.size);
-    const LocalFrame frame = local_frame(request.camera.position, unit);
-    view.chosen = octree::view_cut(*source, eye, budgets.view, budgets.pixel_spacing);
-    light_views.resize(scene.lights.size());
-    for (size_t i = 0; i < light_views.size(); ++i)
-        light_views[i].chosen =
-            light_view_cut(*source, scene.lights[i], settings.light_resolution, budgets.light_view);
-    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
-    const auto& root = source->header().root;
-    const double step = root.size / kFocusCells;
-    const glm::dvec3 focus = root.min + glm::floor((eye.position - root.min) / step + 0.5) * step;
-    light_cut.chosen = octree::light_cut(*source, focus, budgets.light);
-    local = frame;
+    const CutPurpose purpose{*source, request.camera, request.size, scene.lights, settings.light_resolution,
+                             budgets};
+    const auto cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
+    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), cost});
+    local = local_frame(request.camera.position, source->header().metres_per_unit);
     camera = camera_view(request.camera, request.size, local);
     cuts_stale = true;
 }
 
-/// Sends what the stream reports to the device. False when the pool's free pages lie too scattered for a
-/// node.
-Result<bool> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
+/// Sends what the stream reports to the device.
+Result<void> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
     const auto& header = source->header();
-    for (size_t first = 0; first < events.size(); first += kNodesAtOnce) {
-        const auto group = events.subspan(first, std::min(kNodesAtOnce, events.size() - first));
-        std::vector<std::vector<gi::PackedSurfel>> packed(group.size());
-        parallel_ranges(group.size(), 1, [&](size_t i, size_t) {
-            if (group[i].data)
-                packed[i] = gi::pack_surfels(header, source->nodes()[group[i].node], *group[i].data, scene);
-        });
-        for (size_t i = 0; i < group.size(); ++i) {
-            cuts_stale = true;
-            if (group[i].kind != ResidencyEvent::Kind::loaded) pool.evict(group[i].node);
-            if (group[i].kind == ResidencyEvent::Kind::evicted) continue;
-            bytes_loaded += source->nodes()[group[i].node].payload_bytes;
-            LUCARNE_ASSIGN(const bool fits, pool.load(group[i].node, packed[i]));
-            if (!fits) return false;
-        }
+    std::vector<std::vector<gi::PackedSurfel>> packed(events.size());
+    parallel_ranges(events.size(), 1, [&](size_t i, size_t) {
+        if (events[i].data)
+            packed[i] = gi::pack_surfels(header, source->nodes()[events[i].node], *events[i].data, scene);
+    });
+    for (size_t i = 0; i < events.size(); ++i) {
+        cuts_stale = true;
+        if (events[i].kind != ResidencyEvent::Kind::loaded) pool.evict(events[i].node);
+        if (events[i].kind == ResidencyEvent::Kind::evicted) continue;
+        bytes_loaded += source->nodes()[events[i].node].payload_bytes;
+        LUCARNE_ASSIGN(const bool fits, pool.load(events[i].node, packed[i]));
+        if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
     }
-    return true;
+    return {};
 }
 
-/// What has arrived, all of it with `wait`. False as in apply().
-Result<bool> Pipeline::State::take_arrivals(bool wait) {
+/// What has arrived, all of it with `wait`.
+Result<void> Pipeline::State::take_arrivals(bool wait) {
     const auto start = std::chrono::steady_clock::now();
     for (;;) {
-        const auto events = residency->poll(wait ? SIZE_MAX : kNodesAtOnce);
-        LUCARNE_ASSIGN(const bool applied, apply(events));
+        const auto events = residency->poll(kNodesAtOnce);
+        LUCARNE_TRY(apply(events));
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        if (!applied || wait || events.empty() || spent.count() > kUploadShare * last_seconds) return applied;
+        if (events.empty() || (!wait && spent.count() > kUploadShare * last_seconds)) return {};
     }
 }
 
 /// Brings the pool closer to the chosen cuts, or with `wait` as close as the caps allow.
 Result<void> Pipeline::State::stream(bool wait) {
-    std::vector<const octree::Cut*> wanted = {&view.chosen, &light_cut.chosen};
-    for (const auto& cut : light_views) wanted.push_back(&cut.chosen);
-    // A second round only where the pool was too scattered: an emptied pool is filled from its start.
-    for (int round = 0; round < 2; ++round) {
-        residency->want(wanted);
-        if (wait) residency->wait();
-        LUCARNE_ASSIGN(const bool applied, take_arrivals(wait));
-        if (applied) break;
-        start_stream();
+    residency->want(chosen.all());
+    for (bool all = false; !all;) {
+        all = !wait || residency->wait();
+        LUCARNE_TRY(take_arrivals(wait));
     }
     const auto error = residency->take_error();
     if (!error && wait) return error;
@@ -193,10 +172,19 @@ Result<void> Pipeline::State::stream(bool wait) {
     return {};
 }
 
+Result<void> Pipeline::State::build_cut(const octree::Cut& cut, gi::DeviceCut& target) {
+    std::vector<gi::CutEntry> entries;
+    entries.reserve(cut.nodes.size());
+    for (const auto& node : cut.nodes) entries.push_back({node.node, node.count});
+    return pool.make_cut(device, *source, entries, local.origin, target);
+}
+
 Result<void> Pipeline::State::build_cuts() {
-    LUCARNE_TRY(view.build(device, pool, *source, local.origin));
-    LUCARNE_TRY(light_cut.build(device, pool, *source, local.origin));
-    for (auto& cut : light_views) LUCARNE_TRY(cut.build(device, pool, *source, local.origin));
+    LUCARNE_TRY(build_cut(chosen.view, view));
+    LUCARNE_TRY(build_cut(chosen.light, light_cut));
+    light_views.resize(chosen.light_views.size());
+    for (size_t i = 0; i < light_views.size(); ++i)
+        LUCARNE_TRY(build_cut(chosen.light_views[i], light_views[i]));
     cuts_stale = false;
     return {};
 }
@@ -206,12 +194,12 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(sample, pixels * sizeof(glm::vec4), "the picture's radiance"));
     times.begin("G-buffer");
-    LUCARNE_TRY(gi::rasterize(device, view.drawn, camera, gbuffer));
+    LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer));
     times.end();
-    gi::FrameCuts cuts{&view.drawn, {}, &light_cut.drawn};
+    gi::FrameCuts cuts{&view, {}, &light_cut};
     std::vector<gi::Light> lights;
     for (size_t i = 0; i < light_views.size(); ++i) {
-        cuts.light_views.push_back(&light_views[i].drawn);
+        cuts.light_views.push_back(&light_views[i]);
         lights.push_back(device_light(scene.lights[i], local));
     }
     const auto& header = source->header();
@@ -262,16 +250,20 @@ FrameStats Pipeline::State::stats(double seconds) const {
     FrameStats result;
     result.passes = times.passes();
     result.seconds = seconds;
-    result.view_points = view.drawn.surfels();
-    result.light_points = light_cut.drawn.surfels();
-    result.wanted_points = view.chosen.points + light_cut.chosen.points;
-    for (const auto& cut : light_views) {
-        result.light_view_points += cut.drawn.surfels();
-        result.wanted_points += cut.chosen.points;
-    }
+    result.view_points = view.surfels();
+    result.light_points = light_cut.surfels();
+    result.wanted_points = chosen.points();
+    for (const auto& cut : light_views) result.light_view_points += cut.surfels();
     result.ready_points = result.view_points + result.light_points + result.light_view_points;
     result.bytes_loaded = bytes_loaded;
-    result.nodes_pending = residency->stats().pending;
+    const octree::ResidencyStats streamed = residency->stats();
+    result.nodes_pending = streamed.pending;
+    const double packed = static_cast<double>(sizeof(gi::PackedSurfel)) / source->header().schema.stride;
+    result.cut_share = chosen.share;
+    result.memory.host =
+        directory_bytes() + static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
+    result.memory.device = device.memory_used();
+    result.memory.resident = resident_memory();
     result.accumulated = std::max(accumulated, 1u);
     result.engine = engine->stats();
     return result;
@@ -286,12 +278,15 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
     pipeline->state_ = std::make_unique<State>(device, std::move(source), options);
     State& state = *pipeline->state_;
+    if (options.memory < state.directory_bytes() + kLeastTransit)
+        return bad_arguments("--memory",
+                             fmt::format("{} are too little: the directory of the octree alone takes {}",
+                                         bytes_text(options.memory), bytes_text(state.directory_bytes())),
+                             "allow more");
     device.set_memory_cap(options.device_memory);
-    // One buffer holds the pool: half of what is free is left to pictures, maps and cuts.
-    const uint64_t most =
-        std::min(device.info().max_buffer_bytes, options.device_memory / 2) / sizeof(gi::PackedSurfel);
-    const auto capacity = static_cast<uint32_t>(std::min<uint64_t>(options.pool_surfels, most));
-    LUCARNE_ASSIGN(state.pool, gi::SurfelPool::create(device, capacity));
+    const uint64_t pool = std::min(device.info().max_texel_bytes, options.device_memory / kPoolShare);
+    const uint64_t capacity = std::min<uint64_t>(pool / sizeof(gi::PackedSurfel), UINT32_MAX);
+    LUCARNE_ASSIGN(state.pool, gi::SurfelPool::create(device, static_cast<uint32_t>(capacity)));
     const auto& header = state.source->header();
     state.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
@@ -303,6 +298,9 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
 
 const octree::NodeSource& Pipeline::source() const {
     return *state_->source;
+}
+const PipelineOptions& Pipeline::options() const {
+    return state_->options;
 }
 const gi::EngineInfo& Pipeline::engine() const {
     return state_->engine->info();

@@ -14,13 +14,19 @@
 
 namespace lucarne::viewer {
 
-/// Caps that hold whatever the cloud's size.
+/// Caps that hold whatever the cloud's size, bytes.
 struct PipelineOptions {
-    /// Surfels on the device, 16 bytes each; fewer where one buffer cannot hold them. Nodes on their way to
-    /// it take memory of the host: no more of them than fit the pool.
-    uint32_t pool_surfels = 8'000'000;
-    uint64_t device_memory = uint64_t{2} << 30;  ///< bytes of all buffers
+    uint64_t memory = uint64_t{512} << 20;       ///< of the host: the octree's directory, nodes on their way
+    uint64_t device_memory = uint64_t{2} << 30;  ///< of all buffers; a quarter of it holds surfels
     unsigned load_threads = 2;
+};
+
+/// What is used of the caps, bytes.
+struct MemoryUse {
+    uint64_t host = 0;      ///< the most so far
+    uint64_t device = 0;    ///< now
+    uint64_t resident = 0;  ///< of the process, as the kernel counts it; with it whatever a driver in
+                            ///< software holds for its device
 };
 
 struct FrameRequest {
@@ -40,7 +46,9 @@ struct FrameStats {
     uint64_t wanted_points = 0, ready_points = 0;  ///< of all cuts, once a cut: chosen and drawn
     uint64_t bytes_loaded = 0;                     ///< since the pipeline was opened
     uint64_t nodes_pending = 0;                    ///< wanted and still on their way
-    uint32_t accumulated = 1;                      ///< frames in the picture
+    double cut_share = 1;  ///< of the points that the budgets allow, what fits the caps
+    MemoryUse memory;
+    uint32_t accumulated = 1;  ///< frames in the picture
     std::vector<std::pair<std::string, double>> engine;
 
     double complete() const {  ///< share of the cuts that is drawn, 0..1
@@ -52,7 +60,7 @@ struct FrameStats {
 /// surfels on the device, the cuts, the G-buffer, the engine and the buffers of the picture. One thread.
 class Pipeline {
  public:
-    /// `device` outlives the pipeline. Errors: no device memory.
+    /// `device` outlives the pipeline. Errors: no device memory; a directory that is larger than the cap.
     static Result<std::unique_ptr<Pipeline>> open(gi::Device& device,
                                                   std::shared_ptr<const octree::NodeSource> source,
                                                   const PipelineOptions& options);
@@ -61,6 +69,7 @@ class Pipeline {
     Pipeline& operator=(const Pipeline&) = delete;
 
     const octree::NodeSource& source() const;
+    const PipelineOptions& options() const;
 
     /// Errors: unknown name (arguments).
     Result<void> set_engine(std::string_view name);

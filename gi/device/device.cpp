@@ -70,8 +70,8 @@ Result<std::unique_ptr<Device>> Device::current() {
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
     GLint texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-    info.max_buffer_bytes =
-        std::min(static_cast<uint64_t>(bytes), uint64_t{16} * static_cast<uint64_t>(texels));
+    info.max_texel_bytes = uint64_t{16} * static_cast<uint64_t>(texels);
+    info.max_buffer_bytes = std::min(static_cast<uint64_t>(bytes), info.max_texel_bytes);
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -86,6 +86,9 @@ const DeviceInfo& Device::info() const {
 void Device::set_memory_cap(uint64_t bytes) {
     state_->cap = bytes;
 }
+uint64_t Device::memory_cap() const {
+    return state_->cap;
+}
 uint64_t Device::memory_used() const {
     return state_->used;
 }
@@ -94,12 +97,19 @@ void Device::finish() {
 }
 
 Result<Buffer> Device::buffer(size_t bytes, std::string_view what) {
+    return make(bytes, state_->info.max_buffer_bytes, what);
+}
+Result<Buffer> Device::texels(size_t bytes, std::string_view what) {
+    return make(bytes, state_->info.max_texel_bytes, what);
+}
+
+Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) {
     constexpr size_t kGrain = 16;  // a storage block ends on a vec4
     const std::string name(what);
-    if (bytes > state_->info.max_buffer_bytes)
+    if (bytes > most)
         return failed(name,
                       fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20,
-                                  state_->info.renderer, state_->info.max_buffer_bytes >> 20),
+                                  state_->info.renderer, most >> 20),
                       kMemoryTodo);
     bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
     if (bytes > state_->cap - std::min(state_->cap, state_->used))
@@ -197,6 +207,19 @@ void Buffer::download(size_t offset, std::span<std::byte> out) const {
     if (out.empty()) return;
     glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(out.size()),
                             out.data());
+}
+
+void Buffer::move_down(size_t from, size_t to, size_t bytes) {
+    if (to > from || from > bytes_ || bytes > bytes_ - from)
+        throw std::logic_error("move beyond the buffer's end");
+    if (to == from) return;
+    // OpenGL copies no range onto itself: in steps as long as the way.
+    for (size_t done = 0; done < bytes;) {
+        const size_t step = std::min(bytes - done, from - to);
+        glCopyNamedBufferSubData(id_, id_, static_cast<GLintptr>(from + done),
+                                 static_cast<GLintptr>(to + done), static_cast<GLsizeiptr>(step));
+        done += step;
+    }
 }
 
 void Buffer::clear(uint32_t word) {

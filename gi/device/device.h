@@ -19,7 +19,8 @@ struct DeviceInfo {
     std::string vendor, renderer, version;
     bool software = false;          ///< llvmpipe and the like: timer queries are nonsense there
     bool atomic_int64 = false;      ///< GL_NV_shader_atomic_int64
-    uint64_t max_buffer_bytes = 0;  ///< of one shader storage block or its texel views
+    uint64_t max_buffer_bytes = 0;  ///< of one shader storage block and its texel views
+    uint64_t max_texel_bytes = 0;   ///< of a buffer that shaders read as texels of four words alone
 };
 
 class Device;
@@ -40,12 +41,14 @@ class Buffer {
     explicit operator bool() const { return id_ != 0; }
     uint32_t id() const { return id_; }
     void bind(uint32_t binding) const;  ///< as shader storage
-    /// As `usamplerBuffer` or `samplerBuffer` at a texture unit, for reading only: llvmpipe fetches four words of a texel ten
-    /// times faster than four words of a storage block (.4 against 4.3 ns).
+    /// As `usamplerBuffer` or `samplerBuffer` at a texture unit, for reading only: llvmpipe fetches four
+    /// words of a texel ten times faster than four words of a storage block (.4 against 4.3 ns).
     void bind_texels(uint32_t unit, TexelView view) const;
     void upload(size_t offset, std::span<const std::byte> data);
     void download(size_t offset, std::span<std::byte> out) const;  ///< waits for the device
     void clear(uint32_t word);                                     ///< every 32-bit word
+    /// Copies bytes of it towards its beginning (`to` <= `from`); the ranges may overlap.
+    void move_down(size_t from, size_t to, size_t bytes);
     template <class T>
     void upload_all(const std::vector<T>& values) {
         upload(0, std::as_bytes(std::span(values)));
@@ -113,10 +116,13 @@ class Device {
     const DeviceInfo& info() const;
     /// Bytes that buffers may take in all; an allocation beyond it is an error.
     void set_memory_cap(uint64_t bytes);
+    uint64_t memory_cap() const;
     uint64_t memory_used() const;
 
     /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
     Result<Buffer> buffer(size_t bytes, std::string_view what);
+    /// The same for what shaders only read as texels of four words; up to max_texel_bytes.
+    Result<Buffer> texels(size_t bytes, std::string_view what);
     /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
     Result<void> reserve(Buffer& buffer, size_t bytes, std::string_view what);
 
@@ -129,6 +135,7 @@ class Device {
 
  private:
     Device();
+    Result<Buffer> make(size_t bytes, uint64_t most, std::string_view what);
     friend class Buffer;
     struct State;
     std::unique_ptr<State> state_;

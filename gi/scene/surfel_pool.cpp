@@ -87,7 +87,7 @@ Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
     const auto pages = static_cast<uint32_t>(std::clamp<uint64_t>(pages_for(capacity), 1, most));
     SurfelPool pool;
     LUCARNE_ASSIGN(pool.buffer_,
-                   device.buffer(size_t{pages} * kPageSurfels * sizeof(PackedSurfel), "surfel pool"));
+                   device.texels(size_t{pages} * kPageSurfels * sizeof(PackedSurfel), "surfel pool"));
     pool.capacity_ = pages * kPageSurfels;
     pool.free_ = {{0, pages}};
     return pool;
@@ -100,9 +100,13 @@ Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfe
         resident_[node] = {0, 0};
         return true;
     }
-    const auto fits =
-        std::find_if(free_.begin(), free_.end(), [&](const Span& s) { return s.count >= pages; });
-    if (fits == free_.end()) return false;
+    if (pages > capacity_ / kPageSurfels - used_pages_) return false;
+    const auto large_enough = [&](const Span& s) { return s.count >= pages; };
+    auto fits = std::find_if(free_.begin(), free_.end(), large_enough);
+    if (fits == free_.end()) {
+        compact();
+        fits = free_.begin();
+    }
     const uint32_t first = fits->first * kPageSurfels;
     fits->first += pages;
     fits->count -= pages;
@@ -135,6 +139,23 @@ void SurfelPool::release(Span pages) {
         before->count += here->count;
         free_.erase(here);
     }
+}
+
+/// Moves all nodes to the beginning, in the order in which they lie, so that what is free is one span.
+void SurfelPool::compact() {
+    std::vector<Span*> spans;
+    for (auto& [node, span] : resident_)
+        if (span.count) spans.push_back(&span);
+    std::sort(spans.begin(), spans.end(), [](const Span* a, const Span* b) { return a->first < b->first; });
+    uint32_t page = 0;
+    for (Span* span : spans) {
+        const uint32_t first = page * kPageSurfels;
+        buffer_.move_down(size_t{span->first} * sizeof(PackedSurfel), size_t{first} * sizeof(PackedSurfel),
+                          size_t{span->count} * sizeof(PackedSurfel));
+        span->first = first;
+        page += pages_for(span->count);
+    }
+    free_ = {{page, capacity_ / kPageSurfels - page}};
 }
 
 bool SurfelPool::holds(uint32_t node) const {

@@ -60,6 +60,7 @@ class SurfelPool {
     static Result<SurfelPool> create(Device& device, uint32_t capacity);
 
     /// False when there is no room: the caller evicts and tries again. A node that is resident is replaced.
+    /// Where the free pages lie scattered the others are moved together; cuts made before are void then.
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
     bool holds(uint32_t node) const;
@@ -82,6 +83,7 @@ class SurfelPool {
         uint64_t content = 0;  ///< hash of its surfels
     };
     void release(Span pages);
+    void compact();
 
     Buffer buffer_;
     std::unordered_map<uint32_t, Span> resident_;  ///< in surfels

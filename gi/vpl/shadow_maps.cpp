@@ -24,9 +24,11 @@ constexpr size_t kBoundsBytes = 8 * sizeof(float);     // queue.glsl, and the ne
 constexpr uint32_t kRunMaps = 256;
 constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
-constexpr uint32_t kQueuePairs = 4 << 20;  // 32 MiB; an atlas of 2048 x 2048 has some 2M
-constexpr uint32_t kLargeGroups = 65535;   // the most that OpenGL promises; they share out the large discs
-constexpr uint32_t kLargeGroup = 16;       // local size of splat_large.comp
+// Places of the queue: an atlas of 2048 x 2048 has some 2M pairs; the least are what one block may need. On a
+// device with little memory it takes no more than this share.
+constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 8;
+constexpr uint32_t kLargeGroups = 65535;  // the most that OpenGL promises; they share out the large discs
+constexpr uint32_t kLargeGroup = 16;      // local size of splat_large.comp
 
 struct Range {
     uint32_t first, end;
@@ -69,13 +71,18 @@ Result<void> close(Device& device, ShadowMaps& maps) {
     return {};
 }
 
+uint32_t queue_places(const Device& device) {
+    const uint64_t affordable = device.memory_cap() / kQueueShare / (kPairBytes + sizeof(uint32_t));
+    return static_cast<uint32_t>(std::clamp(affordable, kLeastPairs, kMostPairs));
+}
+
 struct SplatPrograms {
     const Program *meet, *enter, *draw, *draw_large;
 };
 
 /// Draws the surfels of some blocks into some maps. A range with more pairs than the queue holds (large maps
 /// among many surfaces) is drawn in halves; a single block has kBlockSurfels a map at most.
-void splat_range(const SplatPrograms& splat, Range blocks, Range maps, ShadowMaps& target) {
+void splat_range(const SplatPrograms& splat, Range blocks, Range maps, uint32_t places, ShadowMaps& target) {
     target.queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
     splat.meet->set("first_block", blocks.first);
     splat.meet->set("block_end", blocks.end);
@@ -85,10 +92,10 @@ void splat_range(const SplatPrograms& splat, Range blocks, Range maps, ShadowMap
     splat.meet->dispatch(blocks.end - blocks.first, kRunMaps / 32);
     splat.enter->dispatch((blocks.end - blocks.first) * kBlockSurfels);
     const uint32_t pairs = target.queue.download_all<uint32_t>(1)[0];
-    if (pairs > kQueuePairs) {
+    if (pairs > places) {
         const uint32_t half = (blocks.first + blocks.end) / 2;
-        splat_range(splat, {blocks.first, half}, maps, target);
-        splat_range(splat, {half, blocks.end}, maps, target);
+        splat_range(splat, {blocks.first, half}, maps, places, target);
+        splat_range(splat, {half, blocks.end}, maps, places, target);
         return;
     }
     splat.draw->dispatch(pairs);
@@ -105,8 +112,9 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/vpl/splat_large.comp", defines));
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
     LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
-    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + kQueuePairs * kPairBytes, "ISM queue"));
-    LUCARNE_TRY(device.reserve(target.large, kQueuePairs * sizeof(uint32_t), "ISM queue"));
+    const uint32_t places = queue_places(device);
+    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + places * kPairBytes, "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.large, places * sizeof(uint32_t), "ISM queue"));
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     target.bounds.bind_texels(kUnitBounds, TexelView::four_words);
     target.atlas.bind(kBindAtlas);
@@ -126,7 +134,7 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     }
     for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
         splat_range(programs, {0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)},
-                    target);
+                    places, target);
     return {};
 }
 

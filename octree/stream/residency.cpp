@@ -18,9 +18,10 @@ namespace {
 using Events = std::list<ResidencyEvent>;
 
 struct Entry {
-    uint64_t bytes = 0;        ///< what a load takes
-    uint64_t held_bytes = 0;   ///< what the copy held takes
-    uint64_t last_wanted = 0;  ///< the number of the want() that last named it
+    uint64_t bytes = 0;         ///< what a load takes
+    uint64_t held_bytes = 0;    ///< what the copy held takes
+    uint64_t record_bytes = 0;  ///< of a load, in transit
+    uint64_t last_wanted = 0;   ///< the number of the want() that last named it
     float priority = 0;
     uint32_t count = 0;
     bool held = false, in_flight = false;
@@ -49,6 +50,7 @@ struct Residency::State {
     Events events;
     ResidencyStats stats;
     uint64_t wants = 0, bytes_in_flight = 0;
+    uint64_t bytes_unpolled = 0, bytes_polled = 0;  // records: read or being read; of the last poll
     unsigned loads_in_flight = 0;
     std::optional<Error> error;
     bool stop = false;
@@ -59,6 +61,9 @@ struct Residency::State {
     void forget_strangers();
     void evict(uint32_t node);
     bool make_room(uint64_t bytes);
+    bool transit_full() const;
+    bool nothing_moves() const;
+    void forget_event(Entry& entry);
     std::optional<uint32_t> next_load();
     void finish_load(uint32_t node, Result<NodeData>&& loaded);
     void loader();
@@ -85,8 +90,8 @@ void Residency::State::take_wishes(std::span<const Cut* const> cuts) {
         if (!entry.in_flight) {
             const NodeInfo& info = nodes[node];
             entry.count = info.count;
-            entry.bytes =
-                options.cost ? options.cost(info) : uint64_t{info.count} * source.header().schema.stride;
+            entry.record_bytes = uint64_t{info.count} * source.header().schema.stride;
+            entry.bytes = options.cost ? options.cost(info) : entry.record_bytes;
         }
         if (const auto parent = entries.find(nodes[node].parent);
             parent != entries.end() && parent->second.last_wanted == wants)
@@ -117,7 +122,7 @@ void Residency::State::admit() {
         if (entry.lost) continue;
         const bool orphan = parent && !parent->admitted;
         const uint64_t bytes = std::max(entry.bytes, entry.held_bytes);
-        const bool too_large = bytes > options.memory;
+        const bool too_large = bytes > options.memory || entry.record_bytes > options.transit;
         // What is larger than the whole cap never blocks the rest. The first that does not fit ends it: a
         // smaller one further down would be held in the place of something more important.
         full |= !orphan && !too_large && bytes > options.memory - total;
@@ -151,10 +156,17 @@ bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
     return a > b;  // children before parents
 }
 
+/// Drops a loaded or replaced event that the caller has not seen: it need not.
+void Residency::State::forget_event(Entry& entry) {
+    if (!entry.unpolled) return;
+    bytes_unpolled -= (*entry.unpolled)->data->records.size();
+    events.erase(*entry.unpolled);
+    entry.unpolled.reset();
+}
+
 void Residency::State::evict(uint32_t node) {
     Entry& entry = entries.at(node);
-    if (entry.unpolled) events.erase(*entry.unpolled);  // what the caller has not seen it need not see
-    entry.unpolled.reset();
+    forget_event(entry);
     if (entry.known) events.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
     entry.known = false;
     stats.bytes_held -= entry.held_bytes;
@@ -173,9 +185,19 @@ bool Residency::State::make_room(uint64_t bytes) {
     return true;
 }
 
+/// Whether the next node of the queue has to wait for the caller to take others.
+bool Residency::State::transit_full() const {
+    return bytes_unpolled + bytes_polled + entries.at(queue.back()).record_bytes > options.transit;
+}
+
+/// Whether nothing will happen before the caller's next call.
+bool Residency::State::nothing_moves() const {
+    return loads_in_flight == 0 && (queue.empty() || transit_full());
+}
+
 /// Takes the next node off the queue once there is room for it.
 std::optional<uint32_t> Residency::State::next_load() {
-    if (queue.empty()) return std::nullopt;
+    if (queue.empty() || transit_full()) return std::nullopt;
     const uint32_t node = queue.back();
     Entry& entry = entries.at(node);
     if (!make_room(entry.bytes)) {
@@ -188,6 +210,8 @@ std::optional<uint32_t> Residency::State::next_load() {
     entry.in_flight = true;
     entry.stale = false;
     bytes_in_flight += entry.bytes;
+    bytes_unpolled += entry.record_bytes;
+    stats.transit_peak = std::max(stats.transit_peak, bytes_unpolled + bytes_polled);
     ++loads_in_flight;
     stats.bytes_peak = std::max(stats.bytes_peak, stats.bytes_held + bytes_in_flight);
     return node;
@@ -197,6 +221,7 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     Entry& entry = entries.at(node);
     entry.in_flight = false;
     bytes_in_flight -= entry.bytes;
+    bytes_unpolled -= entry.record_bytes;
     --loads_in_flight;
     if (loaded && (loaded->count != entry.count ||
                    loaded->records.size() != uint64_t{entry.count} * source.header().schema.stride)) {
@@ -212,7 +237,8 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     ++stats.loads;
     stats.bytes_loaded += loaded->records.size();
     auto data = std::make_shared<const NodeData>(std::move(*loaded));
-    if (entry.unpolled) events.erase(*entry.unpolled);
+    forget_event(entry);
+    bytes_unpolled += data->records.size();
     const auto kind = entry.known ? ResidencyEvent::Kind::replaced : ResidencyEvent::Kind::loaded;
     entry.unpolled = events.insert(events.end(), {kind, node, std::move(data)});
     stats.bytes_held += entry.bytes - entry.held_bytes;
@@ -242,7 +268,7 @@ void Residency::State::loader() {
         lock.lock();
         finish_load(*node, std::move(loaded));
         work.notify_all();
-        if (queue.empty() && loads_in_flight == 0) idle.notify_all();
+        if (nothing_moves()) idle.notify_all();
     }
 }
 
@@ -274,7 +300,7 @@ void Residency::want(std::span<const Cut* const> cuts) {
         state_->take_wishes(cuts);
         state_->admit();
         state_->forget_strangers();
-        if (state_->queue.empty() && state_->loads_in_flight == 0) state_->idle.notify_all();
+        if (state_->nothing_moves()) state_->idle.notify_all();
     }
     state_->work.notify_all();
 }
@@ -289,24 +315,31 @@ void Residency::renew(std::span<const uint32_t> nodes) {
 }
 
 std::vector<ResidencyEvent> Residency::poll(size_t limit) {
-    const std::lock_guard lock(state_->mutex);
     std::vector<ResidencyEvent> polled;
-    while (!state_->events.empty() && polled.size() < limit) {
-        ResidencyEvent& event = state_->events.front();
-        if (event.kind != ResidencyEvent::Kind::evicted) {
-            Entry& entry = state_->entries.at(event.node);
-            entry.unpolled.reset();
-            entry.known = true;
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->bytes_polled = 0;
+        while (!state_->events.empty() && polled.size() < limit) {
+            ResidencyEvent& event = state_->events.front();
+            if (event.kind != ResidencyEvent::Kind::evicted) {
+                Entry& entry = state_->entries.at(event.node);
+                entry.unpolled.reset();
+                entry.known = true;
+                state_->bytes_unpolled -= event.data->records.size();
+                state_->bytes_polled += event.data->records.size();
+            }
+            polled.push_back(std::move(event));
+            state_->events.pop_front();
         }
-        polled.push_back(std::move(event));
-        state_->events.pop_front();
     }
+    state_->work.notify_all();
     return polled;
 }
 
-void Residency::wait() {
+bool Residency::wait() {
     std::unique_lock lock(state_->mutex);
-    state_->idle.wait(lock, [&] { return state_->queue.empty() && state_->loads_in_flight == 0; });
+    state_->idle.wait(lock, [&] { return state_->nothing_moves(); });
+    return state_->queue.empty();
 }
 
 bool Residency::resident(uint32_t node) const {

@@ -13,7 +13,10 @@ namespace lucarne::octree {
 
 struct ResidencyOptions {
     uint64_t memory = uint64_t{512} << 20;  ///< hard cap on nodes held or on their way, bytes
-    unsigned threads = 2;                   ///< loading threads, 1 to 64
+    /// Hard cap on the records in this process, bytes: being read, not polled yet, or polled last (they count
+    /// until the next poll). Loading pauses where it is reached.
+    uint64_t transit = uint64_t{256} << 20;
+    unsigned threads = 2;  ///< loading threads, 1 to 64
     /// What a node takes of `memory`; empty: the bytes of its records. A caller that copies nodes into pages
     /// of its own (a device's pool) counts those, so that what fits here fits there.
     std::function<uint64_t(const NodeInfo&)> cost;
@@ -30,9 +33,10 @@ struct ResidencyEvent {
 struct ResidencyStats {
     uint64_t bytes_held = 0, bytes_loaded = 0;  ///< now; since the start
     uint64_t nodes_held = 0, loads = 0, evictions = 0, failures = 0;
-    uint64_t pending = 0;     ///< wanted and not there yet, or there and not polled
-    uint64_t refused = 0;     ///< wanted, and the cap has no room for them
-    uint64_t bytes_peak = 0;  ///< the most ever held or on their way
+    uint64_t pending = 0;       ///< wanted and not there yet, or there and not polled
+    uint64_t refused = 0;       ///< wanted, and the caps have no room for them
+    uint64_t bytes_peak = 0;    ///< the most ever held or on their way
+    uint64_t transit_peak = 0;  ///< the most records ever in this process
 };
 
 /// Keeps the nodes of the wanted cuts resident: loads what is missing in the background, most important first
@@ -56,8 +60,9 @@ class Residency {
     void renew(std::span<const uint32_t> nodes);
     /// Events since the last call; at most `limit`, so that a frame stays short. Never blocks on a load.
     std::vector<ResidencyEvent> poll(size_t limit = SIZE_MAX);
-    /// Blocks until everything wanted is loaded, failed or refused by the cap; events wait for poll().
-    void wait();
+    /// Blocks until everything wanted is loaded, failed or refused by the cap: true. False: the records in
+    /// transit are at their cap, and the rest comes when events have been polled.
+    bool wait();
     bool resident(uint32_t node) const;
     ResidencyStats stats() const;
     /// The first load that failed since the last call, if any: the caller decides what to tell the user. A

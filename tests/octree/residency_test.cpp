@@ -66,6 +66,38 @@ class Replay {
     size_t replaced_ = 0;
 };
 
+TEST(Residency, RecordsInTransitKeepToTheirCapAndAllArriveAllTheSame) {
+    const PlaneSource source(4, kPoints, 10.0);
+    const uint64_t all = source.nodes().size() * kNode;
+    Residency residency(source, {.memory = all, .transit = 5 * kNode + kNode / 2, .threads = 3});
+    const Cut cut = full_cut(source);
+    want(residency, cut);
+    Replay replay(all);
+    size_t rounds = 0;
+    for (bool done = false; !done; ++rounds) {
+        done = residency.wait();
+        const auto events = residency.poll(3);
+        EXPECT_LE(events.size(), 3u);
+        replay.play(events);
+    }
+    for (auto events = residency.poll(3); !events.empty(); events = residency.poll(3)) replay.play(events);
+    EXPECT_EQ(replay.held().size(), source.nodes().size());
+    EXPECT_GT(rounds, source.nodes().size() / 6) << "it went on loading without room";
+    EXPECT_LE(residency.stats().transit_peak, 5 * kNode);
+    EXPECT_EQ(residency.stats().pending, 0u);
+}
+
+TEST(Residency, WhatIsLargerThanTheTransitIsRefusedAndBlocksNothing) {
+    PlaneSource source(3, kPoints, 10.0);
+    source.edit().back().count = 10 * kPoints;
+    Residency residency(source, {.memory = 1000 * kNode, .transit = 4 * kNode, .threads = 2});
+    const Cut cut = full_cut(source);
+    want(residency, cut);
+    while (!residency.wait()) residency.poll();
+    EXPECT_EQ(residency.stats().refused, 1u);
+    EXPECT_EQ(residency.stats().nodes_held, source.nodes().size() - 1);
+}
+
 TEST(Residency, LoadsEverythingWantedThatFits) {
     const PlaneSource source(4, kPoints, 10.0);
     Residency residency(source, {.memory = source.nodes().size() * kNode, .threads = 3});

@@ -51,8 +51,9 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_option("--vpls", options.vpls, "Virtual point lights")
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
-    command.add_flag("--best-candidate", options.best_candidate,
-                     "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
+    command.add_flag(
+        "--best-candidate", options.best_candidate,
+        "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
     command.add_option("--interleave", options.interleave, "Pixels along a side that share out the lights")
         ->check(CLI::IsMember({1, 2, 4}))
         ->type_name("N");
@@ -69,6 +70,14 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_option("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
         ->check(CLI::Range(-100.0, 100.0))
         ->type_name("EV");
+    command
+        .add_option("--memory", options.memory,
+                    "Most that the cloud takes of the memory on its way to the device (512M)")
+        ->type_name("SIZE");
+    command
+        .add_option("--device-memory", options.device_memory,
+                    "Most of the device's memory, for surfels, pictures and maps together (2G)")
+        ->type_name("SIZE");
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
 }
 
@@ -76,6 +85,12 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     Drawing drawing;
     LUCARNE_ASSIGN(drawing.preset, find_preset(options.preset));
     LUCARNE_ASSIGN(drawing.size, parse_size("--size", options.size));
+    if (!options.memory.empty()) {
+        LUCARNE_ASSIGN(drawing.caps.memory, parse_bytes("--memory", options.memory));
+    }
+    if (!options.device_memory.empty()) {
+        LUCARNE_ASSIGN(drawing.caps.device_memory, parse_bytes("--device-memory", options.device_memory));
+    }
     LUCARNE_TRY(gi::make_engine(options.engine));
     gi::EngineSettings& engine = drawing.preset.engine;
     override_with(engine.bounces, options.bounces);
@@ -111,6 +126,11 @@ Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& n
                          "choose one of: " + known);
 }
 
+std::string memory_text(const PipelineOptions& caps, const MemoryUse& used) {
+    return fmt::format("memory {} of {}, device {} of {}", bytes_text(used.host), bytes_text(caps.memory),
+                       bytes_text(used.device), bytes_text(caps.device_memory));
+}
+
 Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
                                                 std::shared_ptr<const octree::NodeSource> source,
                                                 const DrawingOptions& options, const Drawing& drawing,
@@ -120,7 +140,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
         log::warn(
             "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
             "convert with --normals estimate for correct light");
-    LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), {}));
+    LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));
     LUCARNE_TRY(pipeline->set_engine(options.engine));
     pipeline->set_settings(drawing.preset.engine);
     pipeline->set_budgets(drawing.preset.budgets);

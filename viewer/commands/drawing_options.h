@@ -28,20 +28,22 @@ struct DrawingOptions {
     std::optional<int32_t> only_bounce;
     std::optional<uint64_t> points, seed;
     std::optional<double> exposure;
+    std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
     bool best_candidate = false;
 };
 
 /// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
 /// --samples
-/// --seed --exposure --best-candidate. `options` outlives the command.
+/// --seed --exposure --best-candidate --memory --device-memory. `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
 
 /// The same, looked up and checked.
 struct Drawing {
     Preset preset;  ///< with the single settings in place
     ImageSize size;
+    PipelineOptions caps;
 };
-/// Errors (ErrorKind::arguments): an unknown preset or engine, a size that is none.
+/// Errors (ErrorKind::arguments): an unknown preset or engine, a size or an amount of memory that is none.
 Result<Drawing> resolve(const DrawingOptions& options);
 
 /// The scene file, or the default scene for this cloud; the first camera is there in any case.
@@ -50,6 +52,9 @@ Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::So
 /// Errors (ErrorKind::arguments): no camera of that name; the message lists those there are. Empty: the
 /// first.
 Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name);
+
+/// What is used of the caps, for people: "memory 12 of 512 MiB, device 31 of 64 MiB".
+std::string memory_text(const PipelineOptions& caps, const MemoryUse& used);
 
 /// Opens a pipeline on `source` with all of it set. Warns where the cloud has no normals.
 Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,

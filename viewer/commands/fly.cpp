@@ -51,14 +51,15 @@ Result<void> fly_command(const FlyOptions& options) {
                                       device->info(),
                                       drawing.preset.engine,
                                       drawing.preset.budgets,
+                                      drawing.caps,
                                       flight.wall_seconds};
     const auto report = flight_report(conditions, flight.frames);
     LUCARNE_ASSIGN(auto file, OutputFile::create(options.report, options.overwrite));
     LUCARNE_TRY(file.append(report.dump(2) + "\n"));
     LUCARNE_TRY(file.commit());
-    log::info("{} frames, {:.1f} ms in the middle, {:.1f} ms at 95 %: {}", flight.frames.size(),
+    log::info("{} frames, {:.1f} ms in the middle, {:.1f} ms at 95 %; {}: {}", flight.frames.size(),
               report["frame_ms"]["p50"].get<double>(), report["frame_ms"]["p95"].get<double>(),
-              options.report);
+              memory_text(drawing.caps, flight.frames.back().stats.memory), options.report);
     return {};
 }
 

@@ -96,7 +96,11 @@ nlohmann::json report(const Rendered& rendered, const Pipeline& pipeline, const 
               {"light_view", stats.light_view_points},
               {"light", stats.light_points}}},
             {"cut_complete", stats.complete()},
+            {"cut_share", stats.cut_share},
             {"bytes_loaded", stats.bytes_loaded},
+            {"memory", {{"cap", pipeline.options().memory}, {"used", stats.memory.host}}},
+            {"device_memory", {{"cap", pipeline.options().device_memory}, {"used", stats.memory.device}}},
+            {"resident_memory", stats.memory.resident},
             {"exposure_ev", pipeline.exposure_ev()},
             {"mean_luminance", mean},
             {"standard_error", std::sqrt(rendered.variance)},
@@ -141,6 +145,11 @@ Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline
     return {};
 }
 
+std::string fit_text(const FrameStats& stats) {
+    const double share = stats.cut_share * stats.complete();
+    return share < 1 ? fmt::format("; {:.0f} % of the cuts' points fit the caps", 100 * share) : "";
+}
+
 Result<void> render(const RenderOptions& options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
@@ -175,12 +184,10 @@ Result<void> render(const RenderOptions& options) {
         LUCARNE_TRY(file.append(report(rendered, *pipeline, drawing, mean).dump(2) + "\n"));
         LUCARNE_TRY(file.commit());
     }
-    log::info("{}: {}x{}, {}, preset {}, {} frame{} in {:.2f} s{}", options.output, drawing.size.width,
+    log::info("{}: {}x{}, {}, preset {}, {} frame{} in {:.2f} s; {}{}", options.output, drawing.size.width,
               drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,
               rendered.frames == 1 ? "" : "s", rendered.seconds,
-              rendered.last.complete() < 1
-                  ? fmt::format("; {:.0f} % of the cuts fit the device", 100 * rendered.last.complete())
-                  : "");
+              memory_text(drawing.caps, rendered.last.memory), fit_text(rendered.last));
     return {};
 }
 

@@ -45,7 +45,7 @@ Result<void> view(const ViewOptions& options) {
     LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, source->header()));
     LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne - " + options.input));
     LUCARNE_ASSIGN(const auto worker,
-                   PictureWorker::start(window->worker_device(), source, {}, &Window::wake));
+                   PictureWorker::start(window->worker_device(), source, drawing.caps, &Window::wake));
     model.device = worker->device();
     return ViewSession(*window, *worker, model, shot).run();
 }

@@ -60,13 +60,33 @@ Json points(std::span<const FlownFrame> frames) {
             {"light", of(&FrameStats::light_points)}};
 }
 
+double largest(const std::vector<double>& values) {
+    return values.empty() ? 0 : *std::ranges::max_element(values);
+}
+
+/// Bytes: the caps, and the most that was used of them; what the process held resident.
+void memory(const FlightConditions& conditions, std::span<const FlownFrame> frames, Json& report) {
+    const auto of = [&](uint64_t MemoryUse::*member) {
+        return of_all(frames, [&](const FrameStats& stats) { return stats.memory.*member; });
+    };
+    const auto resident = of(&MemoryUse::resident);
+    report["memory"] = {{"cap", conditions.caps.memory}, {"used", largest(of(&MemoryUse::host))}};
+    report["device_memory"] = {{"cap", conditions.caps.device_memory},
+                               {"used", largest(of(&MemoryUse::device))}};
+    report["resident_memory"] = {{"mean", std::round(mean(resident))},
+                                 {"max", largest(resident)},
+                                 {"last", resident.empty() ? 0 : resident.back()}};
+}
+
 Json each_frame(std::span<const FlownFrame> frames) {
     Json list = Json::array();
     for (const FlownFrame& frame : frames)
         list.push_back({{"time", frame.time},
                         {"ms", frame.stats.seconds * 1e3},
                         {"points", frame.stats.ready_points},
-                        {"complete", frame.stats.complete()}});
+                        {"complete", frame.stats.complete()},
+                        {"cut_share", frame.stats.cut_share},
+                        {"resident_memory", frame.stats.memory.resident}});
     return list;
 }
 
@@ -107,6 +127,7 @@ Json flight_report(const FlightConditions& conditions, std::span<const FlownFram
     report["passes_ms"] = passes(frames);
     report["points_per_frame"] = points(frames);
     report["bytes_loaded"] = frames.empty() ? 0 : frames.back().stats.bytes_loaded;
+    memory(conditions, frames, report);
     report["complete"] = {{"mean", mean(complete)},
                           {"least", complete.empty() ? 0 : *std::ranges::min_element(complete)},
                           {"last", complete.empty() ? 0 : complete.back()}};

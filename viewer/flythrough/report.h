@@ -23,6 +23,7 @@ struct FlightConditions {
     gi::DeviceInfo device;
     gi::EngineSettings settings;
     CutBudgets budgets;
+    PipelineOptions caps;
     double wall_seconds = 0;  ///< of the flight, without the writing of pictures
 };
 

@@ -71,6 +71,31 @@ TEST_F(SurfelPoolTest, EvictedNeighboursMakeRoomForALargerNode) {
     EXPECT_EQ(pool.used(), 6 * kPage);
 }
 
+TEST_F(SurfelPoolTest, ScatteredFreePagesComeTogetherForALargeNodeAndNothingIsLost) {
+    // Of single pages every second goes; the others stay what they were when the large node comes.
+    std::vector<Surfel> surfels = random_surfels(40000, 3);
+    const SurfelCloud cloud(surfels);
+    const uint32_t pages = cloud.pages(), others = 8;
+    SurfelPool pool = pool_of(pages + 2 * others);
+    uint32_t stranger = 1'000'000;
+    for (uint32_t i = 0; i < others; ++i) ASSERT_TRUE(pool.load(stranger++, filled(kPage, i)).value());
+    for (uint32_t node = 0; node < cloud.nodes().size(); ++node) {
+        ASSERT_TRUE(pool.load(node, cloud.packed(node)).value());
+        if (node >= others) continue;
+        ASSERT_TRUE(pool.load(stranger++, filled(kPage, node)).value());
+    }
+    for (uint32_t node = 1'000'000; node < stranger; ++node) pool.evict(node);
+    DeviceCut cut;
+    ASSERT_TRUE(pool.make_cut(*device, cloud, cloud.whole(), glm::dvec3(0.0), cut));
+    const auto before = pool.download(cut);
+    EXPECT_TRUE(pool.load(2'000'000, filled(2 * others * kPage, 1)).value());
+    ASSERT_TRUE(pool.make_cut(*device, cloud, cloud.whole(), glm::dvec3(0.0), cut));
+    const auto after = pool.download(cut);
+    ASSERT_EQ(after.size(), before.size());
+    for (size_t i = 0; i < after.size(); ++i) ASSERT_EQ(after[i].position, before[i].position) << i;
+    EXPECT_FALSE(pool.load(3'000'000, filled(1, 1)).value()) << "not a page is left";
+}
+
 TEST_F(SurfelPoolTest, ManyLoadsAndEvictionsLoseNoPages) {
     SurfelPool pool = pool_of(32);
     std::mt19937 random(1);

@@ -1,0 +1,85 @@
+#include "viewer/cut_choice.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/octree/plane_source.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr uint32_t kPoints = 100;
+
+/// A lamp and a camera over a scanned square.
+class CutChoice : public testing::Test {
+ protected:
+    octree::test::PlaneSource source{7, kPoints, 64.0};
+    gi::SceneCamera camera;
+    std::vector<gi::SceneLight> lights{1};
+
+    CutChoice() {
+        camera.position = {20, 20, 3};
+        camera.target = {40, 40, 0};
+        lights[0].position = {32, 32, 20};
+        lights[0].target = {32, 32, 0};
+    }
+
+    CutPurpose purpose() const { return {source, camera, {640, 360}, lights, 512, CutBudgets{}}; }
+    static CutRoom room(uint64_t nodes) {
+        return {nodes, [](const octree::NodeInfo&) { return uint64_t{1}; }};
+    }
+    static size_t held(const CutSet& cuts) {
+        std::set<uint32_t> nodes;
+        for (const octree::Cut* cut : cuts.all())
+            for (const octree::CutNode& node : cut->nodes) nodes.insert(node.node);
+        return nodes.size();
+    }
+};
+
+TEST_F(CutChoice, WithRoomForAllNothingIsGivenUp) {
+    CutChooser chooser;
+    const CutSet cuts = chooser.choose(purpose(), room(1'000'000));
+    EXPECT_EQ(cuts.share, 1);
+    EXPECT_EQ(cuts.light.points, source.header().points) << "the light cut takes all that its budget allows";
+}
+
+TEST_F(CutChoice, AllCutsShrinkAlikeUntilTheyFitAndFillTheRoom) {
+    CutChooser chooser;
+    const CutSet whole = chooser.choose(purpose(), room(1'000'000));
+    for (const uint64_t nodes : {2000u, 500u, 100u, 20u}) {
+        const CutSet cuts = chooser.choose(purpose(), room(nodes));
+        EXPECT_LE(held(cuts), nodes);
+        EXPECT_GT(held(cuts), nodes * 9 / 10) << nodes;
+        EXPECT_LT(cuts.share, 1);
+        const auto share = [](const octree::Cut& a, const octree::Cut& b) {
+            return static_cast<double>(a.points) / static_cast<double>(b.points);
+        };
+        EXPECT_NEAR(share(cuts.view, whole.view), cuts.share, 0.02);
+        EXPECT_NEAR(share(cuts.light, whole.light), cuts.share, 0.02);
+        EXPECT_NEAR(share(cuts.light_views[0], whole.light_views[0]), cuts.share, 0.02);
+    }
+}
+
+TEST_F(CutChoice, TheSameForAFrameWhateverWasChosenBefore) {
+    CutChooser travelled;
+    for (const uint64_t nodes : {20u, 2000u, 100u}) {
+        camera.position.x += 7;
+        travelled.choose(purpose(), room(nodes));
+        for (const uint64_t other : {30u, 1500u}) {
+            CutChooser fresh;
+            EXPECT_EQ(travelled.choose(purpose(), room(other)).share,
+                      fresh.choose(purpose(), room(other)).share);
+        }
+    }
+}
+
+TEST_F(CutChoice, WhereNothingFitsTheRootIsStillAsked) {
+    CutChooser chooser;
+    const CutSet cuts = chooser.choose(purpose(), room(0));
+    EXPECT_GE(held(cuts), 1u);
+    EXPECT_LT(held(cuts), 20u);
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

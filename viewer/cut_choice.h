@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "gi/engine.h"
+#include "gi/scene/scene.h"
+#include "io/core/options.h"
+#include "octree/stream/cut.h"
+#include "viewer/presets.h"
+
+namespace lucarne::viewer {
+
+/// The cuts of a frame.
+struct CutSet {
+    octree::Cut view, light;
+    std::vector<octree::Cut> light_views;  ///< one a light
+    double share = 1;                      ///< of the points that they would take with room for all
+
+    std::vector<const octree::Cut*> all() const;
+    uint64_t points() const;
+};
+
+/// What they are chosen for.
+struct CutPurpose {
+    const octree::NodeSource& source;
+    const gi::SceneCamera& camera;
+    ImageSize size;
+    const std::vector<gi::SceneLight>& lights;
+    uint32_t light_resolution;
+    CutBudgets budgets;
+};
+
+/// What may be held of the nodes of all cuts together.
+struct CutRoom {
+    uint64_t bytes;
+    std::function<uint64_t(const octree::NodeInfo&)> cost;  ///< of a node, whole
+};
+
+/// Chooses the cuts of one frame after another. Where they do not fit the room together, all of them get the
+/// same share of the points that they would take without it, in steps of 1 %: the largest share that fits. So
+/// nothing that is chosen has to be refused, which would take whole nodes from the picture at once. The same
+/// cuts for the same purpose and room, whatever was chosen before.
+class CutChooser {
+ public:
+    CutSet choose(const CutPurpose& purpose, const CutRoom& room);
+
+ private:
+    int step_ = 1;  ///< the last share below 1; the next is looked for around it
+};
+
+}  // namespace lucarne::viewer
