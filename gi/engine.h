@@ -28,6 +28,7 @@ struct EngineSettings {
     uint32_t interleave = 4;          ///< 1, 2 or 4
     uint32_t atlas = 2048;            ///< texels along a side of the ISM atlas
     uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
+    uint32_t light_samples = 8;       ///< views a frame of lights that have a size and of the sky (light_samples.h)
     uint32_t samples = 64;            ///< reference: paths a pixel
     bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/vpl/README.md)
     uint64_t seed = 1;

@@ -16,11 +16,16 @@ void CutBudgets::cap(uint64_t points) {
 
 std::span<const Preset> presets() {
     static const std::array<Preset, 3> all = {
-        Preset{
-            "preview",
-            "while something is being set up: 64 VPLs, 4x4 interleaved, coarse cuts",
-            {.bounces = 1, .vpls = 64, .interleave = 4, .atlas = 1024, .light_resolution = 256, .samples = 4},
-            {.view = 1'000'000, .light_view = 250'000, .light = 250'000, .pixel_spacing = 1.5}},
+        Preset{"preview",
+               "while something is being set up: 64 VPLs, 4x4 interleaved, coarse cuts",
+               {.bounces = 1,
+                .vpls = 64,
+                .interleave = 4,
+                .atlas = 1024,
+                .light_resolution = 256,
+                .light_samples = 4,
+                .samples = 4},
+               {.view = 1'000'000, .light_view = 250'000, .light = 250'000, .pixel_spacing = 1.5}},
         Preset{"interactive",
                "while the camera moves: 256 VPLs, 4x4 interleaved, light cut of 1M points",
                {.bounces = 1,
@@ -28,6 +33,7 @@ std::span<const Preset> presets() {
                 .interleave = 4,
                 .atlas = 1024,
                 .light_resolution = 512,
+                .light_samples = 8,
                 .samples = 16},
                {.view = 2'000'000, .light_view = 1'000'000, .light = 1'000'000, .pixel_spacing = 1.0}},
         Preset{"high",
@@ -37,6 +43,7 @@ std::span<const Preset> presets() {
                 .interleave = 1,
                 .atlas = 4096,
                 .light_resolution = 1024,
+                .light_samples = 32,
                 .samples = 64},
                {.view = 4'000'000, .light_view = 2'000'000, .light = 2'000'000, .pixel_spacing = 0.7}},
     };

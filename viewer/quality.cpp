@@ -36,6 +36,7 @@ void MovingQuality::reduce(gi::EngineSettings& settings, CutBudgets& budgets) co
     settings.interleave = std::max(settings.interleave, cheap.engine.interleave);
     settings.atlas = std::min(settings.atlas, cheap.engine.atlas);
     settings.light_resolution = std::min(settings.light_resolution, cheap.engine.light_resolution);
+    settings.light_samples = std::min(settings.light_samples, cheap.engine.light_samples);
     settings.samples = std::min(settings.samples, cheap.engine.samples);
     budgets.view = std::min(budgets.view, cheap.budgets.view);
     budgets.light_view = std::min(budgets.light_view, cheap.budgets.light_view);

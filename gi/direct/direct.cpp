@@ -14,7 +14,6 @@ class DirectEngine : public Engine {
     Result<void> prepare(Frame& frame) override {
         if (frame.cuts.light_views.size() < frame.lights.size())
             return failed("direct", "there are fewer light views than lights");
-        warn_of_lights_left_out(frame, "direct", said_);
         LUCARNE_TRY(upload_sky(frame, sky_));
         return upload_materials(frame.device, frame.materials, materials_);
     }
@@ -23,7 +22,6 @@ class DirectEngine : public Engine {
 
  private:
     Buffer materials_;
-    std::string said_;  // which lights are left out
     Sky sky_;
     GBuffer light_gbuffer_;  // of one light's view after another
 };
@@ -36,9 +34,9 @@ Result<void> DirectEngine::render(Frame& frame) {
     frame.times.begin("emission");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
     frame.times.end();
-    for (const LightView& from : light_views(frame)) {
+    for (const LightView& from : light_views(frame, sky_.directions)) {
         frame.times.begin("light G-buffer");
-        LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[from.light], from.view, light_gbuffer_));
+        LUCARNE_TRY(rasterize(frame.device, *from.cut, from.view, light_gbuffer_));
         frame.times.end();
         frame.times.begin("direct light");
         LUCARNE_TRY(add_light(frame, materials_, from, light_gbuffer_));

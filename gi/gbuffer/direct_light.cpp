@@ -1,9 +1,6 @@
 #include "gi/gbuffer/direct_light.h"
 
-#include <fmt/format.h>
-
 #include "gi/gbuffer/uniforms.h"
-#include "io/core/log.h"
 
 namespace lucarne::gi {
 namespace {
@@ -27,13 +24,13 @@ Result<void> upload_materials(Device& device, const std::vector<Material>& mater
 Result<void> upload_sky(const Frame& frame, Sky& sky) {
     const std::vector<glm::vec3> plain = {frame.background};
     const auto& texels = frame.environment ? frame.environment->texels : plain;
-    if (frame.environment && frame.environment == sky.uploaded) return {};
+    if (frame.environment && frame.environment == sky.directions.environment()) return {};
     if (sky.texels.bytes() != texels.size() * sizeof(glm::vec3)) {
         sky.texels = Buffer();
         LUCARNE_ASSIGN(sky.texels, frame.device.buffer(texels.size() * sizeof(glm::vec3), "environment"));
     }
     sky.texels.upload_all(texels);
-    sky.uploaded = frame.environment;
+    if (frame.environment != sky.directions.environment()) sky.directions = SkyDirections(frame.environment);
     return {};
 }
 
@@ -53,23 +50,6 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky
     return {};
 }
 
-void warn_of_lights_left_out(const Frame& frame, std::string_view engine, std::string& said) {
-    static constexpr const char* kNames[] = {"", "", "the width of a directional light", "a rectangle",
-                                             "a disc"};
-    std::string names;
-    const auto add = [&](std::string_view name) {
-        names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-    };
-    for (const Light& light : frame.lights)
-        if (!casts_shadow_map(light) || (light.kind == kDirectionalLight && light.direction.w > 0))
-            add(kNames[light.kind]);
-    if (frame.environment) add("the light of the environment");
-    if (names != said && !names.empty())
-        log::warn("{}: left out, since no shadow map can hold it: {}; --engine reference has it all", engine,
-                  names);
-    said = names;
-}
-
 Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
     LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/light.comp"));
     frame.gbuffer.texels.bind(kCameraTexels);
@@ -78,7 +58,7 @@ Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& f
     frame.radiance.bind(kRadiance);
     set(*program, "camera", frame.camera);
     set(*program, "light_view", from.view);
-    set(*program, "light", frame.lights[from.light]);
+    set(*program, "light", from.light);
     program->set("face", from.face);
     program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
     return {};

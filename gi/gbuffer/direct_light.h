@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "gi/engine.h"
@@ -16,19 +13,15 @@ namespace lucarne::gi {
 /// A white diffuse material where there is none.
 Result<void> upload_materials(Device& device, const std::vector<Material>& materials, Buffer& target);
 
-/// What the camera sees where nothing is, on the device.
+/// What the camera sees where nothing is, on the device, and the light that comes from there.
 struct Sky {
-    Buffer texels;  ///< three floats each
-    std::shared_ptr<const Environment> uploaded;
+    Buffer texels;             ///< three floats each
+    SkyDirections directions;  ///< dark without an environment: a mere background does not light
 };
 Result<void> upload_sky(const Frame& frame, Sky& sky);
 
 /// Emission and background, added to the picture or, with `add` false, in the place of what it held.
 Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add);
-
-/// Says once, in the name of `engine`, which of the frame's lights leave no shadow map and are left out;
-/// `said` remembers.
-void warn_of_lights_left_out(const Frame& frame, std::string_view engine, std::string& said);
 
 /// Adds a light after one reflection, as far as one of its views shows it: BRDF * E * visibility. `seen` is
 /// what rasterize() drew of that view: it serves as the shadow map.

@@ -9,7 +9,7 @@ layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
 uniform CameraView camera;
 uniform Light light;
-uniform uint face;  // of a point light's cube that light_view shows
+uniform uint face;  // of the light that light_view shows
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -22,7 +22,7 @@ void main() {
     vec3 to_light;
     vec3 irradiance = light_irradiance(light, position, normal, to_light);
     if (irradiance == vec3(0.0)) return;
-    if (light.kind == kPointLight && cube_face(position - light.position.xyz) != face) return;
+    if (light_face(light, position - light.position.xyz) != face) return;
     float visible = spot_visibility(position, normal, texel_radius(texel));
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);
     Reflectance reflectance = make_reflectance(materials[material], texel_albedo(texel));

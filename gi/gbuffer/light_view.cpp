@@ -46,19 +46,49 @@ CameraView face_view(const Light& light, uint32_t face, uint32_t resolution) {
                        1e-3f, resolution);
 }
 
+/// A quarter of the half space before a cosine light: between its normal, its side and the third axis. Seen
+/// along the middle, 45 degrees up, it reaches 1 up and down and sqrt 2 to both sides.
+CameraView quarter_view(const Light& light, uint32_t face, uint32_t resolution) {
+    const glm::vec3 normal(light.direction.x, light.direction.y, light.direction.z);
+    const glm::vec3 side(light.extent.x, light.extent.y, light.extent.z);
+    const glm::vec3 other = glm::cross(normal, side);
+    const glm::vec3 level = glm::normalize((face & 1 ? -side : side) + (face & 2 ? -other : other));
+    const glm::vec3 forward = glm::normalize(normal + level), up = glm::normalize(normal - level);
+    const auto height = std::max(static_cast<uint32_t>(static_cast<float>(resolution) / std::sqrt(2.0f)), 1u);
+    const auto texels = static_cast<float>(height);
+    const float tangent = texels / std::max(texels - 2 * kBorder, 1.0f);
+    return {glm::vec4(light.position.x, light.position.y, light.position.z, 1e-3f),
+            glm::vec4(forward, 0),
+            glm::vec4(glm::cross(forward, up) * (std::sqrt(2.0f) * tangent), 0),
+            glm::vec4(up * tangent, 0),
+            resolution,
+            height,
+            0,
+            0};
+}
+
+CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32_t resolution) {
+    switch (light.kind) {
+        case kDirectionalLight:
+            return directional_view(light, frame.bounds, resolution);
+        case kPointLight:
+            return face_view(light, face, resolution);
+        case kCosineLight:
+            return quarter_view(light, face, resolution);
+        default:
+            return spot_view(light, resolution);
+    }
+}
+
 }  // namespace
 
-std::vector<LightView> light_views(const Frame& frame) {
+std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky) {
     std::vector<LightView> views;
-    const uint32_t resolution = frame.settings.light_resolution;
-    for (size_t i = 0; i < frame.lights.size(); ++i) {
-        const Light& light = frame.lights[i];
-        if (light.kind == kSpotLight) views.push_back({i, 0, spot_view(light, resolution)});
-        if (light.kind == kDirectionalLight)
-            views.push_back({i, 0, directional_view(light, frame.bounds, resolution)});
-        for (uint32_t face = 0; light.kind == kPointLight && face < 6; ++face)
-            views.push_back({i, face, face_view(light, face, resolution)});
-    }
+    const uint32_t full = frame.settings.light_resolution;
+    for (const auto& [light, cut, sample] : sharp_lights(frame, sky))
+        for (uint32_t face = 0; face < light_faces(light); ++face)
+            views.push_back(
+                {light, cut, face, view_of(light, face, frame, sample ? std::max(full / 2, 1u) : full)});
     return views;
 }
 

@@ -1,27 +1,25 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "gi/engine.h"
+#include "gi/gbuffer/light_samples.h"
 
 namespace lucarne::gi {
 
 /// A view from a light, to be drawn with rasterize() as its G-buffer and shadow map. Spots and directional
-/// lights have one, point lights six: the faces of a cube (cube_face() in gi/shared/light.h).
+/// lights have one, point lights six: the faces of a cube; samples of areas four: the quarters of the half
+/// space that they shine into (light_face() in gi/shared/light.h).
 struct LightView {
-    size_t light;  ///< of the frame
+    Light light;  ///< sharp
+    const DeviceCut* cut;
     uint32_t face;
     CameraView view;
 };
 
-/// Whether a shadow map can hold the light: the others shine from areas.
-inline bool casts_shadow_map(const Light& light) {
-    return light.kind <= kDirectionalLight;
-}
-
-/// Of all lights that a shadow map can hold, settings.light_resolution texels along a side. That of a
-/// directional light takes in the frame's bounds: a pinhole so far away that its rays part by less than a
-/// texel over the scene's height.
-std::vector<LightView> light_views(const Frame& frame);
+/// Of all lights of the frame (`sky` of its environment), settings.light_resolution texels along a side, of
+/// samples half as many. That of a directional light takes in the frame's bounds: a pinhole so far away that
+/// its rays part by less than a texel over the scene's height.
+std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky);
 
 }  // namespace lucarne::gi

@@ -20,6 +20,9 @@ struct CameraView {
     vec4 right;    // unit * tan(half horizontal field)
     vec4 up;       // unit * tan(half vertical field)
     uint width, height, pad0, pad1;
+#ifdef __cplusplus
+    bool operator==(const CameraView&) const = default;
+#endif
 };
 
 #ifdef __cplusplus

@@ -16,14 +16,16 @@ const uint kPointLight = 1u;        // from a point, everywhere
 const uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
 const uint kRectangleLight = 3u;    // from one side of a rectangle, the same radiance in all directions
 const uint kDiscLight = 4u;         // from one side of a disc, likewise
+const uint kCosineLight = 5u;       // from a point of a rectangle or disc, as the cosine: what those are sampled by
 
 // What a field holds by kind; fields that a kind does not name are unused.
-//   position   spot, point, rectangle, disc: m, relative to the local origin (the middle); w: spot: cos_outer
-//   direction  unit, the way the light goes (rectangle, disc: the normal of the side that shines);
+//   position   spot, point, cosine, rectangle, disc: m, relative to the local origin (the middle); w: spot: cos_outer
+//   direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the side that shines);
 //              w: spot: cos_inner; directional: angular radius of the cap, 0 to pi/2
-//   strength   spot, point: radiant intensity, W/sr; directional: irradiance of a surface that faces it, W/m^2;
-//              rectangle, disc: radiance, W/(sr m^2)
-//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w: radius, m
+//   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal); directional: irradiance of a
+//              surface that faces it, W/m^2; rectangle, disc: radiance, W/(sr m^2)
+//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w: radius, m;
+//              cosine: unit, across the normal: where its faces part
 // A spot's intensity falls from 1 at cos_inner to 0 at cos_outer (half the full angle) as smoothstep of the cosine.
 struct Light {
     vec4 position;
@@ -36,11 +38,12 @@ struct Light {
 #endif
 };
 
-// Radiant intensity, W/sr, of a spot or point light in the unit direction `away` from it.
+// Radiant intensity, W/sr, of a spot, point or cosine light in the unit direction `away` from it.
 LUCARNE_FN vec3 light_intensity(Light light, vec3 away) {
     vec3 strength = vec3(light.strength.x, light.strength.y, light.strength.z);
     if (light.kind == kPointLight) return strength;
     float cosine = dot(away, vec3(light.direction.x, light.direction.y, light.direction.z));
+    if (light.kind == kCosineLight) return strength * max(cosine, 0.0f);
     float outer = light.position.w;
     float width = light.direction.w - outer;
     float t = width > 0.0f ? clamp((cosine - outer) / width, 0.0f, 1.0f) : (cosine >= outer ? 1.0f : 0.0f);
@@ -55,7 +58,17 @@ LUCARNE_FN uint cube_face(vec3 offset) {
     return offset.z > 0.0f ? 4u : 5u;
 }
 
-// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, a point or a directional light, the last as if
+// The face of a light that an offset from it goes through: one of six of a point light's cube, of four of a cosine
+// light's half space (the quarters about its normal), else 0.
+LUCARNE_FN uint light_face(Light light, vec3 offset) {
+    if (light.kind == kPointLight) return cube_face(offset);
+    if (light.kind != kCosineLight) return 0u;
+    vec3 normal = vec3(light.direction.x, light.direction.y, light.direction.z);
+    vec3 side = vec3(light.extent.x, light.extent.y, light.extent.z);
+    return (dot(offset, side) < 0.0f ? 1u : 0u) + (dot(offset, cross(normal, side)) < 0.0f ? 2u : 0u);
+}
+
+// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, point, cosine or directional light, the last as if
 // all of it came from the middle of its cap; `to_light` receives the unit direction to the light. Zero behind the
 // surface and at the light itself.
 LUCARNE_FN vec3 light_irradiance(Light light, vec3 position, vec3 normal, LUCARNE_OUT(vec3) to_light) {

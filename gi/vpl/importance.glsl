@@ -11,7 +11,7 @@ layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
 uniform Light light;
-uniform uint face;  // of a point light's cube that light_view shows
+uniform uint face;  // of the light that light_view shows
 
 // The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
 // surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).
@@ -27,7 +27,7 @@ uint importance_level(uint level) {  // where a level begins
 // light's pinhole is so far away that its irradiance is spread like the flux through the solid angle.
 vec3 view_intensity(vec3 away, float distance2) {
     if (light.kind == kDirectionalLight) return light.strength.xyz * distance2;
-    if (light.kind == kPointLight && cube_face(away) != face) return vec3(0.0);
+    if (light_face(light, away) != face) return vec3(0.0);
     return light_intensity(light, away);
 }
 

@@ -1,6 +1,7 @@
 #include "gi/vpl/light_sights.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "gi/vpl/bindings.h"
 #include "gi/vpl/halton.h"
@@ -8,8 +9,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr size_t kMostHeld = 6;  // a point light's
-constexpr size_t kNoView = SIZE_MAX;
+constexpr size_t kLeastHeld = 6;                 // views: a point light's
+constexpr size_t kHeldBytes = size_t{64} << 20;  // where more views fit
 
 }  // namespace
 
@@ -19,30 +20,39 @@ bool emits(const Frame& frame) {
     });
 }
 
-void LightSights::begin(const Frame& frame) {
-    Basis basis{frame.lights, {}, frame.bounds, frame.settings.light_resolution};
-    for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
-    if (basis == basis_) return;
-    basis_ = std::move(basis);
-    views_ = light_views(frame);
-    held_.resize(std::min(views_.size(), kMostHeld));
-    for (Held& held : held_) held.view = kNoView;
+void LightSights::begin(const Frame& frame, const SkyDirections& sky) {
+    views_ = light_views(frame, sky);
+    size_t largest = 1;
+    for (const LightView& v : views_) largest = std::max(largest, size_t{v.view.width} * v.view.height);
+    const size_t fit = kHeldBytes / (largest * (sizeof(GBufferTexel) + sizeof(uint32_t)));
+    held_.resize(std::min(views_.size(), std::max(kLeastHeld, fit)));
 }
 
 Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
-    Held& held = held_[index % kMostHeld];
-    if (held.view == index) return &held.gbuffer;
-    held.view = kNoView;
+    Held& held = held_[index % held_.size()];
     const LightView& view = views_[index];
-    LUCARNE_TRY(rasterize(frame.device, *frame.cuts.light_views[view.light], view.view, held.gbuffer));
-    held.view = index;
+    if (held.whole && held.view == view.view && held.cut == view.cut->fingerprint()) return &held.gbuffer;
+    held.whole = false;
+    const auto swap_pictures = [&] {
+        std::swap(scratch_.texels, held.gbuffer.texels);
+        std::swap(scratch_.ids, held.gbuffer.ids);
+    };
+    swap_pictures();
+    const auto drawn = rasterize(frame.device, *view.cut, view.view, scratch_);
+    swap_pictures();
+    LUCARNE_TRY(drawn);
+    held.view = view.view;
+    held.cut = view.cut->fingerprint();
+    held.gbuffer.width = view.view.width;
+    held.gbuffer.height = view.view.height;
+    held.whole = true;
     return &held.gbuffer;
 }
 
 Result<Sight> LightSights::sight(Frame& frame, size_t index) {
     LUCARNE_ASSIGN(const GBuffer* seen, look(frame, index));
     const LightView& view = views_[index];
-    return Sight{frame.lights[view.light], view.face, view.view, *frame.cuts.light_views[view.light], *seen};
+    return Sight{view.light, view.face, view.view, *view.cut, *seen};
 }
 
 Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,

@@ -13,13 +13,13 @@ namespace lucarne::gi::vpl {
 /// Whether any material shines by itself.
 bool emits(const Frame& frame);
 
-/// What seeds VPLs: surfels that shine by themselves, and G-buffers of the lights' views. A few are held; of
-/// many lights, the others are drawn again whenever they are looked at, so that the memory does not grow with
-/// their number.
+/// What seeds VPLs: surfels that shine by themselves, and G-buffers of the lights' views. As many are held as
+/// a fixed share of memory takes; of many lights, the others are drawn again whenever they are looked at.
 class LightSights {
  public:
-    /// The views of a new frame. What was drawn of them holds if neither lights nor their cuts have changed.
-    void begin(const Frame& frame);
+    /// The views of a new frame, `sky` of its environment. What was drawn holds where a view and its cut are
+    /// as they were.
+    void begin(const Frame& frame, const SkyDirections& sky);
 
     const std::vector<LightView>& views() const { return views_; }
     /// What view `index` sees; drawn where it is not held. Errors: no device memory, a shader that fails.
@@ -31,23 +31,18 @@ class LightSights {
     Result<void> seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed, Seeds& target);
 
  private:
+    /// A view drawn, without the scratch of rasterize().
     struct Held {
-        size_t view;
+        CameraView view{};
+        uint64_t cut = 0;
+        bool whole = false;
         GBuffer gbuffer;
     };
     Result<Sight> sight(Frame& frame, size_t index);
 
-    /// What the G-buffers were drawn from.
-    struct Basis {
-        std::vector<Light> lights;
-        std::vector<uint64_t> cuts;
-        Bounds bounds;
-        uint32_t resolution = 0;
-        bool operator==(const Basis&) const = default;
-    };
-    Basis basis_;
     std::vector<LightView> views_;
     std::vector<Held> held_;
+    GBuffer scratch_;
     Buffer importance_;
     Emitters emitters_;
 };

@@ -24,6 +24,7 @@ struct Basis {
     std::vector<Material> materials;
     std::vector<uint64_t> cuts;
     Bounds bounds;
+    std::shared_ptr<const Environment> environment;
     uint64_t index = UINT64_MAX;
     bool operator==(const Basis&) const = default;
 };
@@ -57,7 +58,6 @@ class VplEngine : public Engine {
     Panes panes_;
     Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
-    std::string said_left_out_;
 };
 
 bool wants_direct(const EngineSettings& s) {
@@ -93,7 +93,6 @@ Result<void> VplEngine::prepare(Frame& frame) {
     LUCARNE_TRY(atlas_layout(s.atlas, s.vpls));
     if (frame.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
-    warn_of_lights_left_out(frame, "vpl", said_left_out_);
     LUCARNE_TRY(upload_sky(frame, sky_));
     return upload_materials(frame.device, frame.materials, materials_);
 }
@@ -101,7 +100,7 @@ Result<void> VplEngine::prepare(Frame& frame) {
 /// Everything that the VPLs and their maps follow from.
 Basis basis_of(const Frame& frame) {
     Basis basis{frame.settings, frame.lights, frame.materials, {frame.cuts.light->fingerprint()},
-                frame.bounds,   frame.index};
+                frame.bounds,   frame.environment, frame.index};
     for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
     return basis;
 }
@@ -164,7 +163,7 @@ Result<void> VplEngine::add_direct(Frame& frame) {
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    sights_.begin(frame);
+    sights_.begin(frame, sky_.directions);
     frame.times.begin("light G-buffer");
     if (!sights_.views().empty()) LUCARNE_TRY(sights_.look(frame, 0));
     frame.times.end();
