@@ -37,7 +37,7 @@ void main() {
         float chance = luminance(intensity) * arriving.geometry / sum;
         density += chance;
         if (i == index) own = chance;
-        irradiance += arriving.light.irradiance;
+        irradiance += intensity * arriving.form_factor;
     }
     // Where its own race would not come by this rule (nearer to its parent's plane than surfaces can be told apart), what
     // the others send must not count, or it would count twice.

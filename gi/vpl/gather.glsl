@@ -69,10 +69,39 @@ float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
 // the ceiling under it.
 struct Arriving {
     Gathered light;
-    float geometry;  // 1/m^2: cos cos' / d^2; 0: none
+    float geometry;     // 1/m^2: cos cos' / d^2; 0: none
+    float form_factor;  // 1/m^2: the same for the disc
 };
+
+#ifdef LUCARNE_GLOSSY
+// The same with lobes: what the receiver's sees of the VPL, and what the VPL's sends (a receiver's lobe sees the VPL's in
+// those directions alone that it reflects).
+Gathered with_lobes(uint i, Receiver receiver, vec3 light_normal, vec3 offset, float form_factor) {
+    vec4 diffuse = vpl_diffuse(i);
+    vec4 incident = vpl_incident(i);
+    float r2 = max(vpl_position(i).w / kPi, 1e-12);
+    float distance2 = dot(offset, offset);
+    float near = inversesqrt(distance2);
+    Cone away = vpl_cone(i, offset * near, dot(light_normal, offset) * near, distance2);
+    float variance = footprint_gaussian(r2);
+    Gathered light = Gathered(diffuse.xyz * form_factor, vec3(0.0));
+    if (incident.w > 0.0) {
+        vec3 axis = reflect(incident.xyz, light_normal);
+        light.irradiance += vpl_flux(i).xyz * incident.w *
+                            lobe_sees(axis, diffuse.w, receiver.normal, light_normal, offset, form_factor, away, variance);
+    }
+    float ks = receiver.reflectance.ks, exponent = receiver.reflectance.exponent;
+    if (ks > 0.0) {
+        vec3 axis = reflect(-receiver.to_viewer, receiver.normal);
+        float lobe = lobe_sees(axis, exponent, receiver.normal, light_normal, offset, form_factor, away, variance);
+        light.specular = ks * lobe * (diffuse.xyz + vpl_lobe(i, light_normal, diffuse.w, seen_by_lobe(away, -axis, exponent)));
+    }
+    return light;
+}
+#endif
+
 Arriving from_vpl(uint i, Receiver receiver) {
-    Arriving result = Arriving(Gathered(vec3(0.0), vec3(0.0)), 0.0);
+    Arriving result = Arriving(Gathered(vec3(0.0), vec3(0.0)), 0.0, 0.0);
     vec4 position = vpl_position(i);
     vec4 light_normal = vpl_normal(i);
     vec3 offset = receiver.position - position.xyz;
@@ -82,23 +111,13 @@ Arriving from_vpl(uint i, Receiver receiver) {
     float distance2 = dot(offset, offset);
     float r2 = max(position.w / kPi, 1e-12);
     float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
-    float form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
-    vec4 diffuse = vpl_diffuse(i);
-    vec3 arriving = diffuse.xyz;
+    result.form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
     result.geometry = cosines * light_cosine / (distance2 * distance2);
 #ifdef LUCARNE_GLOSSY
-    float near = inversesqrt(distance2);
-    Cone away = vpl_cone(i, offset * near, light_cosine * near, distance2);
-    arriving += vpl_lobe(i, light_normal.xyz, diffuse.w, away);
-    if (receiver.reflectance.ks > 0.0) {
-        vec3 axis = -reflect(-receiver.to_viewer, receiver.normal);
-        float exponent = receiver.reflectance.exponent;
-        float lobe = receiver.reflectance.ks * widened_lobe(exponent, dot(axis, away.axis), away.spread);
-        vec3 seen = diffuse.xyz + vpl_lobe(i, light_normal.xyz, diffuse.w, seen_by_lobe(away, axis, exponent));
-        result.light.specular = seen * lobe * form_factor;
-    }
+    result.light = with_lobes(i, receiver, light_normal.xyz, offset, result.form_factor);
+#else
+    result.light.irradiance = vpl_diffuse(i).xyz * result.form_factor;
 #endif
-    result.light.irradiance = arriving * form_factor;
     return result;
 }
 

@@ -5,20 +5,24 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "gi/compare/metrics.h"
-#include "io/image/image.h"
+#include "tests/bench/scan.h"
 #include "tests/gi/analytic_frame.h"
 #include "tests/gi/surfel_scenes.h"
 #include "viewer/presets.h"
 
 namespace lucarne {
 namespace {
+
+using bench::Scan;
 
 void row(const std::string& scene, const std::string& measure, double value, double target, bool percent) {
     const double scale = percent ? 100 : 1;
@@ -29,6 +33,12 @@ void row(const std::string& scene, const std::string& measure, double value, dou
 
 gi::EngineSettings high() {
     return viewer::find_preset("high")->engine;
+}
+
+double brightest(const std::vector<glm::vec4>& picture) {
+    double most = 0;
+    for (const glm::vec4& pixel : picture) most = std::max(most, gi::luminance(pixel));
+    return most;
 }
 
 Result<void> furnace(gi::Device& device) {
@@ -90,51 +100,6 @@ Result<void> form_factor(gi::Device& device, const std::string& name, const glm:
     row("form factor, " + name + ", 4 frames", "mean", sum / truth - 1, .005, true);
     return {};
 }
-
-/// A scan of a scene as a cache, and pictures of it by the program.
-class Scan {
- public:
-    Scan(std::string scene, const std::string& points, const std::filesystem::path& folder)
-        : scene_(std::move(scene)), folder_(folder) {
-        const std::string scan = folder / (scene_ + ".ply");
-        cache_ = folder / (scene_ + ".luc");
-        run("generate " + scene_ + " --even --normals --points " + points + " -o " + scan + " --overwrite");
-        run("convert " + scan + " -o " + cache_ + " --overwrite");
-        std::filesystem::remove(scan);
-    }
-
-    Result<std::vector<glm::vec4>> picture(const std::string& name, const std::string& arguments) {
-        LUCARNE_ASSIGN(io::Image image, io::read_exr(render(name, arguments)));
-        return std::move(image.pixels);
-    }
-
-    struct Truth {
-        std::vector<glm::vec4> whole, first, second;
-    };
-    Result<Truth> truth(const std::string& name, const std::string& arguments) {
-        const std::string file = render(name, "--engine reference --layers " + arguments);
-        const std::string stem = file.substr(0, file.size() - 4);
-        LUCARNE_ASSIGN(io::Image whole, io::read_exr(file));
-        LUCARNE_ASSIGN(io::Image first, io::read_exr(stem + ".a.exr"));
-        LUCARNE_ASSIGN(io::Image second, io::read_exr(stem + ".b.exr"));
-        return Truth{std::move(whole.pixels), std::move(first.pixels), std::move(second.pixels)};
-    }
-
- private:
-    static void run(const std::string& arguments) {
-        if (std::system((LUCARNE_BINARY " " + arguments + " > /dev/null 2>&1").c_str()) != 0)
-            fmt::print(stderr, "lucarne {} failed\n", arguments);
-    }
-    std::string render(const std::string& name, const std::string& arguments) {
-        const std::string file = folder_ / (scene_ + "-" + name + ".exr");
-        run("render " + cache_ + " -o " + file + " --overwrite --scene " + LUCARNE_SOURCE_DIR +
-            "/data/scenes/" + scene_ + ".json " + arguments);
-        return file;
-    }
-
-    std::string scene_, cache_;
-    std::filesystem::path folder_;
-};
 
 Result<void> judge(const std::string& what, const std::vector<glm::vec4>& picture, const Scan::Truth& truth,
                    double rel_mse, double energy) {
@@ -205,6 +170,33 @@ Result<void> nave(const std::filesystem::path& folder) {
     return {};
 }
 
+/// One bounce in the Cornell box, all of it glossy, averaged for a minute. A path tracer finds lobes by
+/// chance: the picture is small, so that the reference can have many paths a pixel.
+Result<void> glossy(const std::filesystem::path& folder) {
+    Scan scan("cornell", "2M", folder);
+    const std::string common = "--size 64x64 --preset high --only-bounce 1 ";
+    for (const auto& [exponent, samples] : {std::pair{10, 4096}, {100, 8192}, {1000, 32768}}) {
+        std::ifstream file(bench::scene_file("cornell-glossy"));
+        auto scene = nlohmann::json::parse(file);
+        scene["materials"][0]["shininess"] = exponent;
+        const std::filesystem::path shiny = folder / fmt::format("shininess-{}.json", exponent);
+        std::ofstream(shiny) << scene;
+        scan.light_by(shiny);
+        LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + fmt::format("--samples {}", samples)));
+        for (const std::string time : {"", "--seconds 60"}) {
+            LUCARNE_ASSIGN(const auto picture, scan.picture("glossy", common + time));
+            const std::string what =
+                fmt::format("cornell, shininess {}, high, {}", exponent, time.empty() ? "a frame" : "60 s");
+            LUCARNE_ASSIGN(const gi::HalvesError error,
+                           gi::compare_with_halves(picture, truth.first, truth.second));
+            if (!time.empty()) row(what, "relMSE, unbiased", error.rel_mse, .05, false);
+            row(what, "brightest over reference's", brightest(picture) / brightest(truth.whole), 3, false);
+            row(what, "energy", gi::mean_luminance(picture) / gi::mean_luminance(truth.whole) - 1, .03, true);
+        }
+    }
+    return {};
+}
+
 Result<void> measure(const std::filesystem::path& folder) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_TRY(furnace(*device));
@@ -213,6 +205,7 @@ Result<void> measure(const std::filesystem::path& folder) {
     LUCARNE_TRY(form_factor(*device, "parallel at .5", .5f * z, y, x, .415253));
     LUCARNE_TRY(form_factor(*device, "at a right angle", o, y, z, .200044));
     LUCARNE_TRY(cornell(folder));
+    LUCARNE_TRY(glossy(folder));
     return nave(folder);
 }
 

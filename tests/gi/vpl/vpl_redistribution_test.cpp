@@ -12,7 +12,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr float kAlbedo = .5f, kSide = 2;
+constexpr float kAlbedo = .5f, kSide = 2, kExponent = 400;
+const glm::vec3 kIncident(.6f, 0, .8f);
 
 class VplRedistribution : public OnDevice {
  protected:
@@ -20,7 +21,8 @@ class VplRedistribution : public OnDevice {
     struct Step {
         std::vector<VplLight> before, after;
     };
-    Step redistributed(uint32_t seed, bool best_candidate = false) {
+    /// With a lobe they reflect by that alone.
+    Step redistributed(uint32_t seed, bool best_candidate = false, float specular = 0) {
         constexpr uint32_t kCount = 256;
         Step step;
         for (uint32_t i = 0; i < kCount; ++i) {
@@ -30,8 +32,8 @@ class VplRedistribution : public OnDevice {
             light.position = {x, y, 0, kSide * kSide / kCount};
             light.normal = {0, 0, 1, .02f};
             light.flux = {1, 1, 1, 1};
-            light.diffuse = glm::vec4(glm::vec3(kAlbedo / 3.14159265f), 1);
-            light.incident = {0, 0, 1, 0};
+            light.diffuse = glm::vec4(glm::vec3(specular > 0 ? 0 : kAlbedo / 3.14159265f), kExponent);
+            light.incident = glm::vec4(kIncident, specular);
             step.before.push_back(light);
         }
         const SurfelCloud cloud(scenes::closed_box(kSide, 150, glm::vec3(kAlbedo)));
@@ -53,7 +55,7 @@ class VplRedistribution : public OnDevice {
         Seeds next;
         scratch.best_candidate = best_candidate;
         EXPECT_TRUE(
-            redistribute(*device, (*loaded)->cut, maps, materials, false, seed, seeds, scratch, next));
+            redistribute(*device, (*loaded)->cut, maps, materials, specular > 0, seed, seeds, scratch, next));
         step.after = next.host_lights;
         return step;
     }
@@ -87,6 +89,22 @@ TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
         on_the_floor += p.z < 1e-3f;
     }
     EXPECT_EQ(on_the_floor, 0u);  // points of a plane do not see each other
+}
+
+TEST_F(VplRedistribution, theLightOfALobeLandsWhereTheLobePoints) {
+    const Step step = redistributed(5, false, .5f);
+    // The modified Phong lobe returns its share times the cosine of the mirror direction.
+    const double lobe = .5 * kIncident.z * (kExponent + 2) / (kExponent + 1);
+    EXPECT_NEAR(sum_of_flux(step.after) / sum_of_flux(step.before) / lobe, 1, .02);
+    const glm::vec3 mirrored(-kIncident.x, -kIncident.y, kIncident.z);
+    double off = 0, far = 0;
+    for (size_t i = 0; i < step.after.size(); ++i) {
+        if (step.before[i].position.x < 1) continue;  // near the wall footprints are wide
+        off += 1 - glm::dot(-glm::vec3(step.after[i].incident), mirrored);
+        ++far;
+    }
+    EXPECT_GT(off / far, .8 / (kExponent + 1));  // the mean of 1 - cos over the lobe is 1 / (n + 1)
+    EXPECT_LT(off / far, 3 / (kExponent + 1));   // and footprints and texels widen it
 }
 
 TEST_F(VplRedistribution, footprintsShareOutTheSurfaceThatIsLit) {

@@ -1,0 +1,264 @@
+// The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, made anew:
+// the light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
+// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `./run figures [FOLDER]` prints tables and
+// leaves scans and pictures in FOLDER (default: figures). A program and no test; about ten minutes on two
+// cores.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "gi/compare/metrics.h"
+#include "tests/bench/scan.h"
+#include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
+#include "viewer/rgba.h"
+
+namespace lucarne {
+namespace {
+
+using bench::Scan;
+
+void heading(const std::string& text) {
+    fmt::print("\n{}\n", text);
+    std::fflush(stdout);
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+/// A scan in a pipeline of its own, as the viewer has it.
+class Stage {
+ public:
+    Stage(gi::Device& device, const Scan& scan) : device_(device), scan_(scan) {}
+
+    Result<void> open(const std::string& scene, ImageSize size) {
+        LUCARNE_ASSIGN(const auto source, viewer::open_input(scan_.cache()));
+        viewer::DrawingOptions options;
+        options.scene = bench::scene_file(scene);
+        LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
+        LUCARNE_ASSIGN(gi::Scene loaded, viewer::load_scene_for(options, source->header()));
+        LUCARNE_ASSIGN(request_.camera, viewer::find_camera(loaded, ""));
+        request_.size = size;
+        request_.wait = true;
+        LUCARNE_ASSIGN(pipeline_, viewer::open_pipeline(device_, source, options, drawing, loaded));
+        return {};
+    }
+
+    struct Measured {
+        double milliseconds = 0;  ///< median
+        double processor = 0;     ///< of all cores, ms: median
+        double luminance = 0;     ///< mean over pixels and frames
+        size_t points = 0;        ///< of the cut that is drawn into the shadow maps
+    };
+    /// Frames of which none serves the next: other VPLs each, the same in every call.
+    Result<Measured> frames(gi::EngineSettings settings, int count) {
+        Measured measured;
+        std::vector<double> times, processor;
+        for (int i = 0; i < count; ++i) {
+            settings.seed = 1 + static_cast<uint64_t>(i);
+            pipeline_->set_settings(settings);
+            const std::clock_t start = std::clock();
+            LUCARNE_ASSIGN(const viewer::FrameStats stats, pipeline_->render(request_));
+            processor.push_back(1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+            times.push_back(1e3 * stats.seconds);
+            const size_t pixels = size_t{request_.size.width} * request_.size.height;
+            measured.luminance +=
+                gi::mean_luminance(pipeline_->radiance().download_all<glm::vec4>(pixels)) / count;
+        }
+        measured.milliseconds = median(times);
+        measured.processor = median(processor);
+        return measured;
+    }
+
+    /// Of the last frame, tone-mapped.
+    Result<void> write(const std::filesystem::path& path) const {
+        const size_t pixels = size_t{request_.size.width} * request_.size.height;
+        const auto rgba = pipeline_->picture().download_all<uint32_t>(pixels);
+        return io::write_png(path, viewer::without_alpha(std::as_bytes(std::span(rgba)), request_.size),
+                             true);
+    }
+
+    gi::EngineSettings settings() const { return pipeline_->settings(); }
+
+ private:
+    gi::Device& device_;
+    const Scan& scan_;
+    viewer::FrameRequest request_;
+    std::unique_ptr<viewer::Pipeline> pipeline_;
+};
+
+/// Maps of about 64 x 64 texels whatever their number, as in the paper.
+void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
+    settings.vpls = vpls;
+    settings.atlas = static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls))));
+}
+
+Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesystem::path& folder) {
+    heading("fig. 9: cornell, 256 VPLs, 4 x 4 interleaved, 512 x 512");
+    fmt::print("{:>8} {:>12} {:>14} {:>16} {:>16}\n", "bounces", "ms a frame", "of all cores",
+               "mean luminance", "more than before");
+    Stage stage(device, scan);
+    LUCARNE_TRY(stage.open("cornell", {512, 512}));
+    gi::EngineSettings settings = stage.settings();
+    LUCARNE_TRY(stage.frames(settings, 1));  // shaders, first loads
+    double before = 0;
+    for (uint32_t bounces = 0; bounces <= 4; ++bounces) {
+        settings.bounces = bounces;
+        LUCARNE_ASSIGN(const auto measured, stage.frames(settings, 3));
+        fmt::print("{:>8} {:>12.0f} {:>14.0f} {:>16.4f} {:>16}\n", bounces, measured.milliseconds,
+                   measured.processor, measured.luminance,
+                   bounces ? fmt::format("{:+.1f} %", 100 * (measured.luminance / before - 1)) : "");
+        before = measured.luminance;
+        LUCARNE_TRY(stage.write(folder / fmt::format("fig-9-bounces-{}.png", bounces)));
+    }
+    return {};
+}
+
+/// Figs 10 (a box) and 11, 12 (a cathedral). The interleaved pictures of the paper's fig. 12 lack their
+/// factor n^2; here the indirect light must be the same for every n.
+Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scene, const std::string& figure,
+                   const std::filesystem::path& folder) {
+    Stage stage(device, scan);
+    LUCARNE_TRY(stage.open(scene, {256, 256}));
+    gi::EngineSettings settings = stage.settings();
+    LUCARNE_TRY(stage.frames(settings, 1));
+    settings.bounces = 0;
+    LUCARNE_ASSIGN(const auto direct, stage.frames(settings, 1));
+    heading(
+        fmt::format("{}: {}, 256 x 256, ms a frame with all VPLs anew (indirect light over that of "
+                    "interleave 1)",
+                    figure, scene));
+    fmt::print("{:>6} {:>12} {:>22} {:>22} {:>22}\n", "VPLs", "interleave", "1 bounce", "2 bounces",
+               "3 bounces");
+    for (const uint32_t vpls : {64u, 128u, 256u, 1024u}) {
+        double whole[4] = {};
+        for (const uint32_t interleave : {1u, 2u, 4u}) {
+            set_vpls(settings, vpls);
+            settings.interleave = interleave;
+            fmt::print("{:>6} {:>12}", vpls, fmt::format("{0} x {0}", interleave));
+            for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
+                settings.bounces = bounces;
+                // A thousand VPLs take seconds, which vary less.
+                LUCARNE_ASSIGN(const auto measured, stage.frames(settings, vpls < 1024 ? 3 : 1));
+                const double indirect = measured.luminance - direct.luminance;
+                if (interleave == 1) whole[bounces] = indirect;
+                fmt::print(" {:>22}", fmt::format("{:.0f} / {:.0f} ({:.3f})", measured.milliseconds,
+                                                  measured.processor, indirect / whole[bounces]));
+                std::fflush(stdout);
+                const std::string name =
+                    fmt::format("fig-12-{}-bounces-{}-interleave-{}.png", scene, bounces, interleave);
+                if (vpls == 256 && interleave != 2) LUCARNE_TRY(stage.write(folder / name));
+            }
+            fmt::print("\n");
+        }
+    }
+    return {};
+}
+
+double brightest(const std::vector<glm::vec4>& picture) {
+    double most = 0;
+    for (const glm::vec4& pixel : picture) most = std::max(most, gi::luminance(pixel));
+    return most;
+}
+
+/// Where the light is gathered: its share of a picture, and its middle.
+struct Spot {
+    double light = 0, x = 0, y = 0;
+};
+Spot spot_within(const std::vector<glm::vec4>& picture, const std::vector<bool>& mask, size_t width) {
+    Spot spot;
+    for (size_t i = 0; i < picture.size(); ++i) {
+        if (!mask[i]) continue;
+        const double light = gi::luminance(picture[i]);
+        spot.light += light;
+        spot.x += light * static_cast<double>(i % width);
+        spot.y += light * static_cast<double>(i / width);
+    }
+    spot.x /= spot.light;
+    spot.y /= spot.light;
+    return spot;
+}
+
+void judge(const std::string& what, const std::vector<glm::vec4>& picture, const Scan::Truth& truth) {
+    const auto error = gi::compare_with_halves(picture, truth.first, truth.second);
+    const double energy = gi::mean_luminance(picture) / gi::mean_luminance(truth.whole) - 1;
+    fmt::print("{:<44} relMSE {:>7} energy {:+.1f} %, brightest pixel {:.2f} of the reference's\n", what,
+               error ? fmt::format("{:.4f}", error->rel_mse) : error.error().line(), 100 * energy,
+               brightest(picture) / brightest(truth.whole));
+    std::fflush(stdout);
+}
+
+Result<void> figure_13(const std::filesystem::path& folder) {
+    heading("fig. 13: caustics, the first bounce alone, preset high, 128 x 128, against the reference");
+    constexpr size_t kSide = 128;
+    for (const std::string scene : {"ring", "paraboloid"}) {
+        const Scan scan(scene, "2M", folder);
+        const std::string common = fmt::format("--size {0}x{0} --preset high --only-bounce 1 ", kSide);
+        LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + "--samples 2048"));
+        // The caustic: what is brighter than a third of the brightest.
+        std::vector<bool> mask;
+        const double limit = brightest(truth.whole) / 3;
+        for (const glm::vec4& pixel : truth.whole) mask.push_back(gi::luminance(pixel) > limit);
+        const Spot right = spot_within(truth.whole, mask, kSide);
+        for (const std::string frames : {"1", "16"}) {
+            const std::string name = "frames-" + frames;
+            LUCARNE_ASSIGN(const auto picture, scan.picture(name, common + "--frames " + frames));
+            judge(fmt::format("{}, {} frame{}", scene, frames, frames == "1" ? "" : "s"), picture, truth);
+            const Spot spot = spot_within(picture, mask, kSide);
+            fmt::print("{:<44} {:+.1f} % of its light, {:.2f} pixels off\n", "  the caustic",
+                       100 * (spot.light / right.light - 1), std::hypot(spot.x - right.x, spot.y - right.y));
+        }
+        scan.render("fig-13.png", "--size 512x512 --preset high --bounces 2");
+    }
+    return {};
+}
+
+Result<void> figure_14(Scan& scan) {
+    heading("fig. 14: cornell, .5 diffuse, .45 specular, shininess 1000, the first bounce alone, 64 x 64");
+    scan.light_by(bench::scene_file("cornell-glossy"));
+    const std::string common = "--size 64x64 --only-bounce 1 --preset ";
+    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + "high --samples 16384"));
+    LUCARNE_ASSIGN(const auto interactive, scan.picture("interactive", common + "interactive"));
+    judge("256 VPLs, 4 x 4 interleaved, one frame", interactive, truth);
+    LUCARNE_ASSIGN(const auto high, scan.picture("high", common + "high"));
+    judge("1024 VPLs, one frame", high, truth);
+    LUCARNE_ASSIGN(const auto averaged, scan.picture("averaged", common + "high --seconds 30"));
+    judge("1024 VPLs, averaged for 30 s", averaged, truth);
+    for (const std::string preset : {"interactive", "high"})
+        scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset);
+    return {};
+}
+
+Result<void> make_figures(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    fmt::print("{}; {} hardware threads\n", device->info().renderer, std::thread::hardware_concurrency());
+    Scan cornell("cornell", "2M", folder);
+    LUCARNE_TRY(figure_9(*device, cornell, folder));
+    LUCARNE_TRY(sweep(*device, cornell, "cornell", "fig. 10", folder));
+    {
+        const Scan nave("nave", "4M", folder);
+        LUCARNE_TRY(sweep(*device, nave, "nave", "figs 11 and 12", folder));
+    }
+    LUCARNE_TRY(figure_13(folder));
+    LUCARNE_TRY(figure_14(cornell));
+    return {};
+}
+
+}  // namespace
+}  // namespace lucarne
+
+int main(int argc, char** argv) {
+    const auto done = lucarne::make_figures(argc < 2 ? "figures" : argv[1]);
+    if (!done) fmt::print(stderr, "lucarne_figures: {}\n", done.error().line());
+    return done ? 0 : 1;
+}

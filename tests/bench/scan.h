@@ -1,0 +1,75 @@
+// Virtual scans and pictures of them by the program, for the benchmarks that hold `vpl` against the
+// reference.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/vec4.hpp>
+
+#include "io/image/image.h"
+
+namespace lucarne::bench {
+
+inline std::string scene_file(const std::string& name) {
+    return std::string(LUCARNE_SOURCE_DIR) + "/data/scenes/" + name + ".json";
+}
+
+/// A scan of a scene as a cache in `folder`.
+class Scan {
+ public:
+    Scan(std::string scene, const std::string& points, const std::filesystem::path& folder)
+        : scene_(std::move(scene)), lit_by_(scene_file(scene_)), folder_(folder) {
+        const std::string scan = folder / (scene_ + ".ply");
+        cache_ = folder / (scene_ + ".luc");
+        run("generate " + scene_ + " --even --normals --points " + points + " -o " + scan + " --overwrite");
+        run("convert " + scan + " -o " + cache_ + " --overwrite");
+        std::filesystem::remove(scan);
+    }
+
+    const std::string& cache() const { return cache_; }
+    /// Pictures from now on are of another scene file than the scan's own, and called after it.
+    void light_by(const std::filesystem::path& file) {
+        scene_ = file.stem();
+        lit_by_ = file;
+    }
+
+    Result<std::vector<glm::vec4>> picture(const std::string& name, const std::string& arguments) const {
+        LUCARNE_ASSIGN(io::Image image, io::read_exr(render(name + ".exr", arguments)));
+        return std::move(image.pixels);
+    }
+
+    struct Truth {
+        std::vector<glm::vec4> whole, first, second;
+    };
+    Result<Truth> truth(const std::string& name, const std::string& arguments) const {
+        const std::string file = render(name + ".exr", "--engine reference --layers " + arguments);
+        const std::string stem = file.substr(0, file.size() - 4);
+        LUCARNE_ASSIGN(io::Image whole, io::read_exr(file));
+        LUCARNE_ASSIGN(io::Image first, io::read_exr(stem + ".a.exr"));
+        LUCARNE_ASSIGN(io::Image second, io::read_exr(stem + ".b.exr"));
+        return Truth{std::move(whole.pixels), std::move(first.pixels), std::move(second.pixels)};
+    }
+
+    /// The path of the picture FOLDER/SCENE-NAME, `name` with the ending of its kind.
+    std::string render(const std::string& name, const std::string& arguments) const {
+        const std::string file = folder_ / (scene_ + "-" + name);
+        run("render " + cache_ + " -o " + file + " --overwrite --scene " + lit_by_ + " " + arguments);
+        return file;
+    }
+
+ private:
+    static void run(const std::string& arguments) {
+        if (std::system((LUCARNE_BINARY " " + arguments + " > /dev/null 2>&1").c_str()) != 0)
+            fmt::print(stderr, "lucarne {} failed\n", arguments);
+    }
+
+    std::string scene_, lit_by_, cache_;
+    std::filesystem::path folder_;
+};
+
+}  // namespace lucarne::bench
