@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/gbuffer/direct_light.h"
+#include "gi/vpl/footprints.h"
 #include "gi/vpl/light_sights.h"
 #include "gi/vpl/lobes.h"
 #include "gi/vpl/redistribution.h"
@@ -99,7 +100,7 @@ Result<void> VplEngine::prepare(Frame& frame) {
 
 /// Everything that the VPLs and their maps follow from.
 Basis basis_of(const Frame& frame) {
-    Basis basis{frame.settings, frame.lights, frame.materials, {frame.cuts.light->fingerprint()},
+    Basis basis{frame.settings, frame.lights,      frame.materials, {frame.cuts.light->fingerprint()},
                 frame.bounds,   frame.environment, frame.index};
     for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
     return basis;
@@ -116,6 +117,8 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     Basis basis = basis_of(frame);
     const bool held = keep && basis == basis_;
     basis_ = {};  // until all is drawn
+    // Frame by frame less is blurred, so that what is averaged converges.
+    const float shrink = 1.0f / static_cast<float>(frame.index + 1);
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s.best_candidate;
     redistribution_.footprint_variance = footprint_variance(frame.index);
@@ -134,6 +137,9 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         Result<void> done = held ? Result<void>{}
                                  : draw_shadow_maps(frame.device, *frame.cuts.light, seeds, layout,
                                                     bounce < last, frame.times, maps_);
+        if (done && !held)
+            done = pass(frame, "VPL footprints",
+                        [&] { return trim_footprints(frame.device, maps_, shrink, seeds); });
         if (done && (s.only_bounce < 0 || bounce == last))
             done = pass(frame, "VPL shading",
                         [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
