@@ -1,12 +1,14 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
 // with its preset, its figure and its target. A program and no test: `./run accuracy` takes some minutes, and
 // misses are printed, not hidden. Pictures go into FOLDER (default: a temporary one that is removed).
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -159,6 +161,45 @@ Result<void> cornell(const std::filesystem::path& folder) {
     return {};
 }
 
+/// The same VPLs over points in another order, and over half and twice as many points.
+Result<void> invariance(gi::Device& device, const std::filesystem::path& folder) {
+    gi::scenes::AnalyticScene scene;
+    scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
+    scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
+    scene.camera = gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 128);
+    scene.settings = high();
+    LUCARNE_ASSIGN(const auto in_order, gi::scenes::render(device, "vpl", scene));
+    std::shuffle(scene.surfels.begin(), scene.surfels.end(), std::mt19937(7));
+    LUCARNE_ASSIGN(const auto shuffled, gi::scenes::render(device, "vpl", scene));
+    row("closed furnace, points shuffled, high", "mean against in order",
+        gi::mean_luminance(shuffled.radiance) / gi::mean_luminance(in_order.radiance) - 1, .01, true);
+    double usual = 0;
+    for (const std::string points : {"2M", "1M", "4M"}) {
+        const Scan scan("cornell", points, folder);
+        LUCARNE_ASSIGN(const auto picture, scan.picture("n", "--size 256x256 --preset high --only-bounce 1"));
+        const double mean = gi::mean_luminance(picture);
+        if (points == "2M") usual = mean;
+        row("cornell, bounce 1, high, " + points + " points", "mean against 2M points", mean / usual - 1, .01,
+            true);
+    }
+    return {};
+}
+
+/// A second of either engine, after the cloud is loaded.
+Result<void> equal_time(const std::filesystem::path& folder) {
+    const Scan scan("cornell", "2M", folder);
+    const std::string common = "--size 256x256 --preset interactive --only-bounce 1 ";
+    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + "--samples 1024"));
+    LUCARNE_ASSIGN(const auto by_vpl, scan.picture("second", common + "--seconds 1"));
+    LUCARNE_ASSIGN(const auto by_paths,
+                   scan.picture("second", common + "--engine reference --samples 1 --seconds 1"));
+    LUCARNE_ASSIGN(const auto vpl, gi::compare_with_halves(by_vpl, truth.first, truth.second));
+    LUCARNE_ASSIGN(const auto paths, gi::compare_with_halves(by_paths, truth.first, truth.second));
+    row("cornell, bounce 1, interactive, 1 s", "relMSE over reference's in 1 s", vpl.rel_mse / paths.rel_mse,
+        .1, false);
+    return {};
+}
+
 Result<void> nave(const std::filesystem::path& folder) {
     Scan scan("nave", "8M", folder);
     for (const std::string camera : {"nave", "carpet", "aisle", "altar", "vault"}) {
@@ -205,6 +246,8 @@ Result<void> measure(const std::filesystem::path& folder) {
     LUCARNE_TRY(form_factor(*device, "parallel at .5", .5f * z, y, x, .415253));
     LUCARNE_TRY(form_factor(*device, "at a right angle", o, y, z, .200044));
     LUCARNE_TRY(cornell(folder));
+    LUCARNE_TRY(invariance(*device, folder));
+    LUCARNE_TRY(equal_time(folder));
     LUCARNE_TRY(glossy(folder));
     return nave(folder);
 }
