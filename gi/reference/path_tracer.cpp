@@ -14,6 +14,8 @@ namespace {
 
 constexpr uint32_t kRouletteFrom = 4;  // bounces that every path may take before chance ends it
 constexpr float kLargestSurvival = 0.95f;
+constexpr float kSheetThickness = 4.0f;  // radii; noise of a spacing is about two
+constexpr float kGrazing = 0.1f;         // cosine below which a sheet is not followed further
 constexpr float kMostShift = 4.0f;  // radii: beyond that the ray grazes a plane that is hardly the surface
 
 /// The weight of a draw that another way draws with the density `other` (balance heuristic).
@@ -33,39 +35,14 @@ struct PathTracer::Vertex {
     Reflectance surface;
 };
 
-/// A direction that the BRDF drew, and what it met.
+/// A direction, the density with which the BRDF draws it, and what it meets.
 struct PathTracer::Ray {
     glm::vec3 direction;
     float pdf;
-    const Surfel* hit;     // or none
-    float distance, side;  // of the hit's plane from the origin; cosine to its normal
+    const Surfel* hit = nullptr;   // or none
+    float distance = 0, side = 0;  // of the hit's plane from the origin; cosine to its normal
+    glm::vec3 point{0.0f};         // where it meets that plane
 };
-
-void PathSums::add(const PathSums& other) {
-    exact = other.exact;
-    for (int half = 0; half < 2; ++half) {
-        halves[half] += other.halves[half];
-        paths[half] += other.paths[half];
-    }
-    luminance += other.luminance;
-    squares += other.squares;
-}
-
-glm::vec3 PathSums::radiance() const {
-    const auto all = static_cast<double>(std::max<uint64_t>(paths[0] + paths[1], 1));
-    return glm::vec3(exact + (halves[0] + halves[1]) / all);
-}
-
-glm::vec3 PathSums::half_radiance(int half) const {
-    return paths[half] ? glm::vec3(exact + halves[half] / static_cast<double>(paths[half])) : radiance();
-}
-
-float PathSums::variance() const {
-    const auto n = static_cast<double>(paths[0] + paths[1]);
-    if (n < 2) return 0;
-    const double spread = std::max(0.0, squares - luminance * luminance / n) / (n - 1);
-    return static_cast<float>(spread / n);
-}
 
 PathTracer::PathTracer(const Illumination& illumination, const PathSettings& settings)
     : light_(illumination),
@@ -98,11 +75,8 @@ glm::vec3 PathTracer::sharp_light(const Vertex& v) const {
     for (const Light& light : light_.sharp_lights()) {
         glm::vec3 in;
         const glm::vec3 irradiance = light_irradiance(light, v.position, v.normal, in);
-        if (irradiance == glm::vec3(0.0f)) continue;
-        const bool hidden = light.kind == kDirectionalLight
-                                ? surfels_.occluded_along(v.origin, in)
-                                : surfels_.occluded(v.origin, glm::vec3(light.position));
-        if (!hidden) sum += brdf(v.surface, v.normal, v.out, in) * irradiance;
+        if (irradiance != glm::vec3(0.0f) && light_.arrives(light, v.origin, in))
+            sum += brdf(v.surface, v.normal, v.out, in) * irradiance;
     }
     return sum;
 }
@@ -144,27 +118,18 @@ glm::vec3 PathTracer::soft_light_along(const Vertex& v, const Ray& ray) const {
     return sum;
 }
 
-/// What one emitting surfel's light becomes here; see Illumination for the rule by which it counts.
-glm::vec3 PathTracer::sampled_emission(const Vertex& v, Random& random) const {
-    const auto [index, point] = light_.sample_emitter(random);
-    const Surfel& surfel = surfels_.surfels()[index];
-    const glm::vec3 offset = point - v.origin;
-    const float distance = glm::length(offset);
-    if (!(distance > 0)) return glm::vec3(0.0f);
-    const glm::vec3 in = offset / distance;
-    const float cosine = std::abs(glm::dot(surfel.normal, in));
-    const glm::vec3 f = brdf(v.surface, v.normal, v.out, in);
-    if (!(cosine > 0) || f == glm::vec3(0.0f) || surfels_.nearest(v.origin, in) != index)
-        return glm::vec3(0.0f);
-    const float pdf = light_.emitter_pdf(surfel, distance, cosine);
-    const float weight = balance(pdf, scatter_pdf(v.surface, v.normal, v.out, in)) / pdf;
-    return f * (glm::dot(v.normal, in) * weight) * glm::vec3(light_.material(surfel.material).emission);
-}
-
-/// The emission of what a ray of the BRDF met.
-glm::vec3 PathTracer::weighed_emission(const Vertex& at, const Ray& ray) const {
-    if (at.emission == glm::vec3(0.0f)) return glm::vec3(0.0f);
-    return at.emission * balance(ray.pdf, light_.emitter_pdf(*ray.hit, ray.distance, std::abs(ray.side)));
+/// `side` stays 0 where it meets nothing, or a disc edge-on.
+PathTracer::Ray PathTracer::cast(const Vertex& from, const glm::vec3& direction, float pdf) const {
+    Ray ray{direction, pdf};
+    const auto hit = surfels_.nearest(from.origin, direction);
+    if (!hit) return ray;
+    ray.hit = &surfels_.surfels()[*hit];
+    ray.side = -glm::dot(ray.hit->normal, direction);
+    if (ray.side == 0) return ray;
+    // The plane's own equation is more exact than Embree's distance.
+    ray.distance = glm::dot(ray.hit->normal, from.origin - ray.hit->position) / ray.side;
+    ray.point = from.origin + direction * ray.distance;
+    return ray;
 }
 
 /// The vertex where a ray ends. It started a radius above its surface to get clear of it, and would see
@@ -172,24 +137,58 @@ glm::vec3 PathTracer::weighed_emission(const Vertex& at, const Ray& ray) const {
 /// plane; rays go on from what was hit, so that none gets out through a corner.
 PathTracer::Vertex PathTracer::arrive(const Vertex& from, const Ray& ray) const {
     const Surfel& surfel = *ray.hit;
-    Vertex at =
-        vertex({from.origin + ray.direction * ray.distance, ray.side > 0 ? surfel.normal : -surfel.normal,
-                -ray.direction, surfel.albedo, surfel.radius, surfel.material});
+    Vertex at = vertex({ray.point, ray.side > 0 ? surfel.normal : -surfel.normal, -ray.direction,
+                        surfel.albedo, surfel.radius, surfel.material});
     const float straight = glm::dot(surfel.normal, from.position - surfel.position) / ray.side;
     if (straight > 0 && std::abs(straight - ray.distance) < kMostShift * from.radius)
         at.position = from.position + ray.direction * straight;
     return at;
 }
 
+/// Discs that may have been drawn in the place of the one met lie behind it within the noise of their sheet.
+SurfelSampler::Density PathTracer::density(const SurfelSampler& sampler, const Vertex& from, const Ray& ray,
+                                           uint32_t drawn) const {
+    const float behind = kSheetThickness * ray.hit->radius / std::max(std::abs(ray.side), kGrazing);
+    return sampler.density(from.origin, ray.direction, ray.distance + behind, drawn);
+}
+
+/// What the light of one surfel becomes here, emitted or of sharp lights as `sampler` has it.
+glm::vec3 PathTracer::sampled_surfel(const SurfelSampler& sampler, const Vertex& v, Random& random) const {
+    const auto [drawn, point] = sampler.draw(random);
+    const glm::vec3 in = glm::normalize(point - v.origin);
+    const glm::vec3 f = brdf(v.surface, v.normal, v.out, in);
+    if (!(luminance(f) > 0)) return glm::vec3(0.0f);  // nor where the point is the origin
+    const Ray ray = cast(v, in, scatter_pdf(v.surface, v.normal, v.out, in));
+    if (ray.side == 0) return glm::vec3(0.0f);
+    const Vertex at = arrive(v, ray);
+    const glm::vec3 light = &sampler == &light_.emitters() ? at.emission : sharp_light(at);
+    if (light == glm::vec3(0.0f)) return light;
+    const auto [pdf, crossed] = density(sampler, v, ray, drawn);
+    return crossed ? f * light * (glm::dot(v.normal, in) / (pdf + ray.pdf)) : glm::vec3(0.0f);
+}
+
+/// The light of what the BRDF's ray met, weighted.
+glm::vec3 PathTracer::met_light(const Vertex& from, const Vertex& at, const Ray& ray) const {
+    const auto weighed = [&](const glm::vec3& light, const SurfelSampler& sampler) {
+        return light == glm::vec3(0.0f) ? light : light * balance(ray.pdf, density(sampler, from, ray).pdf);
+    };
+    const glm::vec3 sharp = sharp_light(at);
+    return weighed(at.emission, light_.emitters()) +
+           (settings_.sample_lit ? weighed(sharp, light_.lit_surfels()) : sharp);
+}
+
 /// All light of one path from `first` that has chance in it.
 glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
     glm::vec3 sum(0.0f), throughput(1.0f);
     Vertex at = first;
+    const bool sample_lit = settings_.sample_lit && !light_.lit_surfels().empty();
     for (uint32_t bounce = 0;; ++bounce) {
-        if (bounce > 0 && counts(bounce)) sum += throughput * sharp_light(at);
         const bool soft = counts(bounce) && light_.anything_soft();
         if (soft) sum += throughput * soft_light(at, random);
-        if (counts(bounce + 1) && light_.has_emitters()) sum += throughput * sampled_emission(at, random);
+        if (counts(bounce + 1)) {
+            if (!light_.emitters().empty()) sum += throughput * sampled_surfel(light_.emitters(), at, random);
+            if (sample_lit) sum += throughput * sampled_surfel(light_.lit_surfels(), at, random);
+        }
         if (bounce == last_ && !soft) break;
         if (bounce >= kRouletteFrom) {
             const float survival =
@@ -200,16 +199,12 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
         const auto scattered = scatter(at.surface, at.normal, at.out, random);
         if (!scattered) break;
         throughput *= scattered->weight;
-        const auto hit = surfels_.nearest(at.origin, scattered->direction);
-        Ray ray{scattered->direction, scattered->pdf, hit ? &surfels_.surfels()[*hit] : nullptr, 0, 0};
+        const Ray ray = cast(at, scattered->direction, scattered->pdf);
         if (soft) sum += throughput * soft_light_along(at, ray);
-        if (!hit || bounce == last_) break;
-        // The plane's own equation is more exact than Embree's distance.
-        ray.side = -glm::dot(ray.hit->normal, ray.direction);
-        if (ray.side == 0) break;
-        ray.distance = glm::dot(ray.hit->normal, at.origin - ray.hit->position) / ray.side;
-        at = arrive(at, ray);
-        if (counts(bounce + 1)) sum += throughput * weighed_emission(at, ray);
+        if (ray.side == 0 || bounce == last_) break;
+        const Vertex from = at;
+        at = arrive(from, ray);
+        if (counts(bounce + 1)) sum += throughput * met_light(from, at, ray);
     }
     return sum;
 }
@@ -259,20 +254,6 @@ std::vector<PathSums> PathTracer::trace(std::span<const Start> starts, Progress*
         if (progress) progress->add(last - first);
     });
     return sums;
-}
-
-MeanLuminance mean_luminance(std::span<const PathSums> sums) {
-    MeanLuminance result;
-    if (sums.empty()) return result;
-    double variance = 0;
-    for (const PathSums& s : sums) {
-        result.mean += luminance(s.radiance());
-        variance += s.variance();
-    }
-    const auto count = static_cast<double>(sums.size());
-    result.mean /= count;
-    result.standard_error = std::sqrt(variance) / count;
-    return result;
 }
 
 }  // namespace lucarne::gi::reference

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/reference/illumination.h"
+#include "gi/reference/path_sums.h"
 #include "io/core/random.h"
 
 namespace lucarne {
@@ -21,6 +22,8 @@ struct PathSettings {
     uint32_t samples = 64;     ///< paths a start
     uint64_t seed = 1;
     uint64_t frame = 0;  ///< each frame takes paths of its own
+    /// Whether paths are led to what sharp lights light; else the BRDF alone has to find it. Same mean.
+    bool sample_lit = true;
 };
 
 /// A point whose outgoing radiance is wanted: what a G-buffer texel says of it.
@@ -33,25 +36,9 @@ struct Start {
     uint32_t material = 0;
 };
 
-/// What the paths of one start have gathered, in two halves that share no path: every other path goes to the
-/// second. Sums of several frames add up.
-struct PathSums {
-    glm::dvec3 exact{0.0};  ///< light without chance in it, the same for every path
-    glm::dvec3 halves[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
-    uint64_t paths[2] = {0, 0};
-    double luminance = 0, squares = 0;  ///< of the paths' light: sum, and sum of squares
-
-    void add(const PathSums& other);
-
-    glm::vec3 radiance() const;               ///< W/(sr m^2)
-    glm::vec3 half_radiance(int half) const;  ///< by that half alone; of all paths where it has none
-    /// Of the luminance of radiance(), estimated from the spread of the paths; 0 below two paths.
-    float variance() const;
-};
-
 /// Unidirectional path tracing over surfels. Lights, environment and emitting surfels are sampled where a
-/// path reflects (next event estimation); what the BRDF's own directions meet counts as well, both weighted
-/// by the balance heuristic (Veach & Guibas 1995).
+/// path reflects (next event estimation), and so are surfels that sharp lights light; what the BRDF's own
+/// directions meet counts as well, all weighted by the balance heuristic (Veach & Guibas 1995).
 ///
 /// Bounces are orders of the Neumann series L = sum_k T^k L0 (Kajiya 1986): L0 is emission and the light that
 /// comes from lights and the environment and is reflected once (bounce 0), and each bounce is one more
@@ -79,9 +66,12 @@ class PathTracer {
     glm::vec3 sharp_light(const Vertex& vertex) const;
     glm::vec3 soft_light(const Vertex& vertex, Random& random) const;
     glm::vec3 soft_light_along(const Vertex& vertex, const Ray& ray) const;
-    glm::vec3 sampled_emission(const Vertex& vertex, Random& random) const;
-    glm::vec3 weighed_emission(const Vertex& at, const Ray& ray) const;
+    Ray cast(const Vertex& from, const glm::vec3& direction, float pdf) const;
     Vertex arrive(const Vertex& from, const Ray& ray) const;
+    SurfelSampler::Density density(const SurfelSampler& sampler, const Vertex& from, const Ray& ray,
+                                   uint32_t drawn = kNoSurfel) const;
+    glm::vec3 sampled_surfel(const SurfelSampler& sampler, const Vertex& vertex, Random& random) const;
+    glm::vec3 met_light(const Vertex& from, const Vertex& at, const Ray& ray) const;
     glm::vec3 path(const Vertex& first, Random& random) const;
 
     const Illumination& light_;
@@ -89,11 +79,5 @@ class PathTracer {
     PathSettings settings_;
     uint32_t last_;  // bounce that counts
 };
-
-/// Mean luminance of all starts and its standard error, in double and in order.
-struct MeanLuminance {
-    double mean = 0, standard_error = 0;
-};
-MeanLuminance mean_luminance(std::span<const PathSums> sums);
 
 }  // namespace lucarne::gi::reference

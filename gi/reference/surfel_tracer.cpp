@@ -54,6 +54,7 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     embree.device = rtcNewDevice(nullptr);
     if (!embree.device) return failed("reference", "Embree does not start on this machine");
     embree.scene = rtcNewScene(embree.device);
+    rtcSetSceneFlags(embree.scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);  // for each_crossed()
     // No compact or robust flags: robust ones concern triangles, and discs are planes plus a radius.
     if (count > 0) {
         const RTCGeometry discs = rtcNewGeometry(embree.device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
@@ -111,6 +112,21 @@ bool SurfelTracer::occluded(const glm::vec3& from, const glm::vec3& to) const {
 
 bool SurfelTracer::occluded_along(const glm::vec3& origin, const glm::vec3& direction) const {
     return any_hit(embree_->scene, make_ray(origin, direction, std::numeric_limits<float>::infinity()));
+}
+
+void SurfelTracer::each_crossed(const glm::vec3& origin, const glm::vec3& direction, float end,
+                                const std::function<void(uint32_t)>& visit) const {
+    struct Context : RTCIntersectContext {
+        const std::function<void(uint32_t)>* visit;
+    } context;
+    rtcInitIntersectContext(&context);
+    context.visit = &visit;
+    context.filter = [](const RTCFilterFunctionNArguments* found) {
+        (*static_cast<const Context*>(found->context)->visit)(RTCHitN_primID(found->hit, found->N, 0));
+        found->valid[0] = 0;  // no hit: the ray goes on
+    };
+    RTCRay ray = make_ray(origin, direction, end);
+    rtcOccluded1(embree_->scene, &context, &ray);
 }
 
 double SurfelTracer::coverage() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,6 +38,11 @@ class SurfelTracer {
     bool occluded(const glm::vec3& from, const glm::vec3& to) const;
     /// Whether anything stands on the whole ray.
     bool occluded_along(const glm::vec3& origin, const glm::vec3& direction) const;
+
+    /// Calls visit(index) once for every surfel on the ray up to `end`, m, in no order that is promised but
+    /// always the same.
+    void each_crossed(const glm::vec3& origin, const glm::vec3& direction, float end,
+                      const std::function<void(uint32_t)>& visit) const;
 
     /// Area of all discs over the area of the surface (the sum of the surfels' shares), 0 where that is
     /// unknown. Randomly placed surfels let a share exp(-coverage) of the rays through.

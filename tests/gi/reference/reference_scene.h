@@ -47,6 +47,11 @@ inline Light spot(const glm::vec3& position, const glm::vec3& target, float half
             glm::vec4(intensity, intensity, intensity, 0)};
 }
 
+inline Light point(const glm::vec3& position, float intensity) {
+    return {glm::vec4(position, 0), glm::vec4(0), glm::vec4(glm::vec3(intensity), 0), glm::vec4(0),
+            kPointLight};
+}
+
 inline Light rectangle_light(const glm::vec3& middle, const glm::vec3& normal, const glm::vec3& half_side,
                              float other_half, float radiance) {
     return {glm::vec4(middle, 0), glm::vec4(normal, 0), glm::vec4(glm::vec3(radiance), 0),
