@@ -14,30 +14,31 @@ namespace {
 constexpr double kFocusCells = 32;  // the light cut's focus moves in steps of 1/32 of the root cube
 constexpr int kStepsPerOctave = 64, kMostSteps = 20 * kStepsPerOctave;
 
-/// At a share of the points of `whole`, which was chosen without a limit of room.
-CutSet choose_share(const CutPurpose& purpose, const CutSet* whole, int step) {
-    const double share = std::exp2(-static_cast<double>(step) / kStepsPerOctave);
-    const auto budget = [&](uint64_t most, const octree::Cut* taken) {
-        if (!taken) return most;
-        return static_cast<uint64_t>(std::max(1.0, share * static_cast<double>(taken->points)));
-    };
-    const octree::View eye = octree_view(purpose.camera, purpose.size);
-    CutSet cuts;
-    cuts.share = share;
-    cuts.view =
-        octree::view_cut(purpose.source, eye, budget(purpose.budgets.view, whole ? &whole->view : nullptr),
-                         purpose.budgets.pixel_spacing);
+constexpr uint64_t kLightShare = 2;  // the light's cuts take up to this part of the room
+
+uint64_t at_step(uint64_t points, int step) {
+    return static_cast<uint64_t>(
+        std::max(1.0, std::exp2(-static_cast<double>(step) / kStepsPerOctave) * static_cast<double>(points)));
+}
+
+octree::Cut view_cut(const CutPurpose& purpose, uint64_t budget) {
+    return octree::view_cut(purpose.source, octree_view(purpose.camera, purpose.size), budget,
+                            purpose.budgets.pixel_spacing);
+}
+
+/// The cuts of the light, of at most `step` below `whole`, or below the budgets where there is none.
+void choose_light(const CutPurpose& purpose, const CutSet* whole, int step, CutSet& cuts) {
+    cuts.light_views.clear();
     for (size_t i = 0; i < purpose.lights.size(); ++i)
         cuts.light_views.push_back(
             light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
-                           budget(purpose.budgets.light_view, whole ? &whole->light_views[i] : nullptr)));
+                           whole ? at_step(whole->light_views[i].points, step) : purpose.budgets.light_view));
     // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
     const auto& root = purpose.source.header().root;
     const double cell = root.size / kFocusCells;
-    const glm::dvec3 focus = root.min + glm::floor((eye.position - root.min) / cell + 0.5) * cell;
+    const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
     cuts.light = octree::light_cut(purpose.source, focus,
-                                   budget(purpose.budgets.light, whole ? &whole->light : nullptr));
-    return cuts;
+                                   whole ? at_step(whole->light.points, step) : purpose.budgets.light);
 }
 
 bool fits(const CutPurpose& purpose, const CutSet& cuts, const CutRoom& room) {
@@ -47,6 +48,20 @@ bool fits(const CutPurpose& purpose, const CutSet& cuts, const CutRoom& room) {
         for (const octree::CutNode& node : cut->nodes)
             if (counted.insert(node.node).second) bytes += room.cost(purpose.source.nodes()[node.node]);
     return bytes <= room.bytes;
+}
+
+/// The least step from 1 on that fits, kMostSteps if none does. More points never leave out a node, so there
+/// is one: it lies between `beyond`, which does not fit, and `within`. Both are looked for from `guess` on,
+/// with ever longer strides, and then halved.
+int least_step(int guess, const std::function<bool(int)>& fits_at) {
+    int beyond = 0, within = kMostSteps;
+    const auto narrow = [&](int step) { (fits_at(step) ? within : beyond) = step; };
+    for (int step = guess, stride = 1; beyond < step && step < within; stride *= 2) {
+        narrow(step);
+        step += within == step ? -stride : stride;
+    }
+    while (within - beyond > 1) narrow((beyond + within) / 2);
+    return within;
 }
 
 }  // namespace
@@ -64,36 +79,28 @@ uint64_t CutSet::points() const {
 }
 
 CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
-    CutSet whole = choose_share(purpose, nullptr, 0);
-    if (fits(purpose, whole, room)) return whole;
-    // More points never leave out a node, so that one step is the first to fit. It is between `beyond`, which
-    // does not, and `within`: both are looked for from the last frame's on, and then the middle is tried.
-    const auto share = [&](int step) { return choose_share(purpose, &whole, step); };
-    int beyond = 0, within = kMostSteps;
-    CutSet best = share(kMostSteps);
-    for (int stride = 1, step = step_; beyond < step && step < within; stride *= 2) {
-        CutSet tried = share(step);
-        if (fits(purpose, tried, room)) {
-            best = std::move(tried);
-            within = step;
-            step -= stride;
-        } else {
-            beyond = step;
-            step += stride;
-        }
+    CutSet whole;
+    choose_light(purpose, nullptr, 0, whole);
+    CutSet cuts = whole;
+    const CutRoom light_room{room.bytes / kLightShare, room.cost};
+    if (!fits(purpose, cuts, light_room)) {
+        light_step_ = least_step(light_step_, [&](int step) {
+            choose_light(purpose, &whole, step, cuts);
+            return fits(purpose, cuts, light_room);
+        });
+        choose_light(purpose, &whole, light_step_, cuts);
     }
-    while (within - beyond > 1) {
-        const int step = (beyond + within) / 2;
-        CutSet tried = share(step);
-        if (fits(purpose, tried, room)) {
-            best = std::move(tried);
-            within = step;
-        } else {
-            beyond = step;
-        }
+    cuts.view = whole.view = view_cut(purpose, purpose.budgets.view);
+    if (!fits(purpose, cuts, room)) {
+        view_step_ = least_step(view_step_, [&](int step) {
+            cuts.view = view_cut(purpose, at_step(whole.view.points, step));
+            return fits(purpose, cuts, room);
+        });
+        cuts.view = view_cut(purpose, at_step(whole.view.points, view_step_));
     }
-    step_ = within;
-    return best;
+    cuts.share =
+        static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(whole.points(), 1));
+    return cuts;
 }
 
 }  // namespace lucarne::viewer

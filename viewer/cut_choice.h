@@ -37,16 +37,19 @@ struct CutRoom {
     std::function<uint64_t(const octree::NodeInfo&)> cost;  ///< of a node, whole
 };
 
-/// Chooses the cuts of one frame after another. Where they do not fit the room together, all of them get the
-/// same share of the points that they would take without it, in steps of 1 %: the largest share that fits. So
-/// nothing that is chosen has to be refused, which would take whole nodes from the picture at once. The same
-/// cuts for the same purpose and room, whatever was chosen before.
+/// Chooses the cuts of one frame after another, so that together they fit the room: nothing that is chosen
+/// has to be refused, which would take whole nodes from the picture at once. Where they do not fit, first the
+/// cuts of the light get the same share of the points that they would take without a limit, the largest that
+/// fits half of the room, and then the view cut what fits beside them, both in steps of 1 %. So bounced light
+/// does not follow the view: while the camera glides its cuts hold. The same cuts for the same purpose and
+/// room, whatever was chosen before.
 class CutChooser {
  public:
     CutSet choose(const CutPurpose& purpose, const CutRoom& room);
 
  private:
-    int step_ = 1;  ///< the last share below 1; the next is looked for around it
+    int light_step_ = 1,
+        view_step_ = 1;  ///< the last frame's shares below 1; the next are looked for around them
 };
 
 }  // namespace lucarne::viewer

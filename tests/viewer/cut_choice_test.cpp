@@ -44,21 +44,32 @@ TEST_F(CutChoice, WithRoomForAllNothingIsGivenUp) {
     EXPECT_EQ(cuts.light.points, source.header().points) << "the light cut takes all that its budget allows";
 }
 
-TEST_F(CutChoice, AllCutsShrinkAlikeUntilTheyFitAndFillTheRoom) {
+TEST_F(CutChoice, CutsShrinkUntilTheyFitAndTheLightsKeepToTheirHalf) {
     CutChooser chooser;
     const CutSet whole = chooser.choose(purpose(), room(1'000'000));
-    for (const uint64_t nodes : {2000u, 500u, 100u, 20u}) {
-        const CutSet cuts = chooser.choose(purpose(), room(nodes));
+    const auto share = [](const octree::Cut& a, const octree::Cut& b) {
+        return static_cast<double>(a.points) / static_cast<double>(b.points);
+    };
+    for (const uint64_t nodes : {500u, 100u, 20u}) {
+        CutSet cuts = chooser.choose(purpose(), room(nodes));
         EXPECT_LE(held(cuts), nodes);
-        EXPECT_GT(held(cuts), nodes * 9 / 10) << nodes;
         EXPECT_LT(cuts.share, 1);
-        const auto share = [](const octree::Cut& a, const octree::Cut& b) {
-            return static_cast<double>(a.points) / static_cast<double>(b.points);
-        };
-        EXPECT_NEAR(share(cuts.view, whole.view), cuts.share, 0.02);
-        EXPECT_NEAR(share(cuts.light, whole.light), cuts.share, 0.02);
-        EXPECT_NEAR(share(cuts.light_views[0], whole.light_views[0]), cuts.share, 0.02);
+        EXPECT_NEAR(share(cuts.light, whole.light), share(cuts.light_views[0], whole.light_views[0]), 0.02);
+        cuts.view = {};
+        EXPECT_LE(held(cuts), nodes / 2);
+        EXPECT_GT(held(cuts), nodes * 4 / 10) << nodes;
     }
+}
+
+TEST_F(CutChoice, WhereTheViewWantsMoreOrLessTheLightsCutsStay) {
+    CutChooser chooser;
+    const CutSet before = chooser.choose(purpose(), room(200));
+    camera.target = {20.1, 20, 300};  // away from all
+    const CutSet after = chooser.choose(purpose(), room(200));
+    EXPECT_LT(after.view.points, before.view.points / 2);
+    EXPECT_EQ(after.light.points, before.light.points);
+    EXPECT_EQ(after.light.nodes.size(), before.light.nodes.size());
+    EXPECT_EQ(after.light_views[0].points, before.light_views[0].points);
 }
 
 TEST_F(CutChoice, TheSameForAFrameWhateverWasChosenBefore) {

@@ -16,7 +16,7 @@ namespace {
 struct FlyOptions {
     std::string input, path, report, frames_folder;
     DrawingOptions drawing;
-    bool wait = false, realtime = false, overwrite = false;
+    bool wait = false, realtime = false, flicker = false, overwrite = false;
 };
 
 /// Everything that can be wrong with the outputs, before long work starts.
@@ -40,6 +40,7 @@ Result<void> fly_command(const FlyOptions& options) {
                    open_pipeline(*device, source, options.drawing, drawing, std::move(scene)));
 
     FlightOptions flight_options{drawing.size, !options.realtime, {}, options.overwrite};
+    flight_options.flicker = options.flicker;
     if (!options.frames_folder.empty()) flight_options.frames_folder = options.frames_folder;
     LUCARNE_ASSIGN(const Flight flight, fly(*pipeline, path, flight_options));
     const FlightConditions conditions{options.input,
@@ -78,6 +79,8 @@ void add_fly(CLI::App& app, Command& chosen) {
         ->excludes(wait);
     command->add_option("--frames-dir", options->frames_folder,
                         "Write every frame there, frame_00001.png and so on");
+    command->add_flag("--flicker", options->flicker,
+                      "Also report every frame's mean luminance and how much surfaces' light changes");
     command->add_flag("--overwrite", options->overwrite, "Replace what exists");
     command->callback([options, &chosen] { chosen = [options] { return fly_command(*options); }; });
 }

@@ -1,9 +1,11 @@
 #include "viewer/flythrough/flight.h"
 
 #include <chrono>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "gi/compare/metrics.h"
 #include "io/core/progress.h"
 #include "viewer/rgba.h"
 
@@ -35,6 +37,15 @@ Result<void> write_frame(const Pipeline& pipeline, const FlightOptions& options,
                          without_alpha(rgba, options.size), options.overwrite);
 }
 
+/// The light of a frame, and against that of the frame before, which it becomes.
+bool measure(const Pipeline& pipeline, std::optional<SeenFrame>& before, FlownFrame& frame) {
+    SeenFrame now = seen_frame(pipeline);
+    frame.luminance = gi::mean_luminance(now.radiance);
+    if (before) frame.flicker = flicker_between(*before, now);
+    before = std::move(now);
+    return true;
+}
+
 }  // namespace
 
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
@@ -42,6 +53,7 @@ Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptio
     Progress progress(options.wait ? "flying" : "flying by the clock", options.wait ? path.frames() : 0,
                       "frames");
     FlightClock clock;
+    std::optional<SeenFrame> before;
     for (bool last = false; !last;) {
         const double since_start = options.wait
                                        ? static_cast<double>(flight.frames.size()) / path.frames_per_second
@@ -52,8 +64,9 @@ Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptio
         request.camera = path.at(path.start() + since_start);
         request.size = options.size;
         request.wait = options.wait;
-        FlownFrame frame{path.start() + since_start, {}};
+        FlownFrame frame{path.start() + since_start, {}, {}, {}};
         LUCARNE_ASSIGN(frame.stats, pipeline.render(request));
+        if (options.flicker) clock.while_stopped([&] { return measure(pipeline, before, frame); });
         flight.frames.push_back(std::move(frame));
         progress.add(1);
         if (options.frames_folder)

@@ -17,6 +17,7 @@ struct FlightOptions {
     bool wait = true;
     std::optional<std::filesystem::path> frames_folder;  ///< frame_00001.png and so on
     bool overwrite = false;
+    bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance, while the clock stands still
 };
 
 struct Flight {

@@ -78,15 +78,35 @@ void memory(const FlightConditions& conditions, std::span<const FlownFrame> fram
                                  {"last", resident.empty() ? 0 : resident.back()}};
 }
 
+/// Mean luminance along the flight, and how it flickers; nothing where neither was measured.
+void light(std::span<const FlownFrame> frames, Json& report) {
+    std::vector<double> luminance, change, matched;
+    for (const FlownFrame& frame : frames) {
+        if (frame.luminance) luminance.push_back(*frame.luminance);
+        if (!frame.flicker) continue;
+        change.push_back(frame.flicker->change);
+        matched.push_back(frame.flicker->matched);
+    }
+    if (luminance.empty()) return;
+    report["luminance"] = {{"mean", mean(luminance)}};
+    report["flicker"] = {{"mean", mean(change)},
+                         {"p95", quantile(change, 0.95)},
+                         {"max", largest(change)},
+                         {"matched", mean(matched)}};
+}
+
 Json each_frame(std::span<const FlownFrame> frames) {
     Json list = Json::array();
-    for (const FlownFrame& frame : frames)
+    for (const FlownFrame& frame : frames) {
         list.push_back({{"time", frame.time},
                         {"ms", frame.stats.seconds * 1e3},
                         {"points", frame.stats.ready_points},
                         {"complete", frame.stats.complete()},
                         {"cut_share", frame.stats.cut_share},
                         {"resident_memory", frame.stats.memory.resident}});
+        if (frame.luminance) list.back()["luminance"] = *frame.luminance;
+        if (frame.flicker) list.back()["flicker"] = frame.flicker->change;
+    }
     return list;
 }
 
@@ -128,6 +148,7 @@ Json flight_report(const FlightConditions& conditions, std::span<const FlownFram
     report["points_per_frame"] = points(frames);
     report["bytes_loaded"] = frames.empty() ? 0 : frames.back().stats.bytes_loaded;
     memory(conditions, frames, report);
+    light(frames, report);
     report["complete"] = {{"mean", mean(complete)},
                           {"least", complete.empty() ? 0 : *std::ranges::min_element(complete)},
                           {"last", complete.empty() ? 0 : complete.back()}};

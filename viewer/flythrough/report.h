@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "viewer/flythrough/flicker.h"
 #include "viewer/pipeline.h"
 
 namespace lucarne::viewer {
@@ -14,6 +16,9 @@ namespace lucarne::viewer {
 struct FlownFrame {
     double time = 0;  ///< on the path, s
     FrameStats stats;
+    // Where they were measured:
+    std::optional<double> luminance;  ///< mean of the picture, W/(sr m^2)
+    std::optional<Flicker> flicker;   ///< since the frame before
 };
 
 /// What was flown with.
