@@ -31,6 +31,7 @@ struct EngineSettings {
     uint32_t light_samples = 8;       ///< views a frame of lights that have a size and of the sky (light_samples.h)
     uint32_t samples = 64;            ///< reference: paths a pixel
     bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/vpl/README.md)
+    bool reuse = true;  ///< vpl: moving frames are averaged with those before (gi/vpl/history.h)
     uint64_t seed = 1;
 
     bool operator==(const EngineSettings&) const = default;
@@ -67,6 +68,7 @@ struct Frame {
     PassTimes& times;
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
+    bool moving = false;  ///< one of a motion: what the frame before knew may serve
     Progress* progress = nullptr;                    ///< of engines that report it; or none
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <unordered_set>
 
 #include <glm/common.hpp>
@@ -14,31 +16,14 @@ namespace {
 constexpr double kFocusCells = 32;  // the light cut's focus moves in steps of 1/32 of the root cube
 constexpr int kStepsPerOctave = 64, kMostSteps = 20 * kStepsPerOctave;
 
-constexpr uint64_t kLightShare = 2;  // the light's cuts take up to this part of the room
+// Parts of the room that cuts keep to with those chosen before them. What the lights see comes first: where
+// it is coarse, the outlines of what stands before a lamp are as wide as its discs, and hide light that all
+// bounces miss.
+constexpr double kLightViewRoom = 0.5, kLightRoom = 0.7;
 
 uint64_t at_step(uint64_t points, int step) {
     return static_cast<uint64_t>(
         std::max(1.0, std::exp2(-static_cast<double>(step) / kStepsPerOctave) * static_cast<double>(points)));
-}
-
-octree::Cut view_cut(const CutPurpose& purpose, uint64_t budget) {
-    return octree::view_cut(purpose.source, octree_view(purpose.camera, purpose.size), budget,
-                            purpose.budgets.pixel_spacing);
-}
-
-/// The cuts of the light, of at most `step` below `whole`, or below the budgets where there is none.
-void choose_light(const CutPurpose& purpose, const CutSet* whole, int step, CutSet& cuts) {
-    cuts.light_views.clear();
-    for (size_t i = 0; i < purpose.lights.size(); ++i)
-        cuts.light_views.push_back(
-            light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
-                           whole ? at_step(whole->light_views[i].points, step) : purpose.budgets.light_view));
-    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
-    const auto& root = purpose.source.header().root;
-    const double cell = root.size / kFocusCells;
-    const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
-    cuts.light = octree::light_cut(purpose.source, focus,
-                                   whole ? at_step(whole->light.points, step) : purpose.budgets.light);
 }
 
 bool fits(const CutPurpose& purpose, const CutSet& cuts, const CutRoom& room) {
@@ -79,27 +64,43 @@ uint64_t CutSet::points() const {
 }
 
 CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
-    CutSet whole;
-    choose_light(purpose, nullptr, 0, whole);
-    CutSet cuts = whole;
-    const CutRoom light_room{room.bytes / kLightShare, room.cost};
-    if (!fits(purpose, cuts, light_room)) {
-        light_step_ = least_step(light_step_, [&](int step) {
-            choose_light(purpose, &whole, step, cuts);
-            return fits(purpose, cuts, light_room);
-        });
-        choose_light(purpose, &whole, light_step_, cuts);
-    }
-    cuts.view = whole.view = view_cut(purpose, purpose.budgets.view);
-    if (!fits(purpose, cuts, room)) {
-        view_step_ = least_step(view_step_, [&](int step) {
-            cuts.view = view_cut(purpose, at_step(whole.view.points, step));
-            return fits(purpose, cuts, room);
-        });
-        cuts.view = view_cut(purpose, at_step(whole.view.points, view_step_));
-    }
-    cuts.share =
-        static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(whole.points(), 1));
+    const CutBudgets& budgets = purpose.budgets;
+    CutSet cuts;
+    uint64_t wanted = 0;
+    // Makes some of the cuts at their budget, then at ever smaller shares of what that took, until they fit.
+    const auto choose = [&](double part, int& step, std::span<octree::Cut> chosen, const auto& make) {
+        const CutRoom part_of_room{static_cast<uint64_t>(part * static_cast<double>(room.bytes)), room.cost};
+        std::vector<uint64_t> whole;
+        for (size_t i = 0; i < chosen.size(); ++i) {
+            chosen[i] = make(i, std::nullopt);
+            whole.push_back(chosen[i].points);
+            wanted += chosen[i].points;
+        }
+        if (fits(purpose, cuts, part_of_room)) return;
+        const auto make_at = [&](int tried) {
+            for (size_t i = 0; i < chosen.size(); ++i) chosen[i] = make(i, at_step(whole[i], tried));
+            return fits(purpose, cuts, part_of_room);
+        };
+        step = least_step(step, make_at);
+        make_at(step);
+    };
+    cuts.light_views.resize(purpose.lights.size());
+    choose(kLightViewRoom, light_view_step_, cuts.light_views, [&](size_t i, std::optional<uint64_t> points) {
+        return light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
+                              points.value_or(budgets.light_view));
+    });
+    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
+    const auto& root = purpose.source.header().root;
+    const double cell = root.size / kFocusCells;
+    const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
+    choose(kLightRoom, light_step_, std::span(&cuts.light, 1), [&](size_t, std::optional<uint64_t> points) {
+        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light));
+    });
+    const octree::View eye = octree_view(purpose.camera, purpose.size);
+    choose(1, view_step_, std::span(&cuts.view, 1), [&](size_t, std::optional<uint64_t> points) {
+        return octree::view_cut(purpose.source, eye, points.value_or(budgets.view), budgets.pixel_spacing);
+    });
+    cuts.share = static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(wanted, 1));
     return cuts;
 }
 

@@ -38,18 +38,18 @@ struct CutRoom {
 };
 
 /// Chooses the cuts of one frame after another, so that together they fit the room: nothing that is chosen
-/// has to be refused, which would take whole nodes from the picture at once. Where they do not fit, first the
-/// cuts of the light get the same share of the points that they would take without a limit, the largest that
-/// fits half of the room, and then the view cut what fits beside them, both in steps of 1 %. So bounced light
-/// does not follow the view: while the camera glides its cuts hold. The same cuts for the same purpose and
-/// room, whatever was chosen before.
+/// has to be refused, which would take whole nodes from the picture at once. Where they do not fit, the
+/// lights' views get the share of the points that they would take without a limit that fits half of the room,
+/// then the light cut what fits .7 of it beside them, then the view cut what is left, in steps of 1 %. So
+/// light does not follow the view: while the camera glides, its cuts hold. The same cuts for the same purpose
+/// and room, whatever was chosen before.
 class CutChooser {
  public:
     CutSet choose(const CutPurpose& purpose, const CutRoom& room);
 
  private:
-    int light_step_ = 1,
-        view_step_ = 1;  ///< the last frame's shares below 1; the next are looked for around them
+    // The last frame's steps below what was wanted; the next are looked for around them.
+    int light_view_step_ = 1, light_step_ = 1, view_step_ = 1;
 };
 
 }  // namespace lucarne::viewer

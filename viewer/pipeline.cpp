@@ -27,7 +27,7 @@ constexpr double kUploadShare = 0.25;
 constexpr size_t kNodesAtOnce = 64;  // packed in parallel before they are uploaded
 // Of the device's memory for surfels; the light cut's are held a second time by the shadow maps, and pictures
 // and maps take the rest.
-constexpr uint64_t kPoolShare = 4;
+constexpr double kPoolShare = 0.375;
 constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // some nodes of usual size
 
 uint64_t pages(uint64_t surfels) {
@@ -61,6 +61,7 @@ struct Pipeline::State {
     Result<void> stream(bool wait);
     Result<void> take_arrivals(bool wait);
     Result<void> apply(std::span<const ResidencyEvent> events);
+    uint64_t pool_surfels() const;
     uint64_t directory_bytes() const { return source->nodes().size_bytes(); }
     Result<void> build_cut(const octree::Cut& cut, gi::DeviceCut& target);
     Result<void> build_cuts();
@@ -101,6 +102,15 @@ struct Pipeline::State {
     bool averaged = false;             // the last picture is `mean`
     double exposure_ev = 0;
 };
+
+/// What the caps allow, and no more than the whole cloud.
+uint64_t Pipeline::State::pool_surfels() const {
+    uint64_t whole = 0;
+    for (const octree::NodeInfo& node : source->nodes()) whole += pool_bytes(node.count);
+    const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(options.device_memory));
+    const uint64_t bytes = std::min({whole, share, device.info().max_texel_bytes});
+    return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
+}
 
 /// Begins with nothing resident. What fits the stream's cap fits the pool, because a node costs its pages in
 /// both. A node on its way is held as records and, at most all that were polled, packed.
@@ -219,6 +229,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                     times,
                     scene.environment,
                     {local.to_local(header.min), local.to_local(header.max)},
+                    request.moving,
                     request.progress};
     LUCARNE_TRY(engine->prepare(frame));
     return engine->render(frame);
@@ -284,8 +295,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
                                          bytes_text(options.memory), bytes_text(state.directory_bytes())),
                              "allow more");
     device.set_memory_cap(options.device_memory);
-    const uint64_t pool = std::min(device.info().max_texel_bytes, options.device_memory / kPoolShare);
-    const uint64_t capacity = std::min<uint64_t>(pool / sizeof(gi::PackedSurfel), UINT32_MAX);
+    const uint64_t capacity = state.pool_surfels();
     LUCARNE_ASSIGN(state.pool, gi::SurfelPool::create(device, static_cast<uint32_t>(capacity)));
     const auto& header = state.source->header();
     state.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);

@@ -17,7 +17,7 @@ namespace lucarne::viewer {
 /// Caps that hold whatever the cloud's size, bytes.
 struct PipelineOptions {
     uint64_t memory = uint64_t{512} << 20;       ///< of the host: the octree's directory, nodes on their way
-    uint64_t device_memory = uint64_t{2} << 30;  ///< of all buffers; a quarter of it holds surfels
+    uint64_t device_memory = uint64_t{2} << 30;  ///< of all buffers; up to 3/8 of it hold surfels
     unsigned load_threads = 2;
 };
 
@@ -35,6 +35,7 @@ struct FrameRequest {
     bool wait = false;  ///< loads every cut whole first: the same pixels on every run
     bool accumulate =
         false;  ///< averages with the frames before for as long as nothing that is drawn changes
+    bool moving = false;  ///< one of a motion: the engine may use what it knows from the frames before
     Progress* progress = nullptr;  ///< of pixels, for an engine that takes long (EngineInfo)
 };
 

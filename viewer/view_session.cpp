@@ -138,6 +138,7 @@ void ViewSession::send_request() {
     request.frame.camera = model_.rig.camera();
     request.frame.size = window_.framebuffer();
     request.frame.accumulate = !request.moving;
+    request.frame.moving = request.moving;
     if (request.moving) {
         request.frame.size = quality_.size(request.frame.size);
         quality_.reduce(request.settings, request.budgets);

@@ -187,7 +187,7 @@ void Buffer::bind_texels(uint32_t unit, TexelView view) const {
     uint32_t& texture = textures_[static_cast<size_t>(view)];
     if (!texture) {
         glCreateTextures(GL_TEXTURE_BUFFER, 1, &texture);
-        constexpr GLenum kFormats[] = {GL_R32UI, GL_RGBA32UI, GL_RGBA32F};
+        constexpr GLenum kFormats[] = {GL_R32UI, GL_RG32UI, GL_RGBA32UI, GL_RGBA32F};
         glTextureBuffer(texture, kFormats[static_cast<size_t>(view)], id_);
     }
     glBindTextureUnit(unit, texture);

@@ -26,7 +26,7 @@ struct DeviceInfo {
 class Device;
 
 /// How a buffer's words look to `usamplerBuffer`, or to `samplerBuffer` for floats.
-enum class TexelView : uint8_t { one_word, four_words, four_floats };
+enum class TexelView : uint8_t { one_word, two_words, four_words, four_floats };
 
 /// A shader storage buffer. Move-only; frees its memory and its share of the device's budget, and so must go
 /// before the device does.
@@ -65,7 +65,7 @@ class Buffer {
     Device* device_ = nullptr;
     uint32_t id_ = 0;
     size_t bytes_ = 0;
-    mutable std::array<uint32_t, 3> textures_{};  ///< made when first bound, one a view
+    mutable std::array<uint32_t, 4> textures_{};  ///< made when first bound, one a view
 };
 
 /// A compiled compute program; owned by the device's cache.

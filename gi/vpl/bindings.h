@@ -14,7 +14,9 @@ inline constexpr uint32_t kBindPoints = 7;  // Halton points
 inline constexpr uint32_t kBindMeetings = 7;
 inline constexpr uint32_t kBindImportance = 8;
 inline constexpr uint32_t kBindSources = 8;
-inline constexpr uint32_t kBindLights = 9;  // VplLight[]
+inline constexpr uint32_t kBindHistory = 8;  // history.glsl
+inline constexpr uint32_t kBindLights = 9;   // VplLight[]
+inline constexpr uint32_t kBindHistorySurfaces = 9;
 inline constexpr uint32_t kBindAtlas = 10;
 inline constexpr uint32_t kBindCoarse = 11;
 inline constexpr uint32_t kBindQueue = 11;
@@ -39,5 +41,7 @@ inline constexpr uint32_t kUnitOwnDiffuse = 10;
 inline constexpr uint32_t kUnitOwnSpecular = 11;
 inline constexpr uint32_t kUnitSources = 12;
 inline constexpr uint32_t kUnitOdds = 13;
+inline constexpr uint32_t kUnitHistory = 14;
+inline constexpr uint32_t kUnitHistorySurfaces = 15;
 
 }  // namespace lucarne::gi::vpl

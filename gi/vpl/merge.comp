@@ -3,6 +3,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/vpl/join.glsl"
+#ifdef LUCARNE_HISTORY
+#include "gi/vpl/history.glsl"
+#endif
 
 layout(binding = 8) uniform samplerBuffer diffuse_panes;
 layout(binding = 9) uniform samplerBuffer specular_panes;
@@ -36,8 +39,16 @@ void main() {
 #endif
         }
         float panes = float(n * n - bitCount(joint.y) + lacking);
-        Reflectance r = pixel_receiver(pixel, texel).reflectance;
-        light = (irradiance * r.kd / kPi + specular) / panes;
+        Receiver receiver = pixel_receiver(pixel, texel);
+        irradiance /= panes;
+#ifdef LUCARNE_HISTORY
+        irradiance = with_history(index, receiver.position, receiver.normal, texel.depth, irradiance);
+#endif
+        light = irradiance * receiver.reflectance.kd / kPi + specular / panes;
     }
+#ifdef LUCARNE_HISTORY
+    else
+        next_surfaces[index] = uvec2(0u);
+#endif
     radiance[index] = vec4(light, 1.0);
 }

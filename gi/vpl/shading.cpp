@@ -67,8 +67,10 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
     return {};
 }
 
-Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes) {
-    LUCARNE_ASSIGN(const Program* merge, frame.device.program("gi/vpl/merge.comp", defines(panes)));
+Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history) {
+    Defines how = defines(panes);
+    if (history) how.emplace_back("LUCARNE_HISTORY", "1");
+    LUCARNE_ASSIGN(const Program* merge, frame.device.program("gi/vpl/merge.comp", how));
     materials.bind(kBindMaterials);
     panes.joints.bind(kBindJoints);
     panes.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
@@ -77,7 +79,9 @@ Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& pan
     panes.own_specular.bind_texels(kUnitOwnSpecular, TexelView::four_floats);
     frame.radiance.bind(kBindRadiance);
     bind_pixels(frame, *merge);
+    if (history) history->bind(frame, *merge);
     merge->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    if (history) history->end(frame);
     return {};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gi/engine.h"
+#include "gi/vpl/history.h"
 #include "gi/vpl/seeding.h"
 #include "gi/vpl/shadow_maps.h"
 
@@ -24,7 +25,8 @@ Result<void> join_panes(Frame& frame, bool glossy, Panes& target);
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
                          Panes& target);
 
-/// Writes the light of all panes to frame.radiance. Errors: a shader that fails.
-Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes);
+/// Writes the light of all panes to frame.radiance, with what `history` knows if there is one (that has begun
+/// the frame). Errors: a shader that fails.
+Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history);
 
 }  // namespace lucarne::gi::vpl

@@ -26,7 +26,7 @@ constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 // Places of the queue: an atlas of 2048 x 2048 has some 2M pairs; the least are what one block may need. On a
 // device with little memory it takes no more than this share.
-constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 8;
+constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 16;
 constexpr uint32_t kLargeGroups = 65535;  // the most that OpenGL promises; they share out the large discs
 constexpr uint32_t kLargeGroup = 16;      // local size of splat_large.comp
 

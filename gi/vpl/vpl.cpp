@@ -57,6 +57,7 @@ class VplEngine : public Engine {
     ShadowMaps maps_;  ///< its atlas is a bounce's while that is drawn or read
     Basis basis_;      ///< of bounces_
     Panes panes_;
+    History history_;
     Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
 };
@@ -153,7 +154,10 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         LUCARNE_TRY(done);
     }
     basis_ = std::move(basis);
-    return pass(frame, "VPL merge", [&] { return merge_panes(frame, materials_, panes_); });
+    const bool reuse = frame.moving && s.reuse;
+    if (reuse) LUCARNE_TRY(history_.begin(frame, !held));
+    return pass(frame, "VPL merge",
+                [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
 }
 
 /// Emission, background and what the lights' first reflection sends to the eye.

@@ -45,6 +45,7 @@ struct LitOptions {
     std::vector<Material> materials = {make_material()};
     glm::vec3 background{0.0f};
     EngineSettings settings;
+    bool moving = false;
 };
 
 /// One cut, the whole cloud, serves as view cut, light-view cuts and light cut.
@@ -78,6 +79,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 0,
                 *radiance,
                 times};
+    frame.moving = options.moving;
     frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
     const auto prepared = engine.prepare(frame);
     EXPECT_TRUE(prepared) << prepared.error().line();

@@ -72,6 +72,30 @@ TEST(Fly, ByTheClockEndsWithThePathAndNeverWaits) {
     EXPECT_EQ(before, 1.0) << "the last frame is the path's end";
 }
 
+TEST(Fly, WhatFramesTakeOverFromEachOtherLowersTheFlickerAndKeepsTheLight) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder);
+    write(folder / "path.json", R"({"frames_per_second": 10, "keys": [
+        {"time": 0, "position": [2.7, 0.4, 2.7], "target": [2.7, 5, 2.4]},
+        {"time": 1.5, "position": [2.5, 0.6, 2.8], "target": [2.8, 5, 2.3]}]})");
+    const auto report = [&](const std::string& name, const std::string& arguments) {
+        const Outcome flown =
+            test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --flicker --size 96x72" +
+                          " --scene " + LUCARNE_SOURCE_DIR + "/data/scenes/cornell.json --only-bounce 1 " +
+                          arguments + " -o " + (folder / name));
+        EXPECT_EQ(flown.code, 0) << flown.output;
+        return nlohmann::json::parse(bytes_of(folder / name));
+    };
+    const auto alone = report("alone.json", "--no-reuse"), together = report("together.json", "");
+    const double before = alone["flicker"]["mean"], after = together["flicker"]["mean"];
+    const double light = alone["luminance"]["mean"], kept = together["luminance"]["mean"];
+    std::printf("flicker %.4f each by itself, %.4f together; light %+.2f %%\n", before, after,
+                100 * (kept / light - 1));
+    EXPECT_GT(alone["flicker"]["matched"].get<double>(), 0.9);
+    EXPECT_LT(after, 0.7 * before);
+    EXPECT_NEAR(kept / light, 1, 0.01);
+}
+
 TEST(Fly, MistakesInThePathAndTheArgumentsAreOneLineAndTheRightCode) {
     const TemporaryFolder folder;
     const std::string cache = folder / "none.luc", path = folder / "path.json",

@@ -54,6 +54,8 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_flag(
         "--best-candidate", options.best_candidate,
         "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
+    command.add_flag("--no-reuse", options.no_reuse,
+                     "vpl: light every frame of a motion by itself, without what the frames before knew");
     command.add_option("--interleave", options.interleave, "Pixels along a side that share out the lights")
         ->check(CLI::IsMember({1, 2, 4}))
         ->type_name("N");
@@ -98,6 +100,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     override_with(engine.vpls, options.vpls);
     override_with(engine.interleave, options.interleave);
     engine.best_candidate = options.best_candidate;
+    engine.reuse = !options.no_reuse;
     override_with(engine.atlas, options.atlas);
     override_with(engine.samples, options.samples);
     override_with(engine.seed, options.seed);

@@ -64,6 +64,7 @@ Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptio
         request.camera = path.at(path.start() + since_start);
         request.size = options.size;
         request.wait = options.wait;
+        request.moving = true;
         FlownFrame frame{path.start() + since_start, {}, {}, {}};
         LUCARNE_ASSIGN(frame.stats, pipeline.render(request));
         if (options.flicker) clock.while_stopped([&] { return measure(pipeline, before, frame); });

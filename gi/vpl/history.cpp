@@ -1,0 +1,47 @@
+#include "gi/vpl/history.h"
+
+#include <utility>
+
+#include "gi/gbuffer/uniforms.h"
+#include "gi/vpl/bindings.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+// Frames that the average remembers while the VPLs hold: what differs between them is which panes a point is
+// lit by and from where. With other VPLs the old light has to go, within a blink of the eye.
+constexpr float kFramesHeld = 8, kFramesAnew = 8;
+
+}  // namespace
+
+History::Basis History::basis_of(const Frame& frame) {
+    return {frame.settings, frame.lights, frame.materials, frame.bounds, frame.environment.get()};
+}
+
+Result<void> History::begin(const Frame& frame, bool anew) {
+    const size_t pixels = size_t{frame.camera.width} * frame.camera.height;
+    if (!(basis_of(frame) == basis_)) camera_ = {};
+    LUCARNE_TRY(frame.device.reserve(next_.light, pixels * sizeof(glm::vec4), "the last frame's light"));
+    LUCARNE_TRY(
+        frame.device.reserve(next_.surfaces, pixels * 2 * sizeof(uint32_t), "the last frame's light"));
+    most_frames_ = anew ? kFramesAnew : kFramesHeld;
+    return {};
+}
+
+void History::bind(const Frame& frame, const Program& merge) const {
+    const Side& last = camera_.width ? last_ : next_;  // never read where there is none
+    last.light.bind_texels(kUnitHistory, TexelView::four_floats);
+    last.surfaces.bind_texels(kUnitHistorySurfaces, TexelView::two_words);
+    next_.light.bind(kBindHistory);
+    next_.surfaces.bind(kBindHistorySurfaces);
+    set(merge, "last_camera", camera_.width ? camera_ : frame.camera);
+    merge.set("most_frames", camera_.width ? most_frames_ : 0.0f);
+}
+
+void History::end(const Frame& frame) {
+    std::swap(last_, next_);
+    camera_ = frame.camera;
+    basis_ = basis_of(frame);
+}
+
+}  // namespace lucarne::gi::vpl

@@ -1,0 +1,57 @@
+// Temporal reuse: the irradiance of a pixel is averaged with what the last frame knew of the same point, found by
+// projecting it there (reverse reprojection: Nehab, Sander, Lawrence, Tatarchuk, Isidoro 2007). Nothing of irradiance
+// depends on the viewer or on textures. Of the four pixels around the point those count that show its surface; where none
+// does, the light is this frame's alone. While the VPLs hold the average is one over positions of the camera, in which
+// the patterns of panes cancel.
+layout(binding = 14) uniform samplerBuffer last_light;      // irradiance, W/m^2; frames in it
+layout(binding = 15) uniform usamplerBuffer last_surfaces;  // depth, normal
+layout(std430, binding = 8) writeonly buffer NextLight { vec4 next_light[]; };
+layout(std430, binding = 9) writeonly buffer NextSurfaces { uvec2 next_surfaces[]; };
+
+uniform CameraView last_camera;
+uniform float most_frames;  // that an average takes of the past; 0: there is none
+
+const float kSameNormal = 0.9;  // cosine of 25 degrees
+const float kSamePlane = 1.0;   // pixel widths
+
+// Light and frames of a point in the last frame; no frames where it did not see it.
+vec4 last_known(vec3 position, vec3 normal) {
+    vec3 offset = position - last_camera.origin.xyz;
+    float depth = dot(offset, last_camera.forward.xyz);
+    vec2 size = vec2(last_camera.width, last_camera.height);
+    vec2 ndc = vec2(dot(offset, last_camera.right.xyz) / dot(last_camera.right.xyz, last_camera.right.xyz),
+                    -dot(offset, last_camera.up.xyz) / dot(last_camera.up.xyz, last_camera.up.xyz)) /
+               depth;
+    if (most_frames <= 0.0 || !(depth > 0.0) || any(greaterThanEqual(abs(ndc), vec2(1.0)))) return vec4(0.0);
+    vec2 at = (ndc * 0.5 + 0.5) * size - 0.5;
+    vec2 corner = floor(at), share = at - corner;
+    float pixel_width = 2.0 * length(last_camera.up.xyz) / size.y * depth;
+    vec4 sum = vec4(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        vec2 step = vec2(i & 1, i >> 1);
+        ivec2 pixel = ivec2(corner + step);
+        if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(size)))) continue;
+        int index = pixel.y * int(last_camera.width) + pixel.x;
+        uvec2 surface = texelFetch(last_surfaces, index).xy;
+        float there = uintBitsToFloat(surface.x);
+        vec3 seen = last_camera.origin.xyz + there * view_ray(last_camera, vec2(pixel) + 0.5);
+        bool same = there > 0.0 && abs(dot(normal, seen - position)) < kSamePlane * pixel_width &&
+                    dot(decode_octahedral(surface.y), normal) > kSameNormal;
+        vec2 near = mix(1.0 - share, share, step);
+        float weight = same ? near.x * near.y : 0.0;
+        sum += weight * texelFetch(last_light, index);
+        weights += weight;
+    }
+    // A sliver of one pixel says too little of the point.
+    return weights > 0.05 ? sum / weights : vec4(0.0);
+}
+
+vec3 with_history(uint index, vec3 position, vec3 normal, float depth, vec3 irradiance) {
+    vec4 known = last_known(position, normal);
+    float frames = min(known.w, most_frames - 1.0) + 1.0;
+    vec3 light = known.w > 0.0 ? known.xyz + (irradiance - known.xyz) / frames : irradiance;
+    next_light[index] = vec4(light, known.w > 0.0 ? frames : 1.0);
+    next_surfaces[index] = uvec2(floatBitsToUint(depth), encode_octahedral(normal));
+    return light;
+}

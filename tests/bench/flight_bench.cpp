@@ -1,0 +1,168 @@
+// Out of core and global illumination together at full size, as a table: `./run headline [FOLDER]`. A virtual
+// scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB) and flown
+// through with three bounces under caps of 128 MiB, a twelfth of the cache; then with the whole cloud on the
+// device, at the same places; then slowly, for the flicker. A program and no test: misses are printed.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "viewer/commands/drawing_options.h"
+#include "viewer/flythrough/flight.h"
+#include "viewer/input.h"
+
+namespace lucarne {
+namespace {
+
+constexpr uint64_t kCap = uint64_t{128} << 20;
+constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
+constexpr const char* kPath = LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
+
+void row(const std::string& what, double value, const std::string& unit, double target) {
+    fmt::print("{:<66} {:>9.2f} {:<4} target {:>6.4g}  {}\n", what, value, unit, target,
+               std::abs(value) <= target ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+void figure(const std::string& what, double value, const std::string& unit) {
+    fmt::print("{:<66} {:>9.2f} {}\n", what, value, unit);
+    std::fflush(stdout);
+}
+
+Result<std::string> cache_in(const std::filesystem::path& folder) {
+    const std::string scan = folder / "nave40m.ply", cache = folder / "nave40m.luc";
+    if (std::filesystem::exists(cache)) return cache;
+    for (const std::string& arguments : {"generate nave --even --normals --points 40M --overwrite -o " + scan,
+                                         "convert " + scan + " -o " + cache})
+        if (std::system((LUCARNE_BINARY " " + arguments).c_str()) != 0) return failed(arguments, "failed");
+    std::filesystem::remove(scan);
+    return cache;
+}
+
+struct Flown {
+    std::vector<viewer::FlownFrame> frames;
+
+    double luminance() const {
+        double sum = 0;
+        for (const auto& frame : frames) sum += *frame.luminance;
+        return sum / static_cast<double>(frames.size());
+    }
+    double flicker() const {
+        double sum = 0;
+        for (const auto& frame : frames)
+            if (frame.flicker) sum += frame.flicker->change;
+        return sum / static_cast<double>(frames.size() - 1);
+    }
+    /// The most of a member of MemoryUse over frames [first, end), MiB.
+    double most(uint64_t viewer::MemoryUse::*member, size_t first, size_t end) const {
+        uint64_t most = 0;
+        for (size_t i = first; i < end; ++i) most = std::max(most, frames[i].stats.memory.*member);
+        return static_cast<double>(most) / 1048576;
+    }
+    double most(uint64_t viewer::MemoryUse::*member) const { return most(member, 0, frames.size()); }
+};
+
+struct Way {
+    double frames_per_second = 1, seconds = 13;
+    bool wait = true;
+    ImageSize size{384, 216};
+};
+
+/// A flight with a device of its own.
+template <class Change>
+Result<Flown> fly(const std::string& cache, const Way& way, const viewer::PipelineOptions& caps,
+                  const Change& change) {
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    LUCARNE_ASSIGN(const auto source, viewer::open_input(cache));
+    viewer::DrawingOptions options;
+    options.scene = kScene;
+    LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
+    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, source->header()));
+    drawing.caps = caps;
+    drawing.preset.engine.bounces = 3;
+    change(drawing.preset);
+    LUCARNE_ASSIGN(const auto pipeline,
+                   viewer::open_pipeline(*device, source, options, drawing, std::move(scene)));
+    LUCARNE_ASSIGN(viewer::CameraPath path, viewer::load_path(kPath));
+    path.frames_per_second = way.frames_per_second;
+    while (path.keys.size() > 2 && path.keys.back().time > way.seconds) path.keys.pop_back();
+    viewer::FlightOptions how{way.size, way.wait, {}, false, true};
+    LUCARNE_ASSIGN(viewer::Flight flight, viewer::fly(*pipeline, path, how));
+    return Flown{std::move(flight.frames)};
+}
+
+Result<void> energy(const std::string& cache) {
+    const auto as_is = [](viewer::Preset&) {};
+    const double bytes = static_cast<double>(std::filesystem::file_size(cache));
+    const viewer::PipelineOptions caps{kCap, kCap, 2};
+    LUCARNE_ASSIGN(const Flown capped, fly(cache, {}, caps, as_is));
+    figure("the cache over each of the caps of 128 MiB", bytes / static_cast<double>(kCap), "times");
+    row("memory of the stream on the host", capped.most(&viewer::MemoryUse::host), "MiB", 128);
+    row("memory of the device, all buffers", capped.most(&viewer::MemoryUse::device), "MiB", 128);
+    const size_t frames = capped.frames.size(), half = frames / 2;
+    figure("resident memory of the process (this device is software)",
+           capped.most(&viewer::MemoryUse::resident), "MiB");
+    row("the same, later half of the flight over the first",
+        std::max(0.0, capped.most(&viewer::MemoryUse::resident, half, frames) -
+                          capped.most(&viewer::MemoryUse::resident, 0, half)),
+        "MiB", 16);
+    const viewer::PipelineOptions all{uint64_t{4} << 30, uint64_t{16} << 30, 2};
+    LUCARNE_ASSIGN(const Flown same, fly(cache, {}, all, as_is));
+    row("energy against the same budgets without caps", 100 * (capped.luminance() / same.luminance() - 1),
+        "%", 3);
+    // As fine as this device's buffers let it: what casts light and shadow is held in one of 16 bytes a
+    // surfel.
+    const auto fine = [](viewer::Preset& preset) {
+        preset.budgets = {
+            .view = 16'000'000, .light_view = 16'000'000, .light = 8'000'000, .pixel_spacing = 0.5};
+    };
+    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5}, all, fine));
+    double of_capped = 0;
+    for (size_t i = 0; i < whole.frames.size(); ++i) of_capped += *capped.frames[2 * i].luminance;
+    row("energy against the whole cloud resident, cuts 8 to 16 times as fine",
+        100 * (of_capped / static_cast<double>(whole.frames.size()) / whole.luminance() - 1), "%", 3);
+    return {};
+}
+
+Result<void> flicker(const std::string& cache) {
+    const viewer::PipelineOptions caps{kCap, kCap, 2};
+    for (const bool wait : {true, false})
+        for (const bool reuse : {false, true})
+            for (const int32_t only : {-1, 1}) {
+                const Way slowly{.frames_per_second = 12, .seconds = 3, .wait = wait};
+                LUCARNE_ASSIGN(const Flown flown, fly(cache, slowly, caps, [&](viewer::Preset& preset) {
+                                   preset.engine.reuse = reuse;
+                                   preset.engine.only_bounce = only;
+                               }));
+                figure(fmt::format("flicker, {}, {}, {} ({} frames)",
+                                   wait ? "every cut whole" : "nodes arriving",
+                                   only < 0 ? "all light" : "bounce 1", reuse ? "reuse" : "no reuse",
+                                   flown.frames.size()),
+                       100 * flown.flicker(), "%");
+            }
+    return {};
+}
+
+Result<void> measure(const std::filesystem::path& folder) {
+    LUCARNE_ASSIGN(const std::string cache, cache_in(folder));
+    LUCARNE_TRY(energy(cache));
+    return flicker(cache);
+}
+
+}  // namespace
+}  // namespace lucarne
+
+int main(int argc, char** argv) {
+    std::string name = (std::filesystem::temp_directory_path() / "lucarne-headline-XXXXXX").string();
+    const bool own = argc < 2;
+    if (own && !mkdtemp(name.data())) return 1;
+    const std::filesystem::path folder = own ? name : argv[1];
+    const auto done = lucarne::measure(folder);
+    if (own) std::filesystem::remove_all(folder);
+    if (!done) fmt::print(stderr, "lucarne_headline: {}\n", done.error().line());
+    return done ? 0 : 1;
+}
