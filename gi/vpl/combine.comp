@@ -37,7 +37,8 @@ void main() {
         float chance = luminance(intensity) * arriving.geometry / sum;
         density += chance;
         if (i == index) own = chance;
-        irradiance += intensity * arriving.form_factor;
+        // As points, which the races draw by: what is near is bounded by the density, and discs would send less there.
+        irradiance += intensity * arriving.geometry;
     }
     // Where its own race would not come by this rule (nearer to its parent's plane than surfaces can be told apart), what
     // the others send must not count, or it would count twice.
