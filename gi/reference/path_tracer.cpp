@@ -149,7 +149,8 @@ PathTracer::Vertex PathTracer::arrive(const Vertex& from, const Ray& ray) const 
 SurfelSampler::Density PathTracer::density(const SurfelSampler& sampler, const Vertex& from, const Ray& ray,
                                            uint32_t drawn) const {
     const float behind = kSheetThickness * ray.hit->radius / std::max(std::abs(ray.side), kGrazing);
-    return sampler.density(from.origin, ray.direction, ray.distance + behind, drawn);
+    const float begin = std::max(0.0f, .999f * ray.distance - ray.hit->radius);  // a margin for rounding
+    return sampler.density(from.origin, ray.direction, begin, ray.distance + behind, drawn);
 }
 
 /// What the light of one surfel becomes here, emitted or of sharp lights as `sampler` has it.

@@ -41,11 +41,11 @@ SurfelSampler::Draw SurfelSampler::draw(Random& random) const {
     return {index, point_on_disc(surfel, random)};
 }
 
-SurfelSampler::Density SurfelSampler::density(const glm::vec3& origin, const glm::vec3& direction, float end,
-                                              uint32_t drawn) const {
+SurfelSampler::Density SurfelSampler::density(const glm::vec3& origin, const glm::vec3& direction,
+                                              float begin, float end, uint32_t drawn) const {
     Density result;
     if (empty()) return result;
-    surfels_->each_crossed(origin, direction, end, [&](uint32_t index) {
+    surfels_->each_crossed(origin, direction, begin, end, [&](uint32_t index) {
         const Surfel& surfel = surfels_->surfels()[index];
         const float cosine = glm::dot(surfel.normal, direction);
         const float distance = glm::dot(surfel.normal, surfel.position - origin) / cosine;

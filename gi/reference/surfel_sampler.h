@@ -40,8 +40,8 @@ class SurfelSampler {
         float pdf = 0;         ///< 1/sr, with which draws that count take this direction
         bool crossed = false;  ///< whether `drawn` is among the discs crossed
     };
-    /// Of a unit direction whose ray ends at `end`, m.
-    Density density(const glm::vec3& origin, const glm::vec3& direction, float end,
+    /// Of a unit direction whose ray meets nothing before `begin` and ends at `end`, m.
+    Density density(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
                     uint32_t drawn = kNoSurfel) const;
 
  private:

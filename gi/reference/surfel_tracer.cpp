@@ -114,7 +114,7 @@ bool SurfelTracer::occluded_along(const glm::vec3& origin, const glm::vec3& dire
     return any_hit(embree_->scene, make_ray(origin, direction, std::numeric_limits<float>::infinity()));
 }
 
-void SurfelTracer::each_crossed(const glm::vec3& origin, const glm::vec3& direction, float end,
+void SurfelTracer::each_crossed(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
                                 const std::function<void(uint32_t)>& visit) const {
     struct Context : RTCIntersectContext {
         const std::function<void(uint32_t)>* visit;
@@ -126,6 +126,7 @@ void SurfelTracer::each_crossed(const glm::vec3& origin, const glm::vec3& direct
         found->valid[0] = 0;  // no hit: the ray goes on
     };
     RTCRay ray = make_ray(origin, direction, end);
+    ray.tnear = begin;
     rtcOccluded1(embree_->scene, &context, &ray);
 }
 

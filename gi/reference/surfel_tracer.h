@@ -39,9 +39,9 @@ class SurfelTracer {
     /// Whether anything stands on the whole ray.
     bool occluded_along(const glm::vec3& origin, const glm::vec3& direction) const;
 
-    /// Calls visit(index) once for every surfel on the ray up to `end`, m, in no order that is promised but
-    /// always the same.
-    void each_crossed(const glm::vec3& origin, const glm::vec3& direction, float end,
+    /// Calls visit(index) once for every surfel on the ray from `begin` to `end`, m, in no order that is
+    /// promised but always the same.
+    void each_crossed(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
                       const std::function<void(uint32_t)>& visit) const;
 
     /// Area of all discs over the area of the surface (the sum of the surfels' shares), 0 where that is
