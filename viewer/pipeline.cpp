@@ -67,6 +67,8 @@ struct Pipeline::State {
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
     Result<void> finish(const FrameRequest& request);
+    Result<void> make_picture(const FrameRequest& request);
+    bool shrink_pool();
     FrameStats stats(double seconds) const;
 
     gi::Device& device;
@@ -257,6 +259,33 @@ Result<void> Pipeline::State::finish(const FrameRequest& request) {
     return {};
 }
 
+Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
+    times.begin("load");
+    LUCARNE_TRY(stream(request.wait));
+    times.end();
+    if (cuts_stale) {
+        times.begin("upload of cuts");
+        LUCARNE_TRY(build_cuts());
+        times.end();
+        accumulated = 0;
+    }
+    if (!request.accumulate) accumulated = 0;
+    LUCARNE_TRY(draw(request));
+    return finish(request);
+}
+
+/// Gives a quarter of the pool back to the device; false when little is left of it.
+bool Pipeline::State::shrink_pool() {
+    const uint64_t capacity = uint64_t{pool.capacity()} * 3 / 4;
+    if (capacity < pool_surfels() / 16 + gi::SurfelPool::kPageSurfels) return false;
+    pool = {};
+    auto smaller = gi::SurfelPool::create(device, static_cast<uint32_t>(capacity));
+    if (!smaller) return false;
+    pool = std::move(*smaller);
+    start_stream();
+    return true;
+}
+
 FrameStats Pipeline::State::stats(double seconds) const {
     FrameStats result;
     result.passes = times.passes();
@@ -381,18 +410,11 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         state.accumulated = 0;
     }
     state.times.end();
-    state.times.begin("load");
-    LUCARNE_TRY(state.stream(request.wait));
-    state.times.end();
-    if (state.cuts_stale) {
-        state.times.begin("upload of cuts");
-        LUCARNE_TRY(state.build_cuts());
-        state.times.end();
-        state.accumulated = 0;
+    for (auto made = state.make_picture(request); !made; made = state.make_picture(request)) {
+        // Pictures and maps may need more than what is beside the pool.
+        if (!state.device.take_refusal() || !state.shrink_pool()) return tl::make_unexpected(made.error());
+        state.choose_cuts(request);
     }
-    if (!request.accumulate) state.accumulated = 0;
-    LUCARNE_TRY(state.draw(request));
-    LUCARNE_TRY(state.finish(request));
     state.last = request;
     state.changed = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -38,6 +39,7 @@ struct Device::State {
     std::unique_ptr<HeadlessContext> context;  // empty: a window's; last to go
     DeviceInfo info;
     uint64_t cap = UINT64_MAX, used = 0;
+    bool refused = false;
     std::map<std::tuple<std::string, Defines>, std::unique_ptr<Program>> programs;
 };
 
@@ -92,6 +94,9 @@ uint64_t Device::memory_cap() const {
 uint64_t Device::memory_used() const {
     return state_->used;
 }
+bool Device::take_refusal() {
+    return std::exchange(state_->refused, false);
+}
 void Device::finish() {
     glFinish();
 }
@@ -112,6 +117,7 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
                                   state_->info.renderer, most >> 20),
                       kMemoryTodo);
     bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
+    state_->refused |= bytes > state_->cap - std::min(state_->cap, state_->used);
     if (bytes > state_->cap - std::min(state_->cap, state_->used))
         return failed(name,
                       fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",

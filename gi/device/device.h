@@ -118,6 +118,8 @@ class Device {
     void set_memory_cap(uint64_t bytes);
     uint64_t memory_cap() const;
     uint64_t memory_used() const;
+    /// Whether the cap refused a buffer since this was last asked.
+    bool take_refusal();
 
     /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
     Result<Buffer> buffer(size_t bytes, std::string_view what);

@@ -42,6 +42,15 @@ TEST_F(Headline, UnderCapsOfATenthOfTheCacheThreeBouncesKeepTheirEnergyAndMemory
     const auto capped = fly(cache, "--preset preview --memory 16M --device-memory 16M");
     const auto whole = fly(cache, "--preset high");  // its cuts take 4M points and more: nearly all there are
     const auto tiny = fly(cache_of("20k"), "--preset preview --memory 16M --device-memory 16M");
+    // A larger picture needs what the pool would take: the pool gives way.
+    const auto larger =
+        test::lucarne("render " + cache + " -o " + (folder_ / "p.png") +
+                      " --size 192x144 --preset preview --bounces 3 --vpls 64 --atlas 256 --memory 16M" +
+                      " --device-memory 16M --json " + (folder_ / "p.json"));
+    EXPECT_EQ(larger.code, 0) << larger.output;
+    const auto figures = nlohmann::json::parse(test::bytes_of(folder_ / "p.json"));
+    EXPECT_LE(figures["device_memory"]["used"].get<uint64_t>(), kCap);
+    EXPECT_GT(figures["points"]["view"].get<uint64_t>(), 5000u);
     ASSERT_EQ(capped["each_frame"].size(), whole["each_frame"].size());
 
     EXPECT_LE(capped["memory"]["used"].get<uint64_t>(), kCap);
