@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "gi/shared/brdf.h"
@@ -15,26 +16,35 @@ glm::vec3 xyz(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Points of a lattice, (i / n, i times the golden ratio) on the torus, moved by a vector of the seed and,
-/// from frame to frame, by the two-dimensional golden ratio (Roberts 2018), so that averages over frames are
-/// even as well.
+/// Even points of a square, moved by a vector of the seed, others for each frame.
 class Strata {
  public:
-    Strata(uint32_t count, const Frame& frame, uint64_t light) : count_(count) {
+    Strata(uint32_t count, const Frame& frame, uint64_t light)
+        : count_(count), frame_(static_cast<double>(frame.index)) {
         Random random(frame.settings.seed, light);
-        const auto index = static_cast<double>(frame.index);
-        shift_ = {random.uniform() + index * 0.7548776662466927,
-                  random.uniform() + index * 0.5698402909980532};
+        shift_ = {random.uniform(), random.uniform()};
     }
     uint32_t count() const { return count_; }
-    glm::dvec2 point(uint32_t i) const {
-        const auto on_torus = [](double v) { return v - std::floor(v); };
-        return {on_torus(i * 0.6180339887498949 + shift_.y),
-                on_torus(static_cast<double>(i) / count_ + shift_.x)};
+
+    /// The R2 sequence (Roberts 2018), multiples of powers of the plastic number on the torus: a frame goes
+    /// on where the last one ended.
+    glm::dvec2 sequence(uint32_t i) const {
+        const double at = frame_ * count_ + i;
+        return on_torus(at * kPlastic);
+    }
+    /// A Fibonacci lattice, which becomes a spiral on a sphere: better for few points; frames move it.
+    glm::dvec2 lattice(uint32_t i) const {
+        return on_torus(frame_ * kPlastic +
+                        glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
     }
 
  private:
+    static constexpr glm::dvec2 kPlastic{0.7548776662466927, 0.5698402909980532};
+
+    glm::dvec2 on_torus(const glm::dvec2& point) const { return glm::fract(point + shift_); }
+
     uint32_t count_;
+    double frame_;
     glm::dvec2 shift_;
 };
 
@@ -71,7 +81,7 @@ void add_sun(const Light& sun, const Strata& strata, const DeviceCut* cut, std::
     glm::vec3 u, v;
     across(xyz(sun.direction), u, v);
     for (uint32_t i = 0; i < strata.count(); ++i) {
-        const glm::dvec2 point = strata.point(i);
+        const glm::dvec2 point = strata.lattice(i);
         const double drop = point.y * height, sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
         const double phi = 2 * M_PI * point.x;
         Light light = sun;
@@ -80,7 +90,7 @@ void add_sun(const Light& sun, const Strata& strata, const DeviceCut* cut, std::
                                                    xyz(sun.direction) * static_cast<float>(1 - drop));
         light.direction = glm::vec4(direction, 0);
         light.strength *= share;
-        target.push_back({light, cut, true});
+        target.push_back({light, cut});
     }
 }
 
@@ -102,7 +112,7 @@ void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
     }
     if (!(square_metres > 0)) return;
     for (uint32_t i = 0; i < strata.count(); ++i) {
-        const glm::dvec2 point = strata.point(i);
+        const glm::dvec2 point = strata.sequence(i);
         double x = 2 * point.x - 1, y = 2 * point.y - 1;
         float width = glm::length(xyz(area.extent));
         if (area.kind == kDiscLight) {
@@ -118,19 +128,19 @@ void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
         light.direction = area.direction;
         light.strength = area.strength * (square_metres / static_cast<float>(strata.count()));
         light.extent = glm::vec4(u, 0);
-        target.push_back({light, cut, true});
+        target.push_back({light, cut});
     }
 }
 
 void add_sky(const SkyDirections& sky, const Strata& strata, const DeviceCut* cut,
              std::vector<SharpLight>& target) {
     for (uint32_t i = 0; i < strata.count(); ++i) {
-        const auto [direction, flux] = sky.draw(strata.point(i));
+        const auto [direction, flux] = sky.draw(strata.lattice(i));
         Light light{};
         light.kind = kDirectionalLight;
         light.direction = glm::vec4(-direction, 0);
         light.strength = glm::vec4(flux / static_cast<float>(strata.count()), 0);
-        target.push_back({light, cut, true});
+        target.push_back({light, cut});
     }
 }
 
@@ -146,7 +156,7 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
     for (size_t i = 0; i < frame.lights.size(); ++i) {
         const Light& light = frame.lights[i];
         if (!has_size(light))
-            result.push_back({light, frame.cuts.light_views[i], false});
+            result.push_back({light, frame.cuts.light_views[i]});
         else if (shines(light))
             (light.kind == kDirectionalLight ? suns : areas).push_back(i);
     }

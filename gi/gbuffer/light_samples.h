@@ -11,7 +11,6 @@ namespace lucarne::gi {
 struct SharpLight {
     Light light;
     const DeviceCut* cut;
-    bool sample;  ///< one of several that stand for a light with a size
 };
 
 /// The frame's lights, those that have a size in the form of sharp ones that stand for them this frame: of

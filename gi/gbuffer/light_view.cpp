@@ -29,12 +29,51 @@ CameraView square_view(const glm::vec3& origin, const glm::vec3& forward, float 
             0};
 }
 
+/// A rectangle across a direction that a box stands behind, about the box's middle, m.
+struct Outline {
+    glm::vec3 right, up;  // unit
+    glm::vec2 half;
+};
+
+/// The smallest of those turned by some steps about the direction, so that few texels fall beside the scene.
+Outline outline(const Bounds& bounds, const glm::vec3& direction) {
+    constexpr int kTurns = 16;  // of a right angle
+    const glm::vec3 helper = std::abs(direction.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    const glm::vec3 level = glm::normalize(glm::cross(direction, helper));
+    const glm::vec3 upright = glm::cross(level, direction), half = (bounds.max - bounds.min) / 2.0f;
+    Outline best;
+    for (int turn = 0; turn < kTurns; ++turn) {
+        const float angle = 1.57079633f * static_cast<float>(turn) / kTurns;
+        Outline tried{level * std::cos(angle) + upright * std::sin(angle),
+                      upright * std::cos(angle) - level * std::sin(angle),
+                      {}};
+        const auto reach = [&](const glm::vec3& axis) {
+            return std::max(glm::dot(glm::abs(axis), half), 1e-3f);
+        };
+        tried.half = {reach(tried.right), reach(tried.up)};
+        if (turn == 0 || tried.half.x * tried.half.y < best.half.x * best.half.y) best = tried;
+    }
+    return best;
+}
+
+/// As many texels as a square of `resolution` has, nearly square ones, unless the scene is a mere line.
 CameraView directional_view(const Light& light, const Bounds& bounds, uint32_t resolution) {
     const glm::vec3 direction(light.direction.x, light.direction.y, light.direction.z);
     const float radius = std::max(glm::length(bounds.max - bounds.min) / 2, 1e-3f);
     const float distance = 2 * kFarAway * radius;
-    return square_view((bounds.min + bounds.max) / 2.0f - direction * distance, direction,
-                       radius / (distance - radius), distance - 2 * radius, resolution);
+    const Outline seen = outline(bounds, direction);
+    const float stretch = std::clamp(std::sqrt(seen.half.x / seen.half.y), .5f, 2.0f);
+    const auto texels = [&](float share) {
+        return std::max(static_cast<uint32_t>(static_cast<float>(resolution) * share), 1u);
+    };
+    return {glm::vec4((bounds.min + bounds.max) / 2.0f - direction * distance, distance - 2 * radius),
+            glm::vec4(direction, 0),
+            glm::vec4(seen.right * (seen.half.x / (distance - radius)), 0),
+            glm::vec4(seen.up * (seen.half.y / (distance - radius)), 0),
+            texels(stretch),
+            texels(1 / stretch),
+            0,
+            0};
 }
 
 CameraView face_view(const Light& light, uint32_t face, uint32_t resolution) {
@@ -84,11 +123,13 @@ CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32
 
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky) {
     std::vector<LightView> views;
-    const uint32_t full = frame.settings.light_resolution;
-    for (const auto& [light, cut, sample] : sharp_lights(frame, sky))
+    const uint32_t side = frame.settings.light_resolution;
+    for (const auto& [light, cut] : sharp_lights(frame, sky)) {
+        // Many samples make a light with a size, whose shadows are soft: half as fine.
+        const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;
         for (uint32_t face = 0; face < light_faces(light); ++face)
-            views.push_back(
-                {light, cut, face, view_of(light, face, frame, sample ? std::max(full / 2, 1u) : full)});
+            views.push_back({light, cut, face, view_of(light, face, frame, resolution)});
+    }
     return views;
 }
 

@@ -116,6 +116,23 @@ Result<void> judge(const std::string& what, const std::vector<glm::vec4>& pictur
     return {};
 }
 
+/// Lights with a size, direct and with one bounce: one frame, and the average of `frames`.
+Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera,
+                         const std::string& frames, double rel_mse) {
+    scan.light_by(bench::scene_file(scene));
+    const std::string common = "--size 128x128 --preset interactive --camera " + camera + " ";
+    for (const std::string bounce : {"0", "1"}) {
+        const std::string only = common + "--only-bounce " + bounce + " ";
+        LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + "--samples 512"));
+        for (const std::string& count : {std::string("1"), frames}) {
+            LUCARNE_ASSIGN(const auto picture, scan.picture("soft-vpl", only + "--frames " + count));
+            LUCARNE_TRY(judge(fmt::format("{}, bounce {}, {} frames", scene, bounce, count), picture, truth,
+                              rel_mse, .03));
+        }
+    }
+    return {};
+}
+
 Result<void> cornell(const std::filesystem::path& folder) {
     Scan scan("cornell", "2M", folder);
     const std::string size = "--size 256x256 --preset high ";
@@ -158,7 +175,7 @@ Result<void> cornell(const std::filesystem::path& folder) {
         row("cornell, bounce 1, interactive, atlas " + atlas, "mean against atlas 1024", mean / small - 1,
             .01, true);
     }
-    return {};
+    return soft_lights(scan, "cornell-area", "front", "16", .0125);
 }
 
 /// The same VPLs over points in another order, and over half and twice as many points.
@@ -208,7 +225,7 @@ Result<void> nave(const std::filesystem::path& folder) {
         LUCARNE_ASSIGN(const auto picture, scan.picture(camera + "-vpl", common));
         LUCARNE_TRY(judge("nave, " + camera + ", bounces 0 to 3, high", picture, truth, .03, .03));
     }
-    return {};
+    return soft_lights(scan, "nave-sky", "nave", "16", .03);
 }
 
 /// One bounce in the Cornell box, all of it glossy, averaged for a minute. A path tracer finds lobes by

@@ -46,6 +46,7 @@ struct LitOptions {
     glm::vec3 background{0.0f};
     EngineSettings settings;
     bool moving = false;
+    std::shared_ptr<const Environment> environment = nullptr;
 };
 
 /// One cut, the whole cloud, serves as view cut, light-view cuts and light cut.
@@ -78,7 +79,8 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 options.settings,
                 0,
                 *radiance,
-                times};
+                times,
+                options.environment};
     frame.moving = options.moving;
     frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
     const auto prepared = engine.prepare(frame);

@@ -9,6 +9,7 @@
 #include "gi/compare/metrics.h"
 #include "tests/gi/analytic_frame.h"
 #include "tests/gi/on_device.h"
+#include "tests/gi/soft_light_scenes.h"
 #include "tests/gi/surfel_scenes.h"
 
 namespace lucarne::gi {
@@ -18,29 +19,6 @@ using scenes::AnalyticScene;
 using SoftLights = OnDevice;
 
 const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
-
-Light rectangle(const glm::vec3& middle, const glm::vec3& half_edge, float other_half,
-                const glm::vec3& normal, float radiance) {
-    Light light{};
-    light.kind = kRectangleLight;
-    light.position = glm::vec4(middle, 0);
-    light.direction = glm::vec4(normal, 0);
-    light.extent = glm::vec4(half_edge, other_half);
-    light.strength = glm::vec4(glm::vec3(radiance), 0);
-    return light;
-}
-Light disc(const glm::vec3& middle, float radius, const glm::vec3& normal, float radiance) {
-    Light light = rectangle(middle, glm::vec3(0), radius, normal, radiance);
-    light.kind = kDiscLight;
-    return light;
-}
-Light sun(const glm::vec3& direction, float angular_radius, float irradiance) {
-    Light light{};
-    light.kind = kDirectionalLight;
-    light.direction = glm::vec4(glm::normalize(direction), angular_radius);
-    light.strength = glm::vec4(glm::vec3(irradiance), 0);
-    return light;
-}
 
 /// A floor with a block that hovers over it, seen from above.
 AnalyticScene floor_and_block() {
@@ -87,19 +65,19 @@ void expect_like_the_reference(Device& device, const AnalyticScene& scene, const
 
 TEST_F(SoftLights, RectangleCastsTheReferencesPenumbraWhenAveraged) {
     AnalyticScene scene = floor_and_block();
-    scene.lights = {rectangle({1.2f, 1.1f, 1.6f}, .3f * kX, .2f, -kZ, 3)};
+    scene.lights = {scenes::rectangle_light({1.2f, 1.1f, 1.6f}, .3f * kX, .2f, -kZ, 3)};
     expect_like_the_reference(*device, scene, "rectangle");
 }
 
 TEST_F(SoftLights, DiscCastsTheReferencesPenumbraWhenAveraged) {
     AnalyticScene scene = floor_and_block();
-    scene.lights = {disc({1.7f, .8f, 1.4f}, .25f, glm::normalize(glm::vec3(-.5f, .1f, -1)), 3)};
+    scene.lights = {scenes::disc_light({1.7f, .8f, 1.4f}, .25f, glm::normalize(glm::vec3(-.5f, .1f, -1)), 3)};
     expect_like_the_reference(*device, scene, "disc");
 }
 
 TEST_F(SoftLights, SunCastsTheReferencesPenumbraWhenAveraged) {
     AnalyticScene scene = floor_and_block();
-    scene.lights = {sun({.4f, .2f, -1}, .15f, 3)};
+    scene.lights = {scenes::wide_sun({.4f, .2f, -1}, .15f, 3)};
     expect_like_the_reference(*device, scene, "sun");
 }
 
@@ -111,6 +89,83 @@ TEST_F(SoftLights, SkyShadesAsTheReferencesDoesWhenAveraged) {
         sky->texels[i] = glm::vec3(static_cast<float>(i % 61 + i / 200));
     scene.environment = sky;
     expect_like_the_reference(*device, scene, "sky");
+}
+
+/// Mean irradiance of a unit square under a light, of unit radiance or so, over pi: a form factor.
+double form_factor(Device& device, const Light& light) {
+    AnalyticScene scene;
+    scenes::add_rectangle(scene.surfels, kO, kX, kY, 60, glm::vec3(.5f));
+    // From far away, so that every part of the receiver counts alike.
+    scene.camera = scenes::look(glm::vec3(.5f, .5f, 40), glm::vec3(.5f, .5f, 0), .02f, 96);
+    scene.settings.only_bounce = 0;
+    scene.settings.light_samples = 64;
+    scene.lights = {light};
+    const auto picture = average(device, scene, 4);
+    const auto texels = scenes::render(device, "direct", scene)->texels;
+    double sum = 0, pixels = 0;
+    for (size_t i = 0; i < texels.size(); ++i) {
+        const glm::vec3 at = scenes::position_of(scene.camera, texels, i);
+        if (!(texels[i].depth > 0) || std::abs(at.x - .5f) > .5f || std::abs(at.y - .5f) > .5f) continue;
+        sum += picture[i].y / .5;
+        ++pixels;
+    }
+    return sum / pixels;
+}
+
+// Howell's catalogue, C-11 and C-14.
+TEST_F(SoftLights, RectanglesSendTheirFormFactorsToASquare) {
+    const auto over = [](float height) {
+        return scenes::rectangle_light({.5f, .5f, height}, .5f * kX, .5f, -kZ, 1);
+    };
+    EXPECT_NEAR(form_factor(*device, over(1)) / .199825, 1, .02);
+    EXPECT_NEAR(form_factor(*device, over(.5f)) / .415253, 1, .02);
+    const Light wall = scenes::rectangle_light({0, .5f, .5f}, .5f * kY, .5f, kX, 1);
+    // Much of it comes from the foot of the wall, less than a surfel's radius high, where all is shade.
+    EXPECT_NEAR(form_factor(*device, wall) / .200044, 1, .1);
+}
+
+TEST_F(SoftLights, DiscSendsItsFormFactorToAPointUnderIt) {
+    AnalyticScene scene;
+    scenes::add_rectangle(scene.surfels, kO, kX, kY, 100, glm::vec3(.5f));
+    scene.camera = scenes::look(glm::vec3(.5f, .5f, 3), glm::vec3(.5f, .5f, 0), .005f, 16);
+    scene.settings.only_bounce = 0;
+    scene.settings.light_samples = 64;
+    for (const float height : {.3f, 1.0f}) {
+        scene.lights = {scenes::disc_light({.5f, .5f, height}, .4f, -kZ, 2)};
+        const double truth = 2 * .5 * .4 * .4 / (.4 * .4 + height * height);
+        EXPECT_NEAR(mean_luminance(average(*device, scene, 8)) / truth, 1, .025) << height;
+    }
+}
+
+TEST_F(SoftLights, SealedRoomStaysBlackUnderAnyOfThemOutside) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(1, 40, glm::vec3(.9f));
+    scene.camera = scenes::look(glm::vec3(.5f), glm::vec3(.9f, .8f, .4f), .8f, 64);
+    scene.settings.vpls = 64;
+    scene.settings.atlas = 512;
+    scene.settings.light_samples = 24;
+    scene.lights = {scenes::rectangle_light({.5f, .5f, 1.2f}, .4f * kX, .4f, -kZ, 1000),
+                    scenes::disc_light({-.1f, .5f, .4f}, .3f, kX, 1000),
+                    scenes::wide_sun({-.3f, .2f, -1}, .3f, 1000)};
+    scene.environment = scenes::even_sky(1000);
+    const auto lights = scene.lights;
+    const auto sky = scene.environment;
+    for (size_t which = 0; which <= lights.size(); ++which) {
+        scene.lights.clear();
+        scene.environment = which == lights.size() ? sky : nullptr;
+        if (which < lights.size()) scene.lights = {lights[which]};
+        for (const char* engine : {"direct", "vpl"}) {
+            const auto picture = scenes::render(*device, engine, scene);
+            ASSERT_TRUE(picture) << picture.error().line();
+            float brightest = 0;
+            size_t lit = 0;
+            for (const glm::vec4& p : picture->radiance) {
+                brightest = std::max(brightest, p.y);
+                lit += p.y > 0;
+            }
+            EXPECT_EQ(brightest, 0) << engine << ", light " << which << ", " << lit << " pixels";
+        }
+    }
 }
 
 }  // namespace
