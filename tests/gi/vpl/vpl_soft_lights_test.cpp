@@ -73,13 +73,6 @@ TEST_F(VplSoftLights, DiscAndSpotTogetherLightARoomAsInTheReference) {
     expect_the_references_energy(*device, scene, "disc and spot");
 }
 
-TEST_F(VplSoftLights, SkyAndSunLightAnOpenRoomAsInTheReference) {
-    AnalyticScene scene = room(true);
-    scene.environment = scenes::even_sky(1);
-    scene.lights = {scenes::wide_sun({.4f, .2f, -1}, .1f, 3)};
-    expect_the_references_energy(*device, scene, "sky and sun");
-}
-
 // Under a sky of 1 everything that returns rho and shines 1 - rho is 1: nothing can be told from anything.
 TEST_F(VplSoftLights, OpenFurnaceUnderAnEvenSkyIsOneEverywhere) {
     AnalyticScene scene = room(true);
