@@ -68,7 +68,7 @@ TEST_F(VplSoftLights, RectangleLightsARoomAsInTheReference) {
 
 TEST_F(VplSoftLights, DiscAndSpotTogetherLightARoomAsInTheReference) {
     AnalyticScene scene = room(false);
-    scene.lights = {scenes::disc_light({.1f, 1, 1}, .4f, glm::normalize(glm::vec3(1, .2f, .3f)), 6),
+    scene.lights = {scenes::disc_light({.5f, 1, 1.2f}, .3f, glm::normalize(glm::vec3(1, .2f, .3f)), 6),
                     scenes::spot({1, .4f, 1.8f}, {.9f, 1.6f, 0}, .5f, .3f, 4)};
     expect_the_references_energy(*device, scene, "disc and spot");
 }
