@@ -64,43 +64,50 @@ uint64_t CutSet::points() const {
 }
 
 CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
+    using Points = std::optional<uint64_t>;
     const CutBudgets& budgets = purpose.budgets;
+    const auto light_view = [&](size_t i, Points points) {
+        return light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
+                              points.value_or(budgets.light_view));
+    };
+    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
+    const auto& root = purpose.source.header().root;
+    const double cell = root.size / kFocusCells;
+    const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
+    const auto light = [&](size_t, Points points) {
+        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light));
+    };
+    const octree::View eye = octree_view(purpose.camera, purpose.size);
+    const auto view = [&](size_t, Points points) {
+        return octree::view_cut(purpose.source, eye, points.value_or(budgets.view), budgets.pixel_spacing);
+    };
+    CutSet whole;
+    for (size_t i = 0; i < purpose.lights.size(); ++i) whole.light_views.push_back(light_view(i, {}));
+    whole.light = light(0, {});
+    whole.view = view(0, {});
+    whole.share = 1;
+    if (fits(purpose, whole, room)) return whole;
+
+    // Makes some of the cuts as they are, then at ever smaller shares of their points, until they fit.
     CutSet cuts;
-    uint64_t wanted = 0;
-    // Makes some of the cuts at their budget, then at ever smaller shares of what that took, until they fit.
-    const auto choose = [&](double part, int& step, std::span<octree::Cut> chosen, const auto& make) {
+    const auto choose = [&](double part, int& step, std::span<octree::Cut> chosen,
+                            std::span<const octree::Cut> wanted, const auto& make) {
         const CutRoom part_of_room{static_cast<uint64_t>(part * static_cast<double>(room.bytes)), room.cost};
-        std::vector<uint64_t> whole;
-        for (size_t i = 0; i < chosen.size(); ++i) {
-            chosen[i] = make(i, std::nullopt);
-            whole.push_back(chosen[i].points);
-            wanted += chosen[i].points;
-        }
+        std::copy(wanted.begin(), wanted.end(), chosen.begin());
         if (fits(purpose, cuts, part_of_room)) return;
         const auto make_at = [&](int tried) {
-            for (size_t i = 0; i < chosen.size(); ++i) chosen[i] = make(i, at_step(whole[i], tried));
+            for (size_t i = 0; i < chosen.size(); ++i) chosen[i] = make(i, at_step(wanted[i].points, tried));
             return fits(purpose, cuts, part_of_room);
         };
         step = least_step(step, make_at);
         make_at(step);
     };
     cuts.light_views.resize(purpose.lights.size());
-    choose(kLightViewRoom, light_view_step_, cuts.light_views, [&](size_t i, std::optional<uint64_t> points) {
-        return light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
-                              points.value_or(budgets.light_view));
-    });
-    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
-    const auto& root = purpose.source.header().root;
-    const double cell = root.size / kFocusCells;
-    const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
-    choose(kLightRoom, light_step_, std::span(&cuts.light, 1), [&](size_t, std::optional<uint64_t> points) {
-        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light));
-    });
-    const octree::View eye = octree_view(purpose.camera, purpose.size);
-    choose(1, view_step_, std::span(&cuts.view, 1), [&](size_t, std::optional<uint64_t> points) {
-        return octree::view_cut(purpose.source, eye, points.value_or(budgets.view), budgets.pixel_spacing);
-    });
-    cuts.share = static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(wanted, 1));
+    choose(kLightViewRoom, light_view_step_, cuts.light_views, whole.light_views, light_view);
+    choose(kLightRoom, light_step_, std::span(&cuts.light, 1), std::span(&whole.light, 1), light);
+    choose(1, view_step_, std::span(&cuts.view, 1), std::span(&whole.view, 1), view);
+    cuts.share =
+        static_cast<double>(cuts.points()) / static_cast<double>(std::max<uint64_t>(whole.points(), 1));
     return cuts;
 }
 

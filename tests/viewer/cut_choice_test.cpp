@@ -44,6 +44,13 @@ TEST_F(CutChoice, WithRoomForAllNothingIsGivenUp) {
     EXPECT_EQ(cuts.light.points, source.header().points) << "the light cut takes all that its budget allows";
 }
 
+TEST_F(CutChoice, WhatFitsTogetherKeepsToNoParts) {
+    CutChooser chooser;
+    const size_t all = held(chooser.choose(purpose(), room(1'000'000)));
+    EXPECT_EQ(chooser.choose(purpose(), room(all)).share, 1);
+    EXPECT_LT(chooser.choose(purpose(), room(all - 1)).share, 1);
+}
+
 TEST_F(CutChoice, CutsShrinkUntilTheyFitAndTheLightsLeaveRoomForTheView) {
     CutChooser chooser;
     const CutSet whole = chooser.choose(purpose(), room(1'000'000));
