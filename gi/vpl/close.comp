@@ -3,9 +3,8 @@
 // surfaces are taken to go on there. The result replaces the fringe.
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#include "gi/vpl/parabolic.glsl"
-
 #include "gi/vpl/fringe.glsl"
+#include "gi/vpl/parabolic.glsl"
 
 layout(binding = 5) uniform usamplerBuffer cores;  // the atlas
 #ifdef LUCARNE_SOURCES

@@ -26,19 +26,19 @@ void main() {
     float density = 0.0, own = 0.0;  // 1/m^2; of all races, of its own
     for (uint i = 0u; i < light_count; ++i) {
         float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
-        Arriving arriving = from_vpl(i, receiver);
-        vec3 lifted = receiver.position - vpl_position(i).xyz + receiver.normal * receiver.radius;
-        bool seen = i == index || vpl_sees(i, vpl_normal(i), lifted, receiver.normal);
-        if (!(sum > 0.0) || arriving.geometry <= 0.0 || !seen) continue;
         vec3 offset = receiver.position - vpl_position(i).xyz;
+        float geometry = point_geometry(vpl_normal(i).xyz, offset, receiver);
+        if (!(sum > 0.0) || geometry <= 0.0) continue;
+        vec3 lifted = offset + receiver.normal * receiver.radius;
+        if (i != index && !vpl_sees(i, vpl_normal(i), lifted, receiver.normal)) continue;
         float distance2 = dot(offset, offset);
         vec3 direction = offset * inversesqrt(distance2);
         vec3 intensity = raced_intensity(i, direction, dot(direction, vpl_normal(i).xyz), distance2);
-        float chance = luminance(intensity) * arriving.geometry / sum;
+        float chance = luminance(intensity) * geometry / sum;
         density += chance;
         if (i == index) own = chance;
         // As points, which the races draw by: what is near is bounded by the density, and discs would send less there.
-        irradiance += intensity * arriving.geometry;
+        irradiance += intensity * geometry;
     }
     // Where its own race would not come by this rule (nearer to its parent's plane than surfaces can be told apart), what
     // the others send must not count, or it would count twice.

@@ -61,17 +61,24 @@ float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
 }
 
 // What VPL `i` sends to a receiver where nothing is in between. Each VPL is a disc of its footprint A: as one, it sends
-// what its surface would to what is near, where a point would be without bounds. For lobes:
-// G = cos cos' / sqrt(d^4 + (A/pi)^2).
+// what its surface would to what is near, where a point would be without bounds. Lobes: lobes.glsl.
 //
 // Points of one plane do not light each other, whichever side they are on: positions are rounded, and the G-buffer lets
 // the rim of a disc stick out of what hides it by a share of its radius (kRimPush). A lamp on the roof would shine at
 // the ceiling under it.
 struct Arriving {
     Gathered light;
-    float geometry;     // 1/m^2: cos cos' / d^2; 0: none
-    float form_factor;  // 1/m^2: the same for the disc
+    bool any;
 };
+
+// cos cos' / d^2 of two points, 1/m^2; 0 where they are of one plane, `offset` being the way from the VPL; also for the dead.
+float point_geometry(vec3 light_normal, vec3 offset, Receiver receiver) {
+    float cosines = -dot(receiver.normal, offset);
+    float light_cosine = dot(light_normal, offset);
+    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return 0.0;
+    float distance2 = dot(offset, offset);
+    return cosines * light_cosine / (distance2 * distance2);
+}
 
 #ifdef LUCARNE_GLOSSY
 // The same with lobes: what the receiver's sees of the VPL, and what the VPL's sends (a receiver's lobe sees the VPL's in
@@ -101,22 +108,21 @@ Gathered with_lobes(uint i, Receiver receiver, vec3 light_normal, vec3 offset, f
 #endif
 
 Arriving from_vpl(uint i, Receiver receiver) {
-    Arriving result = Arriving(Gathered(vec3(0.0), vec3(0.0)), 0.0, 0.0);
+    Arriving result = Arriving(Gathered(vec3(0.0), vec3(0.0)), false);
     vec4 position = vpl_position(i);
     vec4 light_normal = vpl_normal(i);
     vec3 offset = receiver.position - position.xyz;
     float cosines = -dot(receiver.normal, offset);
     float light_cosine = dot(light_normal.xyz, offset);
     if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also the dead
-    float distance2 = dot(offset, offset);
+    result.any = true;
     float r2 = max(position.w / kPi, 1e-12);
     float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
-    result.form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
-    result.geometry = cosines * light_cosine / (distance2 * distance2);
+    float form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
 #ifdef LUCARNE_GLOSSY
-    result.light = with_lobes(i, receiver, light_normal.xyz, offset, result.form_factor);
+    result.light = with_lobes(i, receiver, light_normal.xyz, offset, form_factor);
 #else
-    result.light.irradiance = vpl_diffuse(i).xyz * result.form_factor;
+    result.light.irradiance = vpl_diffuse(i).xyz * form_factor;
 #endif
     return result;
 }
@@ -127,7 +133,7 @@ Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
     for (uint i = first; i < count; i += stride) {
         Arriving arriving = from_vpl(i, receiver);
         vec3 lifted = receiver.position - vpl_position(i).xyz + receiver.normal * receiver.radius;
-        if (arriving.geometry <= 0.0 || !vpl_sees(i, vpl_normal(i), lifted, receiver.normal)) continue;
+        if (!arriving.any || !vpl_sees(i, vpl_normal(i), lifted, receiver.normal)) continue;
         sum.irradiance += arriving.light.irradiance;
         sum.specular += arriving.light.specular;
     }
