@@ -74,8 +74,11 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
     const auto& root = purpose.source.header().root;
     const double cell = root.size / kFocusCells;
     const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
+    std::vector<glm::dvec3> lamps;
+    for (const gi::SceneLight& lamp : purpose.lights)
+        if (lamp.kind != gi::LightKind::directional) lamps.push_back(lamp.position);
     const auto light = [&](size_t, Points points) {
-        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light));
+        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light), lamps);
     };
     const octree::View eye = octree_view(purpose.camera, purpose.size);
     const auto view = [&](size_t, Points points) {

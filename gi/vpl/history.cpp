@@ -8,9 +8,9 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-// Frames that the average remembers while the VPLs hold: what differs between them is which panes a point is
-// lit by and from where. With other VPLs the old light has to go, within a blink of the eye.
-constexpr float kFramesHeld = 8, kFramesAnew = 8;
+// Frames that the average remembers: what differs between them is which panes a point is lit by and from where, and,
+// where cuts changed, the VPLs. Old light has to go within a blink of the eye.
+constexpr float kMostFrames = 8;
 
 }  // namespace
 
@@ -18,13 +18,12 @@ History::Basis History::basis_of(const Frame& frame) {
     return {frame.settings, frame.lights, frame.materials, frame.bounds, frame.environment.get()};
 }
 
-Result<void> History::begin(const Frame& frame, bool anew) {
+Result<void> History::begin(const Frame& frame) {
     const size_t pixels = size_t{frame.camera.width} * frame.camera.height;
     if (!(basis_of(frame) == basis_)) camera_ = {};
     LUCARNE_TRY(frame.device.reserve(next_.light, pixels * sizeof(glm::vec4), "the last frame's light"));
     LUCARNE_TRY(
         frame.device.reserve(next_.surfaces, pixels * 2 * sizeof(uint32_t), "the last frame's light"));
-    most_frames_ = anew ? kFramesAnew : kFramesHeld;
     return {};
 }
 
@@ -35,7 +34,7 @@ void History::bind(const Frame& frame, const Program& merge) const {
     next_.light.bind(kBindHistory);
     next_.surfaces.bind(kBindHistorySurfaces);
     set(merge, "last_camera", camera_.width ? camera_ : frame.camera);
-    merge.set("most_frames", camera_.width ? most_frames_ : 0.0f);
+    merge.set("most_frames", camera_.width ? kMostFrames : 0.0f);
 }
 
 void History::end(const Frame& frame) {

@@ -7,13 +7,12 @@
 namespace lucarne::gi::vpl {
 
 /// The indirect irradiance of the last moving frame, to be blended with the next one's where both show the
-/// same surface (history.glsl). It holds while lights, materials and settings do; other cuts shorten its
-/// memory.
+/// same surface (history.glsl). It holds while lights, materials and settings do.
 class History {
  public:
-    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY; `anew` says
-    /// that the VPLs are others than the last frame's. Errors: no device memory.
-    Result<void> begin(const Frame& frame, bool anew);
+    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no device
+    /// memory.
+    Result<void> begin(const Frame& frame);
     void bind(const Frame& frame, const Program& merge) const;
     /// The frame was merged: it is the last one now.
     void end(const Frame& frame);
@@ -37,7 +36,6 @@ class History {
     Side last_, next_;
     Basis basis_;
     CameraView camera_{};  ///< of last_; no width: there is none
-    float most_frames_ = 0;
 };
 
 }  // namespace lucarne::gi::vpl

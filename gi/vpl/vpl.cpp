@@ -155,7 +155,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     }
     basis_ = std::move(basis);
     const bool reuse = frame.moving && s.reuse;
-    if (reuse) LUCARNE_TRY(history_.begin(frame, !held));
+    if (reuse) LUCARNE_TRY(history_.begin(frame));
     return pass(frame, "VPL merge",
                 [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
 }

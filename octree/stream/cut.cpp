@@ -33,6 +33,8 @@ constexpr double kLeastFade = 1.25;
 constexpr double kLightPixelsPerRadian = 256;
 /// Share of the scene's diagonal around the centre of a light cut that is refined evenly.
 constexpr double kLightCoreShare = 1.0 / 16;
+/// The same around a lamp, as a share of that: what stands a hand's breadth before it counts.
+constexpr double kLampCoreShare = 1.0 / 16;
 
 /// World units a pixel covers at a cube whose surfels reach `radius` beyond it; empty where it is not wanted.
 using Reach = std::function<std::optional<double>(const Cube& cube, double radius)>;
@@ -195,12 +197,16 @@ Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget,
     return view_cut(source, light, budget, texel_spacing);
 }
 
-Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget) {
+Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
+              std::span<const glm::dvec3> lamps) {
     const SourceHeader& header = source.header();
     const double core =
         kLightCoreShare * std::max(glm::length(header.max - header.min), header.root.size * 1e-6);
     const Reach reach = [&](const Cube& cube, double) -> std::optional<double> {
-        return std::max(core, distance_to(cube, centre)) / kLightPixelsPerRadian;
+        double nearest = std::max(core, distance_to(cube, centre));
+        for (const glm::dvec3& lamp : lamps)
+            nearest = std::min(nearest, std::max(core * kLampCoreShare, distance_to(cube, lamp)));
+        return nearest / kLightPixelsPerRadian;
     };
     return Sweep(source, reach).run(budget, std::numeric_limits<double>::infinity());
 }

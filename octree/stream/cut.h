@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -45,8 +46,10 @@ Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double
 Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget, double texel_spacing = 1.0);
 
 /// What may bounce or block light: everything, seen or not, refined toward `centre` (the camera's focus) in
-/// proportion to distance, as fine as `budget` allows.
-Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget);
+/// proportion to distance, as fine as `budget` allows. It is refined toward `lamps` as well: what stands close
+/// before a lamp throws its discs' rims far, and its wall takes most of its light.
+Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
+              std::span<const glm::dvec3> lamps = {});
 
 /// Every node whole.
 Cut full_cut(const NodeSource& source);

@@ -208,24 +208,36 @@ TEST(Cut, VisitsOnlyWhatItNeedsOfAMillionNodes) {
     EXPECT_LT(light.visited, 12 * light.nodes.size());
 }
 
+/// The level of the deepest node of a cut that holds a place of the plane.
+int level_at(const PlaneSource& source, const Cut& cut, double x, double y) {
+    const auto count = prefixes(cut);
+    uint32_t node = 0;
+    while (source.nodes()[node].child_mask) {
+        const Cube cube = source.header().root.of(source.nodes()[node].key);
+        const uint32_t octant = (x >= cube.min.x + cube.size / 2) | (y >= cube.min.y + cube.size / 2) << 1;
+        const uint32_t child = source.nodes()[node].child(octant);
+        if (!count.contains(child)) break;
+        node = child;
+    }
+    return source.nodes()[node].key.level;
+}
+
 TEST(Cut, TheLightCutIsFineAtItsCentreCoarseFarAwayAndMissesNothing) {
     const PlaneSource source(8, 500, 1000.0);
-    const auto count = prefixes(light_cut(source, {200, 200, 2}, 400000));
-    const auto depth_at = [&](double x, double y) {
-        uint32_t node = 0;
-        while (source.nodes()[node].child_mask) {
-            const Cube cube = source.header().root.of(source.nodes()[node].key);
-            const uint32_t octant = (x >= cube.min.x + cube.size / 2) | (y >= cube.min.y + cube.size / 2)
-                                                                            << 1;
-            const uint32_t child = source.nodes()[node].child(octant);
-            if (!count.contains(child)) break;
-            node = child;
-        }
-        return source.nodes()[node].key.level;
-    };
-    EXPECT_GT(depth_at(200, 200), depth_at(950, 950) + 1);
-    EXPECT_GE(depth_at(950, 950), 1u)
+    const Cut cut = light_cut(source, {200, 200, 2}, 400000);
+    EXPECT_GT(level_at(source, cut, 200, 200), level_at(source, cut, 950, 950) + 1);
+    EXPECT_GE(level_at(source, cut, 950, 950), 1)
         << "the far corner is behind any camera at the centre and there all the same";
+}
+
+TEST(Cut, TheLightCutIsFineBeforeLampsToo) {
+    const PlaneSource source(9, 500, 1000.0);
+    const std::vector<glm::dvec3> lamps = {{900, 900, .5}, {900, 100, 2}};
+    const Cut cut = light_cut(source, {200, 200, 2}, 100000, lamps);
+    expect_sound(source, cut, 100000);
+    const int middle = level_at(source, cut, 550, 550);
+    for (const auto& lamp : lamps) EXPECT_GT(level_at(source, cut, lamp.x, lamp.y), middle + 2);
+    EXPECT_EQ(level_at(source, light_cut(source, {200, 200, 2}, 100000), 900, 900), middle);
 }
 
 TEST(Cut, TheFullCutIsEveryPoint) {
