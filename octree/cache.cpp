@@ -85,7 +85,7 @@ Result<void> CacheFile::read_directory() {
     payloads_.reserve(count);
     for (size_t i = 0; i < count; ++i) {
         const Entry entry = format::load_entry(&bytes[i * format::kEntryBytes]);
-        if (entry.key.level > kMaxLevel ||
+        if (entry.key.level > kMostLevel ||
             ((entry.key.x | entry.key.y | entry.key.z) >> entry.key.level) != 0)
             return damaged(file_, fmt::format("node {} lies outside the root cube", i));
         if (entry.codec != format::kCodecRaw)

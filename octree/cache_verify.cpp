@@ -26,13 +26,13 @@ Result<void> check_superblocks(const CacheFile& cache) {
 Result<void> check_points(const CacheFile& cache, uint32_t index, glm::dvec3& least, glm::dvec3& most) {
     LUCARNE_ASSIGN(const NodeData data, cache.load(index));
     const auto& header = cache.header();
-    const NodeKey key = cache.nodes()[index].key;
+    const NodeKey cell = cache.nodes()[index].key.cell();
     for (size_t i = 0; i < data.count; ++i) {
         const auto p = io::position_of(header.schema, &data.records[i * header.schema.stride]);
         // Written so that a NaN fails as well.
         const bool bounded =
             glm::all(glm::greaterThanEqual(p, header.min)) && glm::all(glm::lessThanEqual(p, header.max));
-        if (!bounded || header.root.place(p).key(key.level) != key)
+        if (!bounded || header.root.place(p).key(cell.level) != cell)
             return rejected(cache.file().path().string(),
                             fmt::format("point {} of node {} lies outside its cube", i, index));
         least = glm::min(least, p);

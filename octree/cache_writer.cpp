@@ -53,10 +53,10 @@ Result<void> CacheWriter::flush_entries() {
 Result<uint64_t> CacheWriter::write_directory() {
     LUCARNE_TRY(flush_entries());
     const uint64_t begin = output_.position(), bytes = nodes_ * kEntryBytes;
-    std::array<uint64_t, kMaxLevel + 1> cursor{begin};
-    for (uint32_t level = 1; level <= kMaxLevel; ++level)
+    std::array<uint64_t, kMostLevel + 1> cursor{begin};
+    for (uint32_t level = 1; level <= kMostLevel; ++level)
         cursor[level] = cursor[level - 1] + per_level_[level - 1] * kEntryBytes;
-    std::array<std::vector<std::byte>, kMaxLevel + 1> waiting;
+    std::array<std::vector<std::byte>, kMostLevel + 1> waiting;
     const auto flush = [&](uint32_t level) -> Result<void> {
         LUCARNE_TRY(output_.write_at(cursor[level], waiting[level]));
         cursor[level] += waiting[level].size();
@@ -73,7 +73,7 @@ Result<uint64_t> CacheWriter::write_directory() {
             if (waiting[level].size() >= kLevelEntries * kEntryBytes) LUCARNE_TRY(flush(level));
         }
     }
-    for (uint32_t level = 0; level <= kMaxLevel; ++level) LUCARNE_TRY(flush(level));
+    for (uint32_t level = 0; level <= kMostLevel; ++level) LUCARNE_TRY(flush(level));
 
     const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
     XXH3_64bits_reset(state.get());

@@ -35,7 +35,7 @@ class CacheWriter {
     OutputFile output_;
     ScratchFile entries_;  ///< the nodes as they came
     uint64_t nodes_ = 0, entries_written_ = 0;
-    std::array<uint64_t, kMaxLevel + 1> per_level_{};
+    std::array<uint64_t, kMostLevel + 1> per_level_{};
     std::vector<std::byte> buffer_;
 };
 

@@ -9,6 +9,9 @@
 namespace lucarne::octree {
 
 inline constexpr uint32_t kMaxLevel = 21;  ///< 3 x 21 bits of Morton code fill a 64-bit word
+/// Where one cell of kMaxLevel holds more points than a node should, nodes of further levels divide them by
+/// their order: their cells are all that one.
+inline constexpr uint32_t kMostLevel = 31;
 
 /// Spreads the lower 21 bits of `v` to every third bit.
 constexpr uint64_t spread_bits(uint64_t v) {
@@ -35,12 +38,23 @@ struct NodeKey {
     }
     constexpr NodeKey parent() const { return {level - 1, x >> 1, y >> 1, z >> 1}; }
     constexpr uint32_t octant() const { return (x & 1) | (y & 1) << 1 | (z & 1) << 2; }
+    /// Down to kMaxLevel.
     constexpr uint64_t code() const { return morton(x, y, z); }
+    /// The node whose cube this one's points lie in: itself down to kMaxLevel.
+    constexpr NodeKey cell() const {
+        if (level <= kMaxLevel) return *this;
+        const uint32_t below = level - kMaxLevel;
+        return {kMaxLevel, x >> below, y >> below, z >> below};
+    }
     constexpr bool operator==(const NodeKey&) const = default;
     /// By level, then along the Morton curve: the order of a cache's directory, parents before children.
     constexpr std::strong_ordering operator<=>(const NodeKey& other) const {
         if (level != other.level) return level <=> other.level;
-        return code() <=> other.code();
+        constexpr uint32_t kLow = kMostLevel - kMaxLevel;
+        const auto high = [](const NodeKey& k) { return morton(k.x >> kLow, k.y >> kLow, k.z >> kLow); };
+        const auto low = [](uint32_t cell) { return cell & ((1u << kLow) - 1); };
+        if (const auto order = high(*this) <=> high(other); order != 0) return order;
+        return morton(low(x), low(y), low(z)) <=> morton(low(other.x), low(other.y), low(other.z));
     }
 };
 
@@ -67,7 +81,8 @@ struct Cube {
     glm::dvec3 min{0.0};
     double size = 1.0;
 
-    Cube of(const NodeKey& key) const {
+    Cube of(const NodeKey& node) const {
+        const NodeKey key = node.cell();
         const double part = size / static_cast<double>(uint64_t{1} << key.level);
         return {min + part * glm::dvec3(key.x, key.y, key.z), part};
     }

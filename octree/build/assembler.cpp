@@ -1,15 +1,7 @@
 #include "octree/build/assembler.h"
 
-#include <limits>
-#include <memory>
-
-#include <fmt/format.h>
-#include <xxhash.h>
-
 namespace lucarne::octree {
 namespace {
-
-constexpr uint64_t kOverflowBytes = 1 << 20;
 
 bool is_ancestor(const NodeKey& above, const NodeKey& key) {
     const uint32_t levels = key.level - above.level;
@@ -41,9 +33,7 @@ Result<void> Assembler::add(size_t index, Subtree&& tree) {
             entry.payload_offset += base;
             LUCARNE_TRY(writer_.add(entry));
         }
-        std::optional<size_t> overflow;
-        if (done.overflow_first < loader_.chunks()[index].count) overflow = index;
-        LUCARNE_TRY(push(done.root, done.sample, overflow, done.overflow_first));
+        LUCARNE_TRY(push(done.root, done.sample));
     }
     const auto chunks = loader_.chunks();
     while (stack_.back().node.key.level > 0) {
@@ -60,11 +50,10 @@ Result<void> Assembler::add(size_t index, Subtree&& tree) {
     return finish_root();
 }
 
-Result<void> Assembler::push(Pending node, std::span<const std::byte> sample, std::optional<size_t> chunk,
-                             uint64_t overflow_first) {
+Result<void> Assembler::push(Pending node, std::span<const std::byte> sample) {
     LUCARNE_TRY(samples_.write_at(end_ * stride_, sample));
     const auto count = static_cast<uint32_t>(sample.size() / stride_);
-    stack_.push_back({node, end_, count, chunk, overflow_first});
+    stack_.push_back({node, end_, count});
     end_ += count;
     return {};
 }
@@ -89,7 +78,7 @@ Result<void> Assembler::join(size_t children) {
     std::vector<std::byte> sample;
     for (size_t c = 0; c < children; ++c) {
         LUCARNE_ASSIGN(const auto records, sample_of(family[c]));
-        LUCARNE_TRY(emit(c, family[c], records));
+        LUCARNE_TRY(emit(c, records));
         sampler_.taken(c, order_);
         for (const uint32_t i : order_)
             sample.insert(sample.end(), &records[size_t{i} * stride_],
@@ -97,7 +86,7 @@ Result<void> Assembler::join(size_t children) {
     }
     stack_.resize(stack_.size() - children);
     end_ = family[0].first;
-    return push(sampler_.parent(), sample, std::nullopt, 0);
+    return push(sampler_.parent(), sample);
 }
 
 Result<void> Assembler::finish_root() {
@@ -108,10 +97,10 @@ Result<void> Assembler::finish_root() {
         sampler_.add(loader_.place(&records[at]), loader_.area(&records[at]));
     sampler_.end_child(root.node);
     sampler_.run_root();
-    return emit(0, root, records);
+    return emit(0, records);
 }
 
-Result<void> Assembler::emit(size_t child, const Waiting& from, const std::vector<std::byte>& sample) {
+Result<void> Assembler::emit(size_t child, const std::vector<std::byte>& sample) {
     std::vector<std::byte> payload;
     std::vector<format::Entry> entries;
     emit_child(
@@ -120,33 +109,8 @@ Result<void> Assembler::emit(size_t child, const Waiting& from, const std::vecto
     LUCARNE_ASSIGN(const uint64_t base, writer_.append(payload));
     for (auto& entry : entries) {  // one, or none where the parent took every point
         entry.payload_offset = base;
-        if (from.overflow_chunk) LUCARNE_TRY(append_overflow(from, payload, entry));
         LUCARNE_TRY(writer_.add(entry));
     }
-    return {};
-}
-
-/// The points of one place that never were in memory follow the node's own, in their order.
-Result<void> Assembler::append_overflow(const Waiting& from, std::span<const std::byte> payload,
-                                        format::Entry& entry) {
-    const uint64_t last = loader_.chunks()[*from.overflow_chunk].count;
-    const uint64_t count = entry.count + (last - from.overflow_first);
-    if (count * stride_ > std::numeric_limits<uint32_t>::max())
-        return failed("points", fmt::format("{} of them share one place, more than a node holds", count),
-                      "thin out the input");
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
-    XXH3_64bits_reset(state.get());
-    XXH3_64bits_update(state.get(), payload.data(), payload.size());
-    const uint64_t most = std::max<uint64_t>(1, kOverflowBytes / stride_);
-    for (uint64_t first = from.overflow_first; first < last; first += most) {
-        LUCARNE_ASSIGN(const auto records,
-                       loader_.load(*from.overflow_chunk, first, std::min(most, last - first)));
-        LUCARNE_ASSIGN([[maybe_unused]] const uint64_t at, writer_.append(records));
-        XXH3_64bits_update(state.get(), records.data(), records.size());
-    }
-    entry.count = static_cast<uint32_t>(count);
-    entry.payload_bytes = static_cast<uint32_t>(count * stride_);
-    entry.checksum = XXH3_64bits_digest(state.get());
     return {};
 }
 

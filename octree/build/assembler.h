@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "octree/build/subtree.h"
@@ -24,17 +23,12 @@ class Assembler {
         Pending node;
         uint64_t first = 0;  ///< its sample's first record in the scratch file
         uint32_t count = 0;
-        std::optional<size_t> overflow_chunk;
-        uint64_t overflow_first = 0;
     };
     Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits, ScratchFile samples);
-    Result<void> push(Pending node, std::span<const std::byte> sample, std::optional<size_t> chunk,
-                      uint64_t overflow_first);
+    Result<void> push(Pending node, std::span<const std::byte> sample);
     Result<void> join(size_t children);
     Result<void> finish_root();
-    Result<void> emit(size_t child, const Waiting& from, const std::vector<std::byte>& sample);
-    Result<void> append_overflow(const Waiting& from, std::span<const std::byte> payload,
-                                 format::Entry& entry);
+    Result<void> emit(size_t child, const std::vector<std::byte>& sample);
     Result<std::vector<std::byte>> sample_of(const Waiting& waiting) const;
 
     CacheWriter& writer_;

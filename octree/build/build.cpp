@@ -93,7 +93,7 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
         const HandOver::Piece handed(begun, built_chunks);
         auto built = std::make_shared<Built>(Built{chunk, {}});
         if (error.any()) return built;
-        if (auto tree = build_subtree(loader, chunk, limits, memory.chunk_points))
+        if (auto tree = build_subtree(loader, chunk, limits))
             built->tree = std::move(*tree);
         else
             error.report(chunk, std::move(tree).error());
@@ -102,13 +102,10 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
     const auto assemble = [&](const std::shared_ptr<Built>& built) {
         const HandOver::Piece handed(built_chunks, built_chunks);
         if (error.any()) return;
-        const uint64_t count = store.chunks()[built->chunk].count;
-        const bool whole =
-            built->tree.overflow_first == count;  // else its rest is read when its parent is there
-        progress.add(count);
+        progress.add(store.chunks()[built->chunk].count);
         if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
             error.report(built->chunk, std::move(done).error());
-        if (whole) store.discard(built->chunk);
+        store.discard(built->chunk);
     };
     begun.give();
     tbb::parallel_pipeline(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct Chunk {
     uint64_t first = 0;  ///< its first point in the scratch file
     uint64_t count = 0;
 };
+
+/// Where the points of one cell of kMaxLevel are more than a node or a chunk holds, they are divided into
+/// eight by their order: the first that the child in an octant gets; `octant` 8 is the end.
+inline uint64_t stacked_first(uint64_t count, uint32_t octant) {
+    return count / 8 * octant + std::min<uint64_t>(count % 8, octant);
+}
 
 /// How a build shares out `--memory`.
 struct MemoryPlan {

@@ -101,11 +101,24 @@ Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cu
     return chunks;
 }
 
-/// Splits chunks that are still too large, as deep as the Morton code goes; the rest is kept in order.
+/// Divides the points of one place, as they lie.
+void ChunkStore::stack(const Chunk& chunk, uint64_t limit) {
+    if (chunk.count <= limit || chunk.key.level == kMostLevel) {
+        chunks_.push_back(chunk);
+        return;
+    }
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        const uint64_t first = stacked_first(chunk.count, octant),
+                       end = stacked_first(chunk.count, octant + 1);
+        stack({chunk.key.child(octant), chunk.first + first, end - first}, limit);
+    }
+}
+
+/// Splits chunks that are still too large, as deep as the Morton code goes and beyond.
 Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& memory) {
     for (const Chunk& chunk : coarse) {
         if (chunk.count <= memory.chunk_points || chunk.key.level == kMaxLevel) {
-            chunks_.push_back(chunk);
+            stack(chunk, memory.chunk_points);
             continue;
         }
         LUCARNE_ASSIGN(auto finer, split(pass_over(chunk, memory), chunk.key, chunk.count, memory));

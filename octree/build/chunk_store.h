@@ -39,6 +39,7 @@ class ChunkStore {
     Result<std::vector<Chunk>> split(const Pass& pass, const NodeKey& cube, uint64_t points,
                                      const MemoryPlan& memory);
     Result<void> refine(std::vector<Chunk> coarse, const MemoryPlan& memory);
+    void stack(const Chunk& chunk, uint64_t limit);
     Pass pass_over(const Chunk& chunk, const MemoryPlan& memory);
 
     ScratchFile file_;

@@ -15,7 +15,8 @@ constexpr float kRadiusStep = 0.8f;
 
 }  // namespace
 
-void Sampler::start(const NodeKey& node) {
+void Sampler::start(const NodeKey& key) {
+    const NodeKey node = key.cell();
     const auto corner = [&](uint32_t cell) {
         return static_cast<uint32_t>(uint64_t{cell} << (32 - node.level));
     };

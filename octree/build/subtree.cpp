@@ -45,7 +45,7 @@ Result<void> Builder::load(size_t index, uint64_t count) {
     LUCARNE_ASSIGN(const auto input, loader_.load(index, 0, count));
     std::vector<CodeIndex> sorted(count);
     for (uint32_t i = 0; i < count; ++i) sorted[i] = {loader_.place(&input[size_t{i} * stride_]).code(), i};
-    sort_by_code(sorted, 3 * (kMaxLevel - key_.level));
+    sort_by_code(sorted, 3 * (kMaxLevel - key_.cell().level));
     codes_.resize(count);
     places_.resize(count);
     areas_.resize(count);
@@ -62,7 +62,7 @@ Result<void> Builder::load(size_t index, uint64_t count) {
 
 /// Bottom up: a leaf shows its points, an inner node a sample of what its children show.
 Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::vector<uint32_t>& sample) {
-    if (last - first <= limits_.leaf || key.level == kMaxLevel) {
+    if (last - first <= limits_.leaf || key.level == kMostLevel) {
         sample.resize(last - first);
         for (size_t i = first; i < last; ++i) sample[i - first] = static_cast<uint32_t>(i);
         const auto part = [&](auto& all) { return std::span(all).subspan(first, last - first); };
@@ -73,10 +73,14 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
         std::vector<uint32_t> sample;
     };
     std::vector<Child> children;
-    const uint32_t shift = 3 * (kMaxLevel - key.level - 1);
+    const auto end_of = [&](uint32_t octant, size_t begin) {
+        if (key.level >= kMaxLevel) return first + stacked_first(last - first, octant + 1);
+        const uint32_t shift = 3 * (kMaxLevel - key.level - 1);
+        return upper_end(begin, last, (key.child(octant).code() + 1) << shift);
+    };
     for (uint32_t octant = 0, begin = static_cast<uint32_t>(first); octant < 8; ++octant) {
         const NodeKey child = key.child(octant);
-        const auto end = static_cast<uint32_t>(upper_end(begin, last, (child.code() + 1) << shift));
+        const auto end = static_cast<uint32_t>(end_of(octant, begin));
         if (end > begin) {
             children.emplace_back();
             children.back().node = build_node(child, begin, end, children.back().sample);
@@ -137,21 +141,14 @@ double surface_of(std::span<const float> areas, std::span<const uint64_t> codes,
         ++depth;
     }
     const double width = root_size * std::exp2(-static_cast<double>(depth));
-    return static_cast<double>(cells) * width * width / 1.5;
+    const double part = std::exp2(-3.0 * static_cast<double>(level - std::min(level, kMaxLevel)));
+    return static_cast<double>(cells) * width * width / 1.5 * part;
 }
 
-Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits,
-                              uint64_t chunk_points) {
-    const Chunk& chunk = loader.chunks()[index];
-    // A chunk over the limit is one place: its first points can be told from one another no better than the
-    // rest.
-    const uint64_t count = chunk.count > chunk_points ? limits.leaf : chunk.count;
+Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits) {
     Builder builder(loader, limits);
-    LUCARNE_TRY(builder.load(index, count));
-    Subtree tree = builder.build();
-    tree.overflow_first = count;
-    tree.root.points = chunk.count;
-    return tree;
+    LUCARNE_TRY(builder.load(index, loader.chunks()[index].count));
+    return builder.build();
 }
 
 }  // namespace lucarne::octree

@@ -13,9 +13,6 @@ struct Subtree {
     std::vector<format::Entry> entries;  ///< depth first, payload offsets from the start of `payload`
     Pending root;
     std::vector<std::byte> sample;  ///< the root's sample, whole records in Morton order
-    /// Points of the chunk, from this one on, that stand in the root behind its sample: only where the Morton
-    /// code is exhausted and the place holds more points than memory.
-    uint64_t overflow_first = 0;
 };
 
 /// Appends the settled child's records to `payload` and its entry to `entries`. `record(i)` is the i-th of
@@ -36,13 +33,12 @@ void emit_child(NodeSampler& sampler, size_t child, uint32_t stride, std::vector
 }
 
 /// Builds chunk number `index` in memory.
-Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits,
-                              uint64_t chunk_points);
+Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits);
 
 /// The surface in a cube: the sum of its points' shares, those unknown counted as the mean of the known.
 /// Where none is known it is estimated from the cells that the points (sorted `codes`) occupy: a surface of
 /// area A crosses about 1.5 A / c^2 cells of size c (Crofton: the mean of |nx|+|ny|+|nz|), seen where cells
-/// hold four points or more.
+/// hold four points or more. Of the nodes that divide one place's points, each has its part of the cell.
 double surface_of(std::span<const float> areas, std::span<const uint64_t> codes, uint32_t level,
                   double root_size);
 

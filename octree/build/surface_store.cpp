@@ -30,7 +30,11 @@ class Access final : public ChunkAccess {
     const std::vector<glm::dvec3>& all_stations() const { return stations_; }
 
     size_t chunk_count() const override { return store_.chunks().size(); }
-    uint64_t point_count(size_t chunk) const override { return store_.chunks()[chunk].count; }
+    /// What one place holds by the chunk has no plane that could be seen, and would be everybody's neighbour.
+    uint64_t point_count(size_t chunk) const override {
+        const Chunk& found = store_.chunks()[chunk];
+        return found.key.level > kMaxLevel ? 0 : found.count;
+    }
     Box bounds(size_t chunk) const override {
         const Cube cube = store_.root().of(store_.chunks()[chunk].key);
         return {cube.min, cube.min + glm::dvec3(cube.size)};
@@ -98,7 +102,7 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     std::mutex mutex;
     const auto keep = [&](size_t chunk, ChunkNormals&& found) {
         const std::lock_guard lock(mutex);
-        return store.keep(chunk, access.point_count(chunk), found);
+        return store.keep(chunk, chunks.chunks()[chunk].count, found);
     };
     LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
     if (settings.normals) store.limit_strays();

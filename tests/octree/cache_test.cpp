@@ -179,7 +179,7 @@ TEST_F(Cache, RejectsLyingDirectories) {
     expect_rejected(with_entry(last, [](Entry& e) { e.count += 1; }), "do not add up");
     expect_rejected(with_entry(last, [](Entry& e) { e.count += 1, e.subtree_count += 1; }), "do not add up");
     expect_rejected(with_entry(0, [](Entry& e) { e.subtree_count = UINT64_MAX; }), "do not add up");
-    expect_rejected(with_entry(last, [](Entry& e) { e.key.level = 22; }), "outside the root cube");
+    expect_rejected(with_entry(last, [](Entry& e) { e.key.level = 32; }), "outside the root cube");
     expect_rejected(with_entry(last, [](Entry& e) { e.key.x = 1u << 31; }), "outside the root cube");
     expect_rejected(with_entry(last, [](Entry& e) { e.key.x ^= 1; }), "not where they belong");
     expect_rejected(with_entry(last, [](Entry& e) { e.child_mask = 255; }), "not where they belong");
