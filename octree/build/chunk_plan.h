@@ -48,7 +48,7 @@ class CountGrid {
     /// As fine as `bytes` and the number of points justify.
     CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes);
 
-    void count(const Place& place) { ++counts_[cell(place)]; }
+    void count(const Place& place, uint64_t points = 1) { counts_[cell(place)] += points; }
     /// Chunks in Morton order, at most `most` of them (64 or more); `limit` points each where that allows it.
     std::vector<Chunk> plan(uint64_t limit, size_t most);
     /// After plan: the index of the chunk that holds a place.
