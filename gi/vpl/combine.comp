@@ -40,10 +40,10 @@ void main() {
         // As points, which the races draw by: what is near is bounded by the density, and discs would send less there.
         irradiance += intensity * geometry;
     }
-    // Where its own race would not come by this rule (nearer to its parent's plane than surfaces can be told apart), what
-    // the others send must not count, or it would count twice.
+    // Its own race would not come by this rule: it is of its parent's plane, which positions are too coarse to tell, and its
+    // side is a guess. On a roof that would be the one that faces a sealed room.
     if (!(own > 0.0)) {
-        next[index].diffuse.xyz *= light.flux.xyz;
+        next[index] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
         return;
     }
     density *= reflected_share(Reflectance(light.diffuse.xyz * kPi, light.incident.w, 1.0));
