@@ -42,12 +42,14 @@ Result<Superblock> newest_superblock(const InputFile& file) {
     return block;
 }
 
-/// Reads a checksummed range. Its size was checked against the file before.
+/// Reads a checksummed range, and leaves `behind` zeros behind it. Its size was checked against the file
+/// before.
 Result<std::vector<std::byte>> read_checked(const InputFile& file, uint64_t offset, uint64_t bytes,
-                                            uint64_t sum, const std::string& what) {
-    std::vector<std::byte> data(bytes);
-    LUCARNE_TRY(file.read_at(offset, data));
-    if (format::checksum(data) != sum) return damaged(file, what + " does not match its checksum");
+                                            uint64_t sum, const std::string& what, size_t behind = 0) {
+    std::vector<std::byte> data(bytes + behind);
+    const std::span read(data.data(), bytes);
+    LUCARNE_TRY(file.read_at(offset, read));
+    if (format::checksum(read) != sum) return damaged(file, what + " does not match its checksum");
     return data;
 }
 
@@ -88,7 +90,7 @@ Result<void> CacheFile::read_directory() {
         if (entry.key.level > kMostLevel ||
             ((entry.key.x | entry.key.y | entry.key.z) >> entry.key.level) != 0)
             return damaged(file_, fmt::format("node {} lies outside the root cube", i));
-        if (entry.codec != format::kCodecRaw)
+        if (entry.codec > format::kCodecColumns)
             return damaged(file_, fmt::format("node {} uses the unknown codec {}", i, entry.codec));
         if (!std::all_of(entry.area_floor.begin(), entry.area_floor.end(),
                          [](float v) { return std::isfinite(v) && v >= 0; }))
@@ -99,8 +101,9 @@ Result<void> CacheFile::read_directory() {
                           .subtree_count = entry.subtree_count,
                           .payload_bytes = entry.payload_bytes,
                           .area_floor = entry.area_floor});
-        payloads_.push_back({entry.payload_offset, entry.checksum});
+        payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec});
     }
+    columns_ = codec::columns_of(header_.schema);
     return {};
 }
 
@@ -141,8 +144,11 @@ Result<void> CacheFile::check_payloads() {
     ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
     for (size_t i = 0; i < nodes_.size(); ++i) {
         const uint64_t bytes = nodes_[i].payload_bytes;
-        if (bytes != uint64_t{nodes_[i].count} * header_.schema.stride ||
-            !inside(payloads_[i].offset, bytes, block_.file_bytes))
+        const uint64_t records = uint64_t{nodes_[i].count} * header_.schema.stride;
+        const bool fits = payloads_[i].codec == format::kCodecRaw
+                              ? bytes == records
+                              : bytes < records && records <= codec::kMostRecordBytes;
+        if (!fits || !inside(payloads_[i].offset, bytes, block_.file_bytes))
             return damaged(file_, fmt::format("the points of node {} lie outside the file", i));
         if (bytes) ranges.emplace_back(payloads_[i].offset, payloads_[i].offset + bytes);
     }
@@ -154,9 +160,16 @@ Result<void> CacheFile::check_payloads() {
 
 Result<NodeData> CacheFile::load(uint32_t node) const {
     const NodeInfo& info = nodes_[node];
-    LUCARNE_ASSIGN(auto records, read_checked(file_, payloads_[node].offset, info.payload_bytes,
-                                              payloads_[node].checksum, fmt::format("node {}", node)));
-    return NodeData{info.count, std::move(records)};
+    const Payload& payload = payloads_[node];
+    const bool raw = payload.codec == format::kCodecRaw;
+    LUCARNE_ASSIGN(auto bytes, read_checked(file_, payload.offset, info.payload_bytes, payload.checksum,
+                                            fmt::format("node {}", node), raw ? 0 : codec::kReadAhead));
+    if (raw) return NodeData{info.count, std::move(bytes)};
+    NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * header_.schema.stride)};
+    codec::PayloadDecoder decoder(columns_, header_.schema.stride);
+    if (!decoder.decode(std::span(bytes).first(info.payload_bytes), data.records))
+        return damaged(file_, fmt::format("the points of node {} do not decode", node));
+    return data;
 }
 
 bool is_cache(const std::filesystem::path& path) {

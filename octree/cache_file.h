@@ -9,6 +9,7 @@
 
 #include "io/core/file.h"
 #include "octree/cache_format.h"
+#include "octree/codec/payload.h"
 #include "octree/metadata.h"
 
 namespace lucarne::octree {
@@ -31,6 +32,7 @@ class CacheFile final : public NodeSource {
  private:
     struct Payload {
         uint64_t offset = 0, checksum = 0;
+        uint8_t codec = format::kCodecRaw;
     };
 
     CacheFile(InputFile file, const format::Superblock& block) : file_(std::move(file)), block_(block) {}
@@ -43,6 +45,7 @@ class CacheFile final : public NodeSource {
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
     std::vector<Payload> payloads_;
+    std::vector<codec::Column> columns_;
 };
 
 }  // namespace lucarne::octree

@@ -16,11 +16,12 @@ static_assert(std::endian::native == std::endian::little,
               "caches are written and read as they lie in memory");
 
 inline constexpr std::array<uint8_t, 8> kMagic = {'L', 'U', 'C', 'A', 'R', 'N', 'E', 0x1a};
-inline constexpr uint32_t kVersion = 1;
+inline constexpr uint32_t kVersion = 2;
 inline constexpr size_t kSuperblockBytes = 4096;
 inline constexpr uint64_t kFirstPayload = 2 * kSuperblockBytes;
 inline constexpr size_t kEntryBytes = 64;
-inline constexpr uint8_t kCodecRaw = 0;  ///< the payload is the node's records as they are
+inline constexpr uint8_t kCodecRaw = 0;      ///< the payload is the node's records as they are
+inline constexpr uint8_t kCodecColumns = 1;  ///< compressed: octree/codec
 inline constexpr uint64_t kMaxMetadata = uint64_t{64} << 20;
 inline constexpr uint32_t kMaxStride = 1 << 16;
 

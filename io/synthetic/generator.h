@@ -55,4 +55,8 @@ struct ScanSetup {
 std::unique_ptr<PieceGenerator> make_scanner(std::shared_ptr<const SceneGeometry> geometry,
                                              const RecordPacker& packer, const ScanSetup& setup);
 
+/// The benchmark's town, about `options.points` points of it (survey.cpp): no surface to compare with.
+std::unique_ptr<PieceGenerator> make_survey(const SyntheticOptions& options);
+Schema survey_schema();
+
 }  // namespace lucarne::io

@@ -120,7 +120,24 @@ Result<void> check(const SyntheticOptions& options) {
     return {};
 }
 
+Result<std::unique_ptr<PointSource>> survey_source(const SyntheticOptions& options) {
+    if (options.even || options.normals || options.stations > 0)
+        return bad_arguments(options.scene, "has no surface, normals or stations to give",
+                             "leave out --even, --normals and --stations");
+    ScanInfo info;
+    info.path = options.scene;
+    info.format = "virtual survey";
+    info.declared_points = options.points;
+    return std::make_unique<SyntheticSource>(survey_schema(), std::move(info), make_survey(options));
+}
+
 }  // namespace
+
+const SyntheticScene& synthetic_survey() {
+    static const SyntheticScene kScene{"survey",
+                                       "a town from a car's roof, for benchmarks: trees, noise, wild ranges"};
+    return kScene;
+}
 
 RecordPacker::RecordPacker(bool with_station, bool with_normal)
     : with_station_(with_station), with_normal_(with_normal) {
@@ -151,6 +168,7 @@ void RecordPacker::append(const Point& point, std::vector<std::byte>& records) c
 
 Result<std::unique_ptr<PointSource>> synthetic_source(const SyntheticOptions& options) {
     LUCARNE_TRY(check(options));
+    if (options.scene == synthetic_survey().name) return survey_source(options);
     LUCARNE_ASSIGN(const std::shared_ptr<const SceneGeometry> geometry, SceneGeometry::create(options.scene));
     const RecordPacker packer(!options.even, options.normals);
     ScanInfo info;

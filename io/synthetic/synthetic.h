@@ -22,7 +22,11 @@ struct SyntheticOptions {
 struct SyntheticScene {
     std::string name, summary;
 };
+/// Those with a true surface.
 const std::vector<SyntheticScene>& synthetic_scenes();
+/// And a cloud without one, made as large as one likes for benchmarks: a town as a scanner on a car's roof
+/// delivers it, 1 mm, with noise in position, colour and intensity, trees and wild ranges.
+const SyntheticScene& synthetic_survey();
 
 /// A virtual scan as a stream: nothing is held but a few batches and the scene. Positions are in steps of 0.1
 /// mm; attributes: intensity u16, color u8 x3 (the albedo), point_source_id u16 (the station, from 1; not

@@ -23,6 +23,7 @@ Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const Node
       loader_(loader),
       stride_(loader.schema().stride),
       sampler_(limits),
+      emitter_(loader.schema()),
       samples_(std::move(samples)) {}
 
 Result<void> Assembler::add(size_t index, Subtree&& tree) {
@@ -103,9 +104,9 @@ Result<void> Assembler::finish_root() {
 Result<void> Assembler::emit(size_t child, const std::vector<std::byte>& sample) {
     std::vector<std::byte> payload;
     std::vector<format::Entry> entries;
-    emit_child(
-        sampler_, child, stride_, order_, [&](uint32_t i) { return &sample[size_t{i} * stride_]; }, payload,
-        entries);
+    emitter_.emit(
+        sampler_, child, [&](uint32_t i) { return &sample[size_t{i} * stride_]; },
+        from.overflow_chunk.has_value(), payload, entries);
     LUCARNE_ASSIGN(const uint64_t base, writer_.append(payload));
     for (auto& entry : entries) {  // one, or none where the parent took every point
         entry.payload_offset = base;

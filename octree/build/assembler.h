@@ -35,6 +35,7 @@ class Assembler {
     const RecordLoader& loader_;
     uint32_t stride_;
     NodeSampler sampler_;
+    Emitter emitter_;
     ScratchFile samples_;
     std::vector<Waiting> stack_;
     uint64_t end_ = 0;  ///< records in the scratch file; those behind the top of the stack are free again

@@ -57,6 +57,18 @@ void NodeSampler::taken(size_t child, std::vector<uint32_t>& indices) const {
         if (sampler_.passes()[i] < first_own_pass_) indices.push_back(static_cast<uint32_t>(i - c.begin));
 }
 
+void NodeSampler::kept(size_t child, std::vector<uint32_t>& indices, std::vector<uint8_t>& passes) const {
+    const Child& c = children_[child];
+    indices.clear();
+    passes.clear();
+    for (size_t i = c.begin; i < c.end; ++i) {
+        const uint8_t pass = sampler_.passes()[i];
+        if (pass < first_own_pass_) continue;
+        indices.push_back(static_cast<uint32_t>(i - c.begin));
+        passes.push_back(pass);
+    }
+}
+
 format::Entry NodeSampler::settle(size_t child, std::vector<uint32_t>& order) {
     const Child& c = children_[child];
     order.clear();

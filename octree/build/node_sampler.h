@@ -42,6 +42,8 @@ class NodeSampler {
     void taken(size_t child, std::vector<uint32_t>& indices) const;
     /// Which of it stays, in prefix order, and the child's directory entry but for its payload.
     format::Entry settle(size_t child, std::vector<uint32_t>& order);
+    /// Which of a child's sample stays, ascending, and the pass of each: what `settle` orders.
+    void kept(size_t child, std::vector<uint32_t>& indices, std::vector<uint8_t>& passes) const;
     /// The parent, with those of its children that kept any point.
     Pending parent() const;
 

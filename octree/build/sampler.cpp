@@ -9,7 +9,6 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr uint8_t kLastPass = 31;
 /// From one pass to the next. The number of points that fit grows by the inverse square, 1.56.
 constexpr float kRadiusStep = 0.8f;
 
@@ -112,26 +111,6 @@ void Sampler::run(float radius, size_t most) {
         reset_grid(radius);
         for (const uint32_t i : taken_) insert(i);
         take(waiting_, waiting_, pass);
-    }
-}
-
-void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vector<uint32_t>& order) {
-    // A counting sort by pass, then each pass dealt out in bit-reversed rank.
-    std::array<uint32_t, kLastPass + 2> begin{};
-    for (const uint8_t pass : passes) ++begin[pass + 1u];
-    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    std::vector<uint32_t> sorted(passes.size());
-    auto cursor = begin;
-    for (uint32_t i = 0; i < passes.size(); ++i) sorted[cursor[passes[i]]++] = i;
-    for (size_t pass = from; pass <= kLastPass; ++pass) {
-        const uint32_t count = begin[pass + 1] - begin[pass];
-        if (count == 0) continue;
-        const int bits = std::bit_width(count - 1);
-        for (uint32_t i = 0; i < uint32_t{1} << bits; ++i) {
-            uint32_t rank = 0;
-            for (int b = 0; b < bits; ++b) rank |= (i >> b & 1) << (bits - 1 - b);
-            if (rank < count) order.push_back(sorted[begin[pass] + rank]);
-        }
     }
 }
 

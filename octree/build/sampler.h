@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "octree/key.h"
+#include "octree/prefix_order.h"
 
 namespace lucarne::octree {
 
@@ -48,10 +49,5 @@ class Sampler {
     float radius2_ = 0, cells_ = 0;  ///< squared radius; grid cells per cube size
     size_t mask_ = 0;
 };
-
-/// Appends to `order` the points of [first, first + passes.size()) whose pass is at least `from`, pass by
-/// pass and inside a pass in bit-reversed rank (van der Corput along the points' Morton order), so that every
-/// prefix is even.
-void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vector<uint32_t>& order);
 
 }  // namespace lucarne::octree

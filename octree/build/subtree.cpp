@@ -12,7 +12,11 @@ namespace {
 class Builder {
  public:
     Builder(const RecordLoader& loader, const NodeLimits& limits)
-        : loader_(loader), limits_(limits), stride_(loader.schema().stride), sampler_(limits) {}
+        : loader_(loader),
+          limits_(limits),
+          stride_(loader.schema().stride),
+          sampler_(limits),
+          emitter_(loader.schema()) {}
 
     Result<void> load(size_t index, uint64_t count);
     Subtree build();
@@ -36,6 +40,7 @@ class Builder {
     std::vector<Place> places_;
     std::vector<float> areas_;
     NodeSampler sampler_;
+    Emitter emitter_;
     std::vector<uint32_t> order_;
     Subtree result_;
 };
@@ -96,8 +101,8 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
     sample.clear();
     for (size_t c = 0; c < children.size(); ++c) {
         const auto& from = children[c].sample;
-        emit_child(
-            sampler_, c, stride_, order_, [&](uint32_t i) { return record(from[i]); }, result_.payload,
+        emitter_.emit(
+            sampler_, c, [&](uint32_t i) { return record(from[i]); }, false, result_.payload,
             result_.entries);
         sampler_.taken(c, order_);
         for (const uint32_t i : order_) sample.push_back(from[i]);
@@ -106,7 +111,6 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
 }
 
 Subtree Builder::build() {
-    result_.payload.reserve(records_.size());
     std::vector<uint32_t> sample;
     result_.root = build_node(key_, 0, codes_.size(), sample);
     result_.sample.reserve(sample.size() * stride_);

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "octree/build/node_sampler.h"
+#include "octree/build/emitter.h"
 #include "octree/build/record_loader.h"
 
 namespace lucarne::octree {
@@ -14,23 +14,6 @@ struct Subtree {
     Pending root;
     std::vector<std::byte> sample;  ///< the root's sample, whole records in Morton order
 };
-
-/// Appends the settled child's records to `payload` and its entry to `entries`. `record(i)` is the i-th of
-/// its sample.
-template <class Record>
-void emit_child(NodeSampler& sampler, size_t child, uint32_t stride, std::vector<uint32_t>& order,
-                const Record& record, std::vector<std::byte>& payload, std::vector<format::Entry>& entries) {
-    format::Entry entry = sampler.settle(child, order);
-    if (entry.subtree_count == 0) return;  // its parent took everything
-    entry.payload_offset = payload.size();
-    entry.payload_bytes = entry.count * stride;
-    for (const uint32_t i : order) {
-        const std::byte* bytes = record(i);
-        payload.insert(payload.end(), bytes, bytes + stride);
-    }
-    entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
-    entries.push_back(entry);
-}
 
 /// Builds chunk number `index` in memory.
 Result<Subtree> build_subtree(const RecordLoader& loader, size_t index, const NodeLimits& limits);

@@ -193,11 +193,13 @@ TEST_F(Cache, RejectsLyingDirectories) {
                     "has no parent");
     expect_rejected(with_entry(0, [](Entry& e) { e.child_mask = 0; }), "not where they belong");
     expect_rejected(with_entry(0, [](Entry& e) { e.key.level = 1; }), "no root node");
-    expect_rejected(with_entry(last, [](Entry& e) { e.codec = 1; }), "unknown codec 1");
+    expect_rejected(with_entry(last, [](Entry& e) { e.codec = 2; }), "unknown codec 2");
+    expect_rejected(with_entry(last, [](Entry& e) { e.codec = format::kCodecRaw; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes = e.count * 15; }), "outside the file");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = UINT64_MAX; }), "outside the file");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = 0; }), "outside the file");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset += 15; }), "overlap");
-    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes += 1; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes += 1; }), "overlap");
     expect_rejected(with_entry(last, [](Entry& e) { e.area_floor[2] = NAN; }), "area floor");
     expect_rejected(with_entry(last, [](Entry& e) { e.area_floor[0] = -1; }), "area floor");
 }
@@ -220,13 +222,20 @@ TEST_F(Cache, VerifyFindsPointsOutsideTheirCube) {
     for (size_t i = 0; i < nodes(); ++i)
         if ((*cache)->nodes()[i].child_mask == 0) leaves.push_back(i);
     ASSERT_FALSE(leaves.empty());
-    std::string bytes = bytes_;
-    auto* directory = reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset;
-    format::Entry a = format::load_entry(directory + leaves[0] * kEntryBytes);
-    std::byte* record = reinterpret_cast<std::byte*>(bytes.data()) + a.payload_offset;
-    io::store(record, io::load<float>(record) < 5 ? 9.0f : 1.0f);
-    a.checksum = format::checksum({record, a.payload_bytes});
-    format::store_entry(a, directory + leaves[0] * kEntryBytes);
+    // The node's points as codec 0 behind the end.
+    NodeData data = (*cache)->load(static_cast<uint32_t>(leaves[0])).value();
+    io::store(data.records.data(), io::load<float>(data.records.data()) < 5 ? 9.0f : 1.0f);
+    std::string bytes =
+        bytes_ + std::string(reinterpret_cast<const char*>(data.records.data()), data.records.size());
+    auto* entry_at =
+        reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset + leaves[0] * kEntryBytes;
+    format::Entry a = format::load_entry(entry_at);
+    a.codec = format::kCodecRaw;
+    a.payload_offset = bytes_.size();
+    a.payload_bytes = static_cast<uint32_t>(data.records.size());
+    a.checksum = format::checksum(data.records);
+    format::store_entry(a, entry_at);
+    block_.file_bytes = bytes.size();
     const auto name = write(resealed(bytes, block_));
     EXPECT_TRUE(open_cache(name));
     const auto verified = verify_cache(name, [](uint64_t) {});

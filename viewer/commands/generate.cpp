@@ -43,7 +43,9 @@ Result<void> generate(GenerateOptions options) {
     }
     LUCARNE_TRY(writer->finish());
     const size_t stations = source->info().stations.size();
-    if (options.scan.even)
+    if (stations == 0 && !options.scan.even)
+        log::info("{}: {} points of {}", options.output, points, options.scan.scene);
+    else if (options.scan.even)
         log::info("{}: {} points of {}, sampled evenly", options.output, points, options.scan.scene);
     else
         log::info("{}: {} points of {} from {} station{}", options.output, points, options.scan.scene,
@@ -59,6 +61,7 @@ void add_generate(CLI::App& app, Command& chosen) {
     std::string scenes = "Scenes:";
     for (const auto& scene : io::synthetic_scenes())
         scenes += fmt::format("\n  {:<11}{}", scene.name, scene.summary);
+    scenes += fmt::format("\n  {:<11}{}", io::synthetic_survey().name, io::synthetic_survey().summary);
     command->footer(scenes);
     command->add_option("scene", options->scan.scene, "Which scene, see below")
         ->required()

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "octree/build/node_sampler.h"
+#include "octree/codec/payload.h"
+
+namespace lucarne::octree {
+
+/// Turns settled children into payloads and directory entries.
+class Emitter {
+ public:
+    explicit Emitter(const io::Schema& schema) : stride_(schema.stride), encoder_(schema) {}
+
+    /// Appends the settled child's payload and its entry, whose offset counts from the start of `payload`.
+    /// `record(i)` is the i-th of its sample. `raw`: the payload is not compressed.
+    template <class Record>
+    void emit(NodeSampler& sampler, size_t child, const Record& record, bool raw,
+              std::vector<std::byte>& payload, std::vector<format::Entry>& entries) {
+        format::Entry entry = sampler.settle(child, order_);
+        if (entry.subtree_count == 0) return;  // its parent took everything
+        raw = raw || uint64_t{entry.count} * stride_ > codec::kMostRecordBytes;
+        if (!raw) sampler.kept(child, curve_, passes_);
+        collect(raw ? order_ : curve_, record);
+        finish(raw, entry, payload);
+        // Compressing some few records may gain nothing.
+        if (!raw && entry.payload_bytes >= records_.size()) {
+            payload.resize(entry.payload_offset);
+            collect(order_, record);
+            finish(true, entry, payload);
+        }
+        entries.push_back(entry);
+    }
+
+ private:
+    template <class Record>
+    void collect(const std::vector<uint32_t>& indices, const Record& record) {
+        records_.resize(indices.size() * stride_);
+        std::byte* to = records_.data();
+        for (const uint32_t i : indices) {
+            std::memcpy(to, record(i), stride_);
+            to += stride_;
+        }
+    }
+    void finish(bool raw, format::Entry& entry, std::vector<std::byte>& payload);
+
+    uint32_t stride_;
+    codec::PayloadEncoder encoder_;
+    std::vector<uint32_t> order_, curve_;
+    std::vector<uint8_t> passes_;
+    std::vector<std::byte> records_;
+};
+
+}  // namespace lucarne::octree
