@@ -105,8 +105,7 @@ Result<void> Assembler::emit(size_t child, const std::vector<std::byte>& sample)
     std::vector<std::byte> payload;
     std::vector<format::Entry> entries;
     emitter_.emit(
-        sampler_, child, [&](uint32_t i) { return &sample[size_t{i} * stride_]; },
-        from.overflow_chunk.has_value(), payload, entries);
+        sampler_, child, [&](uint32_t i) { return &sample[size_t{i} * stride_]; }, payload, entries);
     LUCARNE_ASSIGN(const uint64_t base, writer_.append(payload));
     for (auto& entry : entries) {  // one, or none where the parent took every point
         entry.payload_offset = base;

@@ -2,15 +2,16 @@
 
 namespace lucarne::octree {
 
-void Emitter::finish(bool raw, format::Entry& entry, std::vector<std::byte>& payload) {
-    entry.codec = raw ? format::kCodecRaw : format::kCodecColumns;
-    entry.payload_offset = payload.size();
-    if (raw)
-        payload.insert(payload.end(), records_.begin(), records_.end());
+bool Emitter::compress(format::Entry& entry, std::vector<std::byte>& payload) {
+    const size_t begin = payload.size();
+    encoder_.encode(records_, passes_, payload);
+    const bool smaller =
+        payload.size() - begin < records_.size() && records_.size() <= codec::kMostRecordBytes;
+    if (smaller)
+        entry.codec = format::kCodecColumns;
     else
-        encoder_.encode(records_, passes_, payload);
-    entry.payload_bytes = static_cast<uint32_t>(payload.size() - entry.payload_offset);
-    entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
+        payload.resize(begin);
+    return smaller;
 }
 
 }  // namespace lucarne::octree

@@ -13,22 +13,21 @@ class Emitter {
     explicit Emitter(const io::Schema& schema) : stride_(schema.stride), encoder_(schema) {}
 
     /// Appends the settled child's payload and its entry, whose offset counts from the start of `payload`.
-    /// `record(i)` is the i-th of its sample. `raw`: the payload is not compressed.
+    /// `record(i)` is the i-th of its sample.
     template <class Record>
-    void emit(NodeSampler& sampler, size_t child, const Record& record, bool raw,
-              std::vector<std::byte>& payload, std::vector<format::Entry>& entries) {
+    void emit(NodeSampler& sampler, size_t child, const Record& record, std::vector<std::byte>& payload,
+              std::vector<format::Entry>& entries) {
         format::Entry entry = sampler.settle(child, order_);
         if (entry.subtree_count == 0) return;  // its parent took everything
-        raw = raw || uint64_t{entry.count} * stride_ > codec::kMostRecordBytes;
-        if (!raw) sampler.kept(child, curve_, passes_);
-        collect(raw ? order_ : curve_, record);
-        finish(raw, entry, payload);
-        // Compressing some few records may gain nothing.
-        if (!raw && entry.payload_bytes >= records_.size()) {
-            payload.resize(entry.payload_offset);
+        entry.payload_offset = payload.size();
+        sampler.kept(child, curve_, passes_);
+        collect(curve_, record);
+        if (!compress(entry, payload)) {
             collect(order_, record);
-            finish(true, entry, payload);
+            payload.insert(payload.end(), records_.begin(), records_.end());
         }
+        entry.payload_bytes = static_cast<uint32_t>(payload.size() - entry.payload_offset);
+        entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
         entries.push_back(entry);
     }
 
@@ -42,7 +41,8 @@ class Emitter {
             to += stride_;
         }
     }
-    void finish(bool raw, format::Entry& entry, std::vector<std::byte>& payload);
+    /// Appends the records compressed; false, and nothing is appended, where that gains nothing.
+    bool compress(format::Entry& entry, std::vector<std::byte>& payload);
 
     uint32_t stride_;
     codec::PayloadEncoder encoder_;

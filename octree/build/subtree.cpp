@@ -102,8 +102,7 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
     for (size_t c = 0; c < children.size(); ++c) {
         const auto& from = children[c].sample;
         emitter_.emit(
-            sampler_, c, [&](uint32_t i) { return record(from[i]); }, false, result_.payload,
-            result_.entries);
+            sampler_, c, [&](uint32_t i) { return record(from[i]); }, result_.payload, result_.entries);
         sampler_.taken(c, order_);
         for (const uint32_t i : order_) sample.push_back(from[i]);
     }
