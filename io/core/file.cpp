@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include <fcntl.h>
@@ -10,50 +9,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/core/file_io.h"
+
 namespace lucarne {
+
+using file_io::read_exactly;
+using file_io::read_up_to;
+using file_io::reason;
+using file_io::write_all;
+
 namespace {
-
-std::string reason(int code) {
-    return std::strerror(code);
-}
-
-Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data,
-                       const std::filesystem::path& path) {
-    while (!data.empty()) {
-        const ssize_t n = ::pwrite(fd, data.data(), data.size(), static_cast<off_t>(offset));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0)
-            return failed(path.string(),
-                          fmt::format("cannot be written ({})", reason(n < 0 ? errno : ENOSPC)),
-                          errno == ENOSPC || n == 0 ? "free some space or choose another disk" : "");
-        offset += static_cast<uint64_t>(n);
-        data = data.subspan(static_cast<size_t>(n));
-    }
-    return {};
-}
-
-Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out,
-                          const std::filesystem::path& path) {
-    size_t done = 0;
-    while (done < out.size()) {
-        const ssize_t n =
-            ::pread(fd, out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return failed(path.string(), fmt::format("cannot be read ({})", reason(errno)));
-        if (n == 0) break;
-        done += static_cast<size_t>(n);
-    }
-    return done;
-}
-
-Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
-                          const std::filesystem::path& path) {
-    LUCARNE_ASSIGN(const size_t got, read_up_to(fd, offset, out, path));
-    if (got != out.size())
-        return rejected(path.string(),
-                        fmt::format("ends early: {} bytes wanted at {}, {} there", out.size(), offset, got));
-    return {};
-}
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
     return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -205,6 +170,12 @@ Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
         ::unlink(name.c_str());
     }
     return ScratchFile(fd, folder);
+}
+
+Result<ScratchFile> ScratchFile::named(const std::filesystem::path& path, bool keep) {
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (keep ? 0 : O_TRUNC), 0600);
+    if (fd < 0) return failed(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
+    return ScratchFile(fd, path.parent_path());
 }
 
 ScratchFile::ScratchFile(ScratchFile&& other) noexcept {

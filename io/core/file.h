@@ -60,10 +60,13 @@ class OutputFile {
     uint64_t position_ = 0;
 };
 
-/// A nameless scratch file in `folder`: gone with the process however it ends.
+/// A scratch file. Nameless in `folder`: gone with the process however it ends; or under a name, to be found
+/// again by who resumes the work.
 class ScratchFile {
  public:
     static Result<ScratchFile> create(const std::filesystem::path& folder);
+    /// Opens or makes `path`; empties it unless `keep`. Who removes it is the caller's business.
+    static Result<ScratchFile> named(const std::filesystem::path& path, bool keep);
     ScratchFile(ScratchFile&& other) noexcept;
     ScratchFile& operator=(ScratchFile&& other) noexcept;
     ~ScratchFile();

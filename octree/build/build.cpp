@@ -13,6 +13,7 @@
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
 #include "octree/build/assembler.h"
+#include "octree/build/identity.h"
 #include "octree/build/scan_stage.h"
 
 namespace lucarne::octree {
@@ -37,6 +38,19 @@ auto timed(BuildReport& report, const char* name, const Stage& stage) {
                              std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
                              cpu_seconds() - cpu});
     return result;
+}
+
+/// A stage's outcome: as an interrupted build wrote it down, else by `run`, and then written down.
+template <class Restore, class Run>
+auto resumable(Workspace& work, const char* stage, const Restore& restore, const Run& run)
+    -> decltype(run()) {
+    if (const auto* record = work.finished(stage)) {
+        if (auto before = restore(*record)) return before;
+        log::warn("what is left of '{}' is damaged; it is done again", stage);
+    }
+    auto outcome = run();
+    if (outcome) LUCARNE_TRY(work.finish(stage, outcome->save()));
+    return outcome;
 }
 
 /// Which normals to estimate: empty for no estimation at all, else whether normals are wanted besides areas.
@@ -70,14 +84,42 @@ Pass with_progress(const Pass& pass, Progress& progress, uint32_t stride) {
     };
 }
 
+Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
+                               const MemoryPlan& memory) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
+    ChunkStore store(std::move(file), inputs.schema(), facts.root);
+    Progress progress("sorting into chunks", 2 * facts.points, "points");
+    const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
+    LUCARNE_TRY(store.fill(with_progress(pass, progress, inputs.schema().stride), facts.points, memory));
+    return store;
+}
+Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
+                               std::span<const std::byte> record) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", true));
+    return ChunkStore::restore(std::move(file), inputs.schema(), facts.root, record);
+}
+
+Result<SurfaceStore> find_surface(const Workspace& work, const ChunkStore& store,
+                                  const std::vector<io::ScanInfo>& scans,
+                                  const SurfaceStore::Settings& settings) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("normals", false));
+    return SurfaceStore::estimate(store, scans, std::move(file), settings);
+}
+Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store,
+                                  std::span<const std::byte> record) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("normals", true));
+    return SurfaceStore::restore(store, std::move(file), record);
+}
+
 struct Built {
     size_t chunk = 0;
     Subtree tree;
 };
 
 /// Chunks are built side by side and put together in order; no more than `workers` are in memory.
+/// `keep`: a resumed build may want the chunks again, so their place is not given back.
 Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
-                          const MemoryPlan& memory, Assembler& assembler) {
+                          const MemoryPlan& memory, bool keep, Assembler& assembler) {
     uint64_t points = 0;
     for (const auto& chunk : store.chunks()) points += chunk.count;
     Progress progress("building", points, "points");
@@ -105,7 +147,7 @@ Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const N
         progress.add(store.chunks()[built->chunk].count);
         if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
             error.report(built->chunk, std::move(done).error());
-        store.discard(built->chunk);
+        if (!keep) store.discard(built->chunk);
     };
     begun.give();
     tbb::parallel_pipeline(
@@ -149,37 +191,45 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
     const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
     const NodeLimits limits(inputs.schema().stride + added);
-    const MemoryPlan::Work work{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
-    LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, work));
+    const MemoryPlan::Work need{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
+    LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, need));
 
     BuildReport report;
-    LUCARNE_ASSIGN(const auto facts,
-                   timed(report, "scan", [&] { return scan_inputs(inputs, memory.batch_bytes); }));
+    const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
+    LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
+    LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
+                       return resumable(work, "scan", ScanFacts::restore,
+                                        [&] { return scan_inputs(inputs, memory.batch_bytes); });
+                   }));
     if (facts.dropped)
         log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
 
-    LUCARNE_ASSIGN(ChunkStore store, ChunkStore::create(folder, inputs.schema(), facts.root));
-    LUCARNE_TRY(timed(report, "chunk", [&] {
-        Progress progress("sorting into chunks", 2 * facts.points, "points");
-        const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
-        return store.fill(with_progress(pass, progress, inputs.schema().stride), facts.points, memory);
-    }));
+    LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
+                       return resumable(
+                           work, "chunk",
+                           [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
+                           [&] { return fill_chunks(work, inputs, facts, memory); });
+                   }));
     const SourceHeader bare = header_of(inputs, facts, inputs.schema());
     std::optional<SurfaceStore> surface;
-    if (normals)
-        LUCARNE_TRY(timed(report, "normals", [&]() -> Result<void> {
-            const SurfaceStore::Settings settings{*normals, options.neighbours, threads, options.memory};
-            LUCARNE_ASSIGN(surface, SurfaceStore::estimate(store, bare.scans, folder, settings));
-            return {};
-        }));
+    if (normals) {
+        const SurfaceStore::Settings settings{*normals, options.neighbours, threads, options.memory};
+        LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
+                           return resumable(
+                               work, "normals",
+                               [&](const auto& record) { return kept_surface(work, store, record); },
+                               [&] { return find_surface(work, store, bare.scans, settings); });
+                       }));
+    }
     const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
     LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
     LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
         LUCARNE_ASSIGN(Assembler assembler, Assembler::create(writer, loader, limits, folder));
-        return build_chunks(store, loader, limits, memory, assembler);
+        return build_chunks(store, loader, limits, memory, work.resumable(), assembler);
     }));
     LUCARNE_TRY(
         timed(report, "write", [&] { return writer.finish(header_of(inputs, facts, loader.schema())); }));
+    work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;
     report.chunks = store.chunks().size();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/points.h"
+#include "octree/build/workspace.h"
 
 namespace lucarne::octree {
 
@@ -24,6 +25,7 @@ struct BuildOptions {
     unsigned threads = 0;                 ///< 0: all cores
     std::filesystem::path temp_folder;    ///< for scratch files; empty: the output's folder
     bool overwrite = false;
+    Resume resume = Resume::never;
     uint32_t neighbours = 16;  ///< for normals and areas
 };
 
@@ -41,7 +43,8 @@ struct BuildReport {
 
 /// Builds a cache from scans: scan, chunk, normals, then build chunk by chunk while the levels above are put
 /// together. The file is the same for any number of threads and any memory cap. Errors: unreadable inputs, no
-/// points, an output that exists or cannot be written, a full disk; nothing is left behind.
+/// points, an output that exists or cannot be written, a full disk; nothing is left behind, but for what
+/// `resume` asks for. A resumed build gives the same bytes.
 Result<BuildReport> build_cache(const BuildOptions& options);
 
 }  // namespace lucarne::octree

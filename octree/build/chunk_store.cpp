@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include <xxhash.h>
+
+#include "octree/build/record_bytes.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -13,16 +17,22 @@ auto changed() {
 
 constexpr uint64_t kMinBuffer = 8 << 10, kMaxBuffer = 256 << 10;
 
+uint64_t chained_sum(uint64_t before, std::span<const std::byte> piece) {
+    return piece.empty() ? before : XXH3_64bits_withSeed(piece.data(), piece.size(), before);
+}
+
 /// Collects the records of each chunk and writes them in large pieces.
 class Dealer {
  public:
-    Dealer(ScratchFile& file, std::span<const Chunk> chunks, uint64_t first, uint32_t stride, uint64_t bytes)
+    Dealer(ScratchFile& file, std::span<Chunk> chunks, uint64_t first, uint32_t stride, uint64_t bytes)
         : file_(file), stride_(stride) {
         const uint64_t each = std::clamp<uint64_t>(bytes / chunks.size(), kMinBuffer, kMaxBuffer);
         capacity_ = std::max<uint64_t>(1, each / stride) * stride;
-        for (const auto& chunk : chunks)
+        for (auto& chunk : chunks) {
+            chunk.piece = static_cast<uint32_t>(capacity_);
             lanes_.push_back(
-                {(first + chunk.first) * stride, (first + chunk.first + chunk.count) * stride, {}});
+                {chunk, (first + chunk.first) * stride, (first + chunk.first + chunk.count) * stride, {}});
+        }
     }
 
     Result<void> deal(size_t chunk, const std::byte* record) {
@@ -42,12 +52,14 @@ class Dealer {
 
  private:
     struct Lane {
+        Chunk& chunk;
         uint64_t offset, end;
         std::vector<std::byte> waiting;
     };
     Result<void> flush(Lane& lane) {
         if (lane.waiting.size() > lane.end - lane.offset) return changed();
         LUCARNE_TRY(file_.write_at(lane.offset, lane.waiting));
+        lane.chunk.sum = chained_sum(lane.chunk.sum, lane.waiting);
         lane.offset += lane.waiting.size();
         lane.waiting.clear();
         return {};
@@ -61,10 +73,34 @@ class Dealer {
 
 }  // namespace
 
-Result<ChunkStore> ChunkStore::create(const std::filesystem::path& folder, const io::Schema& schema,
-                                      const Cube& root) {
-    LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder));
-    return ChunkStore(std::move(file), schema, root);
+Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schema, const Cube& root,
+                                       std::span<const std::byte> record) {
+    ChunkStore store(std::move(file), schema, root);
+    ByteReader reader(record);
+    store.chunks_ = reader.get_all<Chunk>();
+    store.end_ = reader.get<uint64_t>();
+    if (!reader.sound()) return failed("chunks", "were not written down whole");
+    for (const auto& chunk : store.chunks_) LUCARNE_TRY(store.check(chunk));
+    return store;
+}
+
+std::vector<std::byte> ChunkStore::save() const {
+    ByteWriter writer;
+    writer.put_all(chunks_);
+    writer.put(end_);
+    return writer.take();
+}
+
+Result<void> ChunkStore::check(const Chunk& chunk) const {
+    uint64_t sum = 0;
+    std::vector<std::byte> piece(chunk.piece);
+    const uint64_t begin = chunk.first * schema_.stride, bytes = chunk.count * schema_.stride;
+    for (uint64_t at = 0; at < bytes && chunk.piece; at += piece.size()) {
+        const auto part = std::span(piece).first(std::min<uint64_t>(piece.size(), bytes - at));
+        LUCARNE_TRY(file_.read_at(begin + at, part));
+        sum = chained_sum(sum, part);
+    }
+    return sum == chunk.sum ? Result<void>{} : failed("chunks", "are not as they were left");
 }
 
 Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory) {

@@ -18,8 +18,13 @@ using Pass = std::function<Result<void>(const Visit&)>;
 /// so that nothing depends on timing.
 class ChunkStore {
  public:
-    static Result<ChunkStore> create(const std::filesystem::path& folder, const io::Schema& schema,
-                                     const Cube& root);
+    ChunkStore(ScratchFile file, const io::Schema& schema, const Cube& root)
+        : file_(std::move(file)), schema_(schema), root_(root) {}
+    /// What `save` wrote down about a store whose scratch file is still there. Errors: a file that does not
+    /// hold what was dealt out.
+    static Result<ChunkStore> restore(ScratchFile file, const io::Schema& schema, const Cube& root,
+                                      std::span<const std::byte> record);
+    std::vector<std::byte> save() const;
 
     /// Reads `points` points twice: to count them and to deal them out.
     Result<void> fill(const Pass& pass, uint64_t points, const MemoryPlan& memory);
@@ -34,8 +39,7 @@ class ChunkStore {
     void discard(size_t chunk);
 
  private:
-    ChunkStore(ScratchFile file, const io::Schema& schema, const Cube& root)
-        : file_(std::move(file)), schema_(schema), root_(root) {}
+    Result<void> check(const Chunk& chunk) const;
     Result<std::vector<Chunk>> split(const Pass& pass, const NodeKey& cube, uint64_t points,
                                      const MemoryPlan& memory);
     Result<void> refine(std::vector<Chunk> coarse, const MemoryPlan& memory);

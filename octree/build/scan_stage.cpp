@@ -6,6 +6,8 @@
 
 #include <glm/common.hpp>
 
+#include "octree/build/record_bytes.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -33,6 +35,18 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
 }
 
 }  // namespace
+
+std::vector<std::byte> ScanFacts::save() const {
+    ByteWriter writer;
+    writer.put(*this);
+    return writer.take();
+}
+Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
+    ByteReader reader(record);
+    const auto facts = reader.get<ScanFacts>();
+    if (!reader.sound()) return failed("scan", "was not written down whole");
+    return facts;
+}
 
 Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
     return [&inputs, batch_bytes](const Visit& visit) -> Result<void> {

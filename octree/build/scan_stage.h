@@ -10,6 +10,9 @@ struct ScanFacts {
     uint64_t points = 0, dropped = 0;
     glm::dvec3 min{0.0}, max{0.0};
     Cube root;  ///< the smallest cube at `min` that holds every point
+
+    std::vector<std::byte> save() const;
+    static Result<ScanFacts> restore(std::span<const std::byte> record);
 };
 
 /// A pass over the points of all inputs, in the unified schema, input after input.

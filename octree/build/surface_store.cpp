@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "octree/build/record_bytes.h"
+#include "octree/cache_format.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -89,8 +92,7 @@ class Access final : public ChunkAccess {
 }  // namespace
 
 Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
-                                            const std::filesystem::path& folder, const Settings& settings) {
-    LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder));
+                                            ScratchFile file, const Settings& settings) {
     SurfaceStore store(std::move(file), chunks);
     const Access access(chunks, scans);
     NormalOptions options;
@@ -129,14 +131,51 @@ Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals
             ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
         if (i < found.components.size()) points[i].component = found.components[i];
     }
-    return file_.write_at(first_[chunk] * sizeof(Point), std::as_bytes(std::span(points)));
+    const auto bytes = std::as_bytes(std::span(points));
+    sums_[chunk] = format::checksum(bytes);
+    return file_.write_at(first_[chunk] * sizeof(Point), bytes);
 }
 
-Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64_t first,
+std::vector<std::byte> SurfaceStore::save() const {
+    ByteWriter writer;
+    writer.put_all(sums_);
+    writer.put(most_stray_area_);
+    writer.put(uint64_t{signs_.size()});
+    for (const auto& signs : signs_) writer.put_all(signs);
+    return writer.take();
+}
+
+Result<SurfaceStore> SurfaceStore::restore(const ChunkStore& chunks, ScratchFile file,
+                                           std::span<const std::byte> record) {
+    SurfaceStore store(std::move(file), chunks);
+    ByteReader reader(record);
+    const auto sums = reader.get_all<uint64_t>();
+    store.most_stray_area_ = reader.get<float>();
+    const auto signed_chunks = reader.get<uint64_t>();
+    for (uint64_t i = 0; i < signed_chunks && reader.sound(); ++i)
+        store.signs_.push_back(reader.get_all<int8_t>());
+    if (!reader.sound() || sums.size() != store.sums_.size())
+        return failed("normals", "were not written down whole");
+    store.sums_ = sums;
+    for (size_t chunk = 0; chunk < sums.size(); ++chunk) {
+        LUCARNE_ASSIGN(const auto points, store.read(chunk, 0, store.count(chunk)));
+        if (format::checksum(std::as_bytes(std::span(points))) != sums[chunk])
+            return failed("normals", "are not as they were left");
+    }
+    return store;
+}
+
+Result<std::vector<SurfaceStore::Point>> SurfaceStore::read(size_t chunk, uint64_t first,
                                                             uint64_t count) const {
     std::vector<Point> points(count);
     LUCARNE_TRY(
         file_.read_at((first_[chunk] + first) * sizeof(Point), std::as_writable_bytes(std::span(points))));
+    return points;
+}
+
+Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64_t first,
+                                                            uint64_t count) const {
+    LUCARNE_ASSIGN(auto points, read(chunk, first, count));
     if (most_stray_area_ > 0)
         for (auto& point : points)
             if (point.normal == glm::vec3(0.0f)) point.area = std::min(point.area, most_stray_area_);

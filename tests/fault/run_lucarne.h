@@ -24,6 +24,22 @@ inline Outcome lucarne(const std::string& arguments) {
     return outcome;
 }
 
+/// The same with files that fail, as fault/preload/faults.cpp has it; `code` is -1 where it was killed.
+inline Outcome lucarne_with_fault(const std::string& fault, const std::string& arguments) {
+    Outcome outcome;
+    // The sanitizers' library wants to be the first, but does not need to.
+    const std::string command = "ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS
+                                "' LUCARNE_FAULT='" +
+                                fault + "' exec " LUCARNE_BINARY " " + arguments + " 2>&1";
+    FILE* pipe = ::popen(command.c_str(), "r");
+    if (!pipe) return outcome;
+    char buffer[4096];
+    while (std::fgets(buffer, sizeof buffer, pipe)) outcome.text += buffer;
+    const int status = ::pclose(pipe);
+    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+    return outcome;
+}
+
 inline std::string quoted(const std::filesystem::path& path) {
     return "'" + path.string() + "'";
 }

@@ -108,6 +108,7 @@ void add_convert(CLI::App& app, Command& chosen) {
                                                               {"estimate", NormalsMode::estimate},
                                                               {"none", NormalsMode::none}};
     auto options = std::make_shared<ConvertOptions>();
+    options->build.resume = octree::Resume::later;
     auto* command = app.add_subcommand("convert", "Build an octree cache from scans");
     command->add_option("inputs", options->inputs, "Scan files; several become one cache")
         ->required()
@@ -137,6 +138,9 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->capture_default_str()
         ->check(CLI::Range(3u, octree::kMostNormalNeighbours))
         ->type_name("K");
+    command->add_flag_callback(
+        "--resume", [options] { options->build.resume = octree::Resume::go_on; },
+        "Go on from the last stage that an interrupted conversion finished");
     command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
     command->add_option("--json", options->json, "Write what was done and how long it took")
         ->type_name("FILE");

@@ -1,0 +1,83 @@
+#include "io/core/update_file.h"
+
+#include <cerrno>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "io/core/file_io.h"
+
+namespace lucarne {
+
+using file_io::reason;
+
+Result<UpdateFile> UpdateFile::open(const std::filesystem::path& path, const char* busy) {
+    return open_locked(path, 0, busy);
+}
+Result<UpdateFile> UpdateFile::open_or_create(const std::filesystem::path& path, const char* busy) {
+    return open_locked(path, O_CREAT, busy);
+}
+
+Result<UpdateFile> UpdateFile::open_locked(const std::filesystem::path& path, int flags, const char* busy) {
+    for (;;) {
+        const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | flags, 0666);
+        if (fd < 0) {
+            auto why = fmt::format("cannot be opened for writing ({})", reason(errno));
+            return errno == ENOENT ? rejected(path.string(), std::move(why))
+                                   : failed(path.string(), std::move(why));
+        }
+        UpdateFile file(fd, path);
+        struct stat held {
+        }, named{};
+        if (::fstat(fd, &held) != 0 || !S_ISREG(held.st_mode))
+            return rejected(path.string(), "is not a regular file");
+        if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return failed(path.string(), busy, "wait until it is done");
+        // Who held the lock before may have put another file under the name, or removed it.
+        if (::stat(path.c_str(), &named) == 0 && named.st_ino == held.st_ino && named.st_dev == held.st_dev)
+            return file;
+    }
+}
+
+UpdateFile::UpdateFile(UpdateFile&& other) noexcept {
+    *this = std::move(other);
+}
+UpdateFile& UpdateFile::operator=(UpdateFile&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    std::swap(path_, other.path_);
+    return *this;
+}
+UpdateFile::~UpdateFile() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+Result<uint64_t> UpdateFile::size() const {
+    struct stat status {};
+    if (::fstat(fd_, &status) != 0)
+        return failed(path_.string(), fmt::format("cannot be read ({})", reason(errno)));
+    return static_cast<uint64_t>(status.st_size);
+}
+
+Result<void> UpdateFile::write_at(uint64_t offset, std::span<const std::byte> data) {
+    return file_io::write_all(fd_, offset, data, path_);
+}
+Result<void> UpdateFile::read_at(uint64_t offset, std::span<std::byte> out) const {
+    return file_io::read_exactly(fd_, offset, out, path_);
+}
+
+Result<void> UpdateFile::truncate(uint64_t bytes) {
+    while (::ftruncate(fd_, static_cast<off_t>(bytes)) != 0)
+        if (errno != EINTR)
+            return failed(path_.string(), fmt::format("cannot be cut off ({})", reason(errno)));
+    return {};
+}
+
+Result<void> UpdateFile::sync() {
+    if (::fsync(fd_) != 0) return failed(path_.string(), fmt::format("cannot be synced ({})", reason(errno)));
+    return {};
+}
+
+}  // namespace lucarne
