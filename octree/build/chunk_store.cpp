@@ -78,15 +78,17 @@ Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schem
     ChunkStore store(std::move(file), schema, root);
     ByteReader reader(record);
     store.chunks_ = reader.get_all<Chunk>();
+    store.dealt_ = reader.get_all<Chunk>();
     store.end_ = reader.get<uint64_t>();
     if (!reader.sound()) return failed("chunks", "were not written down whole");
-    for (const auto& chunk : store.chunks_) LUCARNE_TRY(store.check(chunk));
+    for (const auto& chunk : store.dealt_) LUCARNE_TRY(store.check(chunk));
     return store;
 }
 
 std::vector<std::byte> ChunkStore::save() const {
     ByteWriter writer;
     writer.put_all(chunks_);
+    writer.put_all(dealt_);
     writer.put(end_);
     return writer.take();
 }
@@ -154,6 +156,7 @@ void ChunkStore::stack(const Chunk& chunk, uint64_t limit) {
 Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& memory) {
     for (const Chunk& chunk : coarse) {
         if (chunk.count <= memory.chunk_points || chunk.key.level == kMaxLevel) {
+            dealt_.push_back(chunk);
             stack(chunk, memory.chunk_points);
             continue;
         }

@@ -50,6 +50,7 @@ class ChunkStore {
     io::Schema schema_;
     Cube root_;
     std::vector<Chunk> chunks_;
+    std::vector<Chunk> dealt_;  ///< the same points as they were dealt out, before one place's were divided
     uint64_t end_ = 0;  ///< points written so far, those of chunks split again included
 };
 
