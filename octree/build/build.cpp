@@ -213,7 +213,8 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     const SourceHeader bare = header_of(inputs, facts, inputs.schema());
     std::optional<SurfaceStore> surface;
     if (normals) {
-        const SurfaceStore::Settings settings{*normals, options.neighbours, threads, options.memory};
+        const SurfaceStore::Settings settings{*normals, options.neighbours, options.neighbour_search,
+                                              threads, options.memory};
         LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
                            return resumable(
                                work, "normals",

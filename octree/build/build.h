@@ -7,6 +7,7 @@
 
 #include "io/points.h"
 #include "octree/build/workspace.h"
+#include "octree/normals/normals.h"
 
 namespace lucarne::octree {
 
@@ -27,6 +28,7 @@ struct BuildOptions {
     bool overwrite = false;
     Resume resume = Resume::never;
     uint32_t neighbours = 16;  ///< for normals and areas
+    NeighbourSearch neighbour_search = NeighbourSearch::leaf;
 };
 
 struct StageTime {

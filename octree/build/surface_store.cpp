@@ -97,6 +97,7 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     const Access access(chunks, scans);
     NormalOptions options;
     options.neighbours = settings.neighbours;
+    options.search = settings.search;
     options.stations = access.all_stations();
     options.memory = settings.memory;
     options.threads = settings.threads;

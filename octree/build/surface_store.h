@@ -18,6 +18,7 @@ class SurfaceStore {
     struct Settings {
         bool normals = true;  ///< false: the input's are kept, only areas are wanted
         uint32_t neighbours = 16;
+        NeighbourSearch search = NeighbourSearch::leaf;
         unsigned threads = 0;
         uint64_t memory = 0;
     };

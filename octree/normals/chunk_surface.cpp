@@ -1,149 +1,197 @@
 #include "octree/normals/chunk_surface.h"
 
 #include <algorithm>
-#include <mutex>
-#include <numeric>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <tuple>
 
+#include <glm/geometric.hpp>
 #include <tbb/enumerable_thread_specific.h>
 
 #include "io/core/parallel.h"
 #include "octree/normals/surface_sample.h"
+#include "octree/normals/surface_share.h"
 
 namespace lucarne::octree {
 namespace {
 
 constexpr size_t kNearEdges = 4;  ///< of kSiteEdges; the others are spread over the rest of the neighbourhood
-constexpr size_t kRimNeighbours = 16;  ///< asked for in a round, beyond the known ones
-constexpr int kRimRounds = 6;
 constexpr size_t kBorderEdges = 2;  ///< a site, to the nearest points of other chunks
+/// Where the normal is uncertain, all points within so many times the distance of the k-th neighbour are
+/// asked: on a surface four times as many.
+constexpr double kWindow = 2.0;
+/// ... but of more than these, at the rim of a dense patch, no more than about kUsualWindow times k.
+constexpr size_t kMostWindow = 6, kUsualWindow = 4;
+/// Neighbours on a line, by their variances across and along it: those of one scan line.
+constexpr float kLine = 0.05f;
 
-class SurfaceEstimator {
+/// The surface at one site after another; one a thread.
+class SiteEstimator {
  public:
-    SurfaceEstimator(ChunkNeighbours& neighbours, size_t area_neighbours)
-        : neighbours_(neighbours), area_count_(area_neighbours + 1) {
-        const size_t sites = neighbours.site_count();
-        surface_.normals.assign(sites, glm::vec3(0.0f));
-        surface_.areas.assign(sites, 0.0f);
-        deviations_.assign(sites, kNoPlane);
-        SiteEdges none;
-        none.fill(kNoSite);
-        surface_.edges.assign(sites, none);
-    }
+    SiteEstimator(ChunkNeighbours& neighbours, NeighbourSearch search, size_t usual, ChunkSurface& surface)
+        : neighbours_(neighbours), usual_(usual), surface_(surface), fitter_(search) {}
 
-    Result<void> estimate(std::span<const uint32_t> sites, size_t k) {
-        return neighbours_.search(sites, k + 1,
-                                  [&](uint32_t site, std::span<const Neighbour> nearest, bool exact,
-                                      const ChunkNeighbours::Surroundings& around) {
-                                      return exact ? visit(site, nearest, k + 1, around) : 0.0;
-                                  });
-    }
-    std::vector<uint32_t> uncertain() const {
-        std::vector<uint32_t> sites;
-        for (uint32_t i = 0; i < deviations_.size(); ++i)
-            if (deviations_[i] > kGoodDeviation && deviations_[i] < kNoPlane) sites.push_back(i);
-        return sites;
-    }
-    ChunkSurface take() {
-        for (size_t i = 0; i < deviations_.size(); ++i)
-            if (deviations_[i] > kPoorDeviation) surface_.normals[i] = glm::vec3(0.0f);
-        std::sort(surface_.apart.begin(), surface_.apart.end());
-        auto& border = surface_.border;
-        const auto key = [](const BorderEdge& e) { return std::tie(e.site, e.other.chunk, e.other.index); };
-        std::sort(border.begin(), border.end(),
-                  [&](const auto& a, const auto& b) { return key(a) < key(b); });
-        const auto same = [&](const auto& a, const auto& b) { return key(a) == key(b); };
-        border.erase(std::unique(border.begin(), border.end(), same), border.end());
-        return std::move(surface_);
-    }
-
- private:
     /// 0, or the radius that must be known around the site first.
-    double visit(uint32_t site, std::span<const Neighbour> nearest, size_t asked,
-                 const ChunkNeighbours::Surroundings& around) {
-        std::array<glm::vec3, kMostSampled> offsets;
-        const glm::dvec3 at = neighbours_.position(site);
-        for (size_t i = 0; i < nearest.size(); ++i)
-            offsets[i] = glm::vec3(neighbours_.position(nearest[i].index) - at);
-        auto sample = sample_surface(std::span(offsets).first(nearest.size()), area_count_,
-                                     nearest.size() < asked, fitters_.local());
-        if (sample.deviation >= kNoPlane) {  // out in the air, whatever fewer neighbours said
-            deviations_[site] = kNoPlane;
-            surface_.areas[site] = sample.area;
+    double visit(uint32_t site, const Patch& nearest, ChunkNeighbours::Surroundings& around) {
+        if (nearest.count < kLeastPoints) return 0;
+        const bool whole_cloud = nearest.count < usual_;
+        bool apart = false;
+        if (!whole_cloud && is_stray(nearest, usual_)) {
+            apart = is_near_enough(nearest) && fitter_.lies_in_plane_of_others(nearest);
+            if (!apart) return leave_out(site);
+        }
+        const float reach2 = nearest.distance2[nearest.count - 1], reach = std::sqrt(reach2);
+        const float spacing =
+            std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
+        const Patch* patch = &nearest;  // that of the fit
+        SurfaceFit fit = fitter_.fit(nearest, spacing);
+        const bool on_line = fit.roundness < kLine;
+        if (fit.deviation > kGoodDeviation && !whole_cloud) {
+            if (!around.knows(kWindow * reach)) return kWindow * reach;
+            if (take_window(nearest, around, reach))
+                patch = improve(fit, fitter_.fit(window_, spacing), window_, *patch);
+            const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
+            if (!(fit.deviation < kPoorDeviation) && window_.count < most) {  // nearly alone, or on a line
+                around.nearest(most, further_);
+                const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
+                if (!around.knows(known)) return known;
+                if (further_.count == most && !apart && is_stray(further_, usual_)) return leave_out(site);
+                patch = improve(fit, fitter_.fit(further_, spacing), further_, *patch);
+            }
+        }
+        connect(site, nearest, on_line && patch != &nearest ? patch : nullptr, fit.normal);
+        if (!(fit.deviation < kPoorDeviation)) {
+            // A blob has no disc, and a stray point must not get that of the empty space around it.
+            surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
             return 0;
         }
-        if (!(sample.deviation < deviations_[site])) return 0;
-        if (sample.rim) {
-            if (!around.knows(sample.rim->widest_search())) return sample.rim->widest_search();
-            cut_further(*sample.rim, around);
-            if (sample.apart && !sample.rim->closed()) {
-                deviations_[site] = kNoPlane;
-                surface_.areas[site] = kStrayArea;
-                return 0;
-            }
-            sample.area = sample.rim->area_at_rim();
+        ShareCell cell(fit.normal, reach, nearest.count - 1);
+        heights_over(*patch, fit.normal, heights_);
+        cell.cut(*patch, heights_, fit.layer);
+        if (cell.open()) {
+            if (!around.knows(cell.widest_search())) return cell.widest_search();
+            around.within(std::min(cell.widest_search(), cell.widest_cut()), window_);
+            cell.cut_open(window_);
+            if (apart && !cell.closed()) return leave_out(site);
+            surface_.areas[site] = cell.area_at_rim();
+        } else {
+            surface_.areas[site] = cell.area();
         }
-        if (sample.apart) {
-            const std::lock_guard lock(mutex_);
-            surface_.apart.push_back(site);
-        }
-        deviations_[site] = sample.deviation;
-        surface_.normals[site] = sample.normal;
-        surface_.areas[site] = sample.area;
-        connect(site, nearest, offsets);
+        surface_.normals[site] = fit.normal;
+        if (apart) apart_.push_back(site);
+        return 0;
+    }
+    std::span<const uint32_t> apart() const { return apart_; }
+    std::span<const BorderEdge> border() const { return border_; }
+
+ private:
+    static constexpr size_t kLeastPoints = 4, kMostNearest = 128;
+
+    double leave_out(uint32_t site) {
+        surface_.areas[site] = kStrayArea;
+        surface_.edges[site].fill(kNoSite);
         return 0;
     }
 
-    /// The nearest that a cell wants are often more of the dense patch, each of which cuts off but little: in
-    /// rounds, so that those cut off by others are wanted no longer.
-    void cut_further(ShareCell& cell, const ChunkNeighbours::Surroundings& around) const {
-        std::array<Neighbour, kRimNeighbours> further;
-        for (int round = 0; round < kRimRounds && cell.open(); ++round) {
-            const size_t found = around.nearest(
-                std::min(cell.widest_search(), cell.widest_cut()),
-                [&](const glm::vec3& offset) { return cell.wants(offset); }, further);
-            for (size_t i = 0; i < found; ++i) cell.cut(around.offset(further[i].index));
-            if (found < kRimNeighbours) break;
-        }
+    const Patch* improve(SurfaceFit& fit, const SurfaceFit& other, const Patch& patch, const Patch& old) {
+        if (!(other.deviation < fit.deviation)) return &old;
+        fit = other;
+        return &patch;
     }
 
-    void connect(uint32_t site, std::span<const Neighbour> nearest, std::span<const glm::vec3> offsets) {
+    /// The window around a site; false if it holds no more than what is known.
+    bool take_window(const Patch& nearest, ChunkNeighbours::Surroundings& around, double reach) {
+        double radius = kWindow * reach;
+        for (int tries = 0; tries < 8; ++tries) {
+            radius = around.within(radius, window_);
+            if (window_.count <= kMostWindow * usual_) break;
+            const double share =
+                static_cast<double>(kUsualWindow * usual_) / static_cast<double>(window_.count);
+            radius = std::max(reach, radius * std::sqrt(share));
+        }
+        return window_.count > nearest.count;
+    }
+
+    void connect(uint32_t site, const Patch& nearest, const Patch* wide, const glm::vec3& normal) {
         auto& edges = surface_.edges[site];
         edges.fill(kNoSite);
-        const size_t others = nearest.size() - 1;
+        const size_t others = nearest.count - 1;
+        const size_t far_step =
+            std::max<size_t>(1, (others - std::min(others, kNearEdges)) / (kSiteEdges - kNearEdges));
         for (size_t e = 0; e < std::min(kSiteEdges, others); ++e) {
-            const size_t far_step =
-                std::max<size_t>(1, (others - std::min(others, kNearEdges)) / (kSiteEdges - kNearEdges));
             const size_t rank = e < kNearEdges ? e + 1 : kNearEdges + (e - kNearEdges + 1) * far_step;
-            const uint32_t other = nearest[std::min(rank, others)].index;
-            if (!neighbours_.is_halo(other)) edges[e] = other;
+            set_edge(edges[e], nearest.index[std::min(rank, others)]);
         }
+        if (wide) connect_across(edges, *wide, normal);
         size_t border = 0;
         for (size_t i = 1; i <= others && border < kBorderEdges; ++i) {
-            if (!neighbours_.is_halo(nearest[i].index)) continue;
-            const std::lock_guard lock(mutex_);
-            surface_.border.push_back({site, neighbours_.halo_point(nearest[i].index), offsets[i]});
+            if (!neighbours_.is_halo(nearest.index[i])) continue;
+            border_.push_back({site, neighbours_.halo_point(nearest.index[i]), nearest.offset(i)});
             ++border;
+        }
+    }
+    void set_edge(uint32_t& edge, uint32_t other) const {
+        if (!neighbours_.is_halo(other)) edge = other;
+    }
+    /// From one scan line to the next: to the nearest in each quarter.
+    void connect_across(SiteEdges& edges, const Patch& wide, const glm::vec3& normal) const {
+        const ShareCell axes(normal, 1, 1);
+        std::array<float, kSiteEdges - kNearEdges> best;
+        best.fill(std::numeric_limits<float>::max());
+        for (size_t i = 0; i < wide.count; ++i) {
+            const glm::vec3 offset = wide.offset(i);
+            const float x = glm::dot(offset, axes.x_axis()), y = glm::dot(offset, axes.y_axis());
+            const size_t quarter = (x > 0 ? 1 : 0) + (y > 0 ? 2 : 0);
+            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter]) {
+                best[quarter] = wide.distance2[i];
+                set_edge(edges[kNearEdges + quarter], wide.index[i]);
+            }
         }
     }
 
     ChunkNeighbours& neighbours_;
-    size_t area_count_;  ///< the site included
-    ChunkSurface surface_;
-    std::vector<float> deviations_;  ///< kNoPlane: not known, or known to have none
-    tbb::enumerable_thread_specific<PlaneFitter> fitters_;
-    std::mutex mutex_;
+    size_t usual_;  ///< how many neighbours are asked for, the site included
+    ChunkSurface& surface_;
+    SurfaceFitter fitter_;
+    Patch window_, further_;
+    std::vector<float> heights_;
+    std::vector<uint32_t> apart_;
+    std::vector<BorderEdge> border_;
 };
+
+/// What single sites found out, in an order that does not depend on threads.
+void collect(ChunkSurface& surface) {
+    std::sort(surface.apart.begin(), surface.apart.end());
+    auto& border = surface.border;
+    const auto key = [](const BorderEdge& e) { return std::tie(e.site, e.other.chunk, e.other.index); };
+    std::sort(border.begin(), border.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    const auto same = [&](const auto& a, const auto& b) { return key(a) == key(b); };
+    border.erase(std::unique(border.begin(), border.end(), same), border.end());
+}
 
 }  // namespace
 
-Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
-    SurfaceEstimator estimator(neighbours, k);
-    std::vector<uint32_t> sites(neighbours.site_count());
-    std::iota(sites.begin(), sites.end(), 0u);
-    LUCARNE_TRY(estimator.estimate(sites, k));
-    LUCARNE_TRY(estimator.estimate(estimator.uncertain(), std::min(4 * k, kMostSampled - 1)));
-    return estimator.take();
+Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, NeighbourSearch search, size_t k) {
+    ChunkSurface surface;
+    const size_t sites = neighbours.site_count();
+    surface.normals.assign(sites, glm::vec3(0.0f));
+    surface.areas.assign(sites, 0.0f);
+    SiteEdges none;
+    none.fill(kNoSite);
+    surface.edges.assign(sites, none);
+    tbb::enumerable_thread_specific<SiteEstimator> estimators(
+        [&] { return SiteEstimator(neighbours, search, k + 1, surface); });
+    LUCARNE_TRY(neighbours.search(
+        k + 1, [&](uint32_t site, const Patch& nearest, bool exact, ChunkNeighbours::Surroundings& around) {
+            return exact ? estimators.local().visit(site, nearest, around) : 0.0;
+        }));
+    for (const auto& estimator : estimators) {
+        surface.apart.insert(surface.apart.end(), estimator.apart().begin(), estimator.apart().end());
+        surface.border.insert(surface.border.end(), estimator.border().begin(), estimator.border().end());
+    }
+    collect(surface);
+    return surface;
 }
 
 }  // namespace lucarne::octree

@@ -7,7 +7,6 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
-#include <tuple>
 #include <unordered_set>
 
 #include <glm/common.hpp>
@@ -15,11 +14,12 @@
 
 #include "io/core/parallel.h"
 #include "octree/key.h"
+#include "octree/normals/leaf_index.h"
 
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kGrain = 2048;                       ///< sites a piece of parallel work
+constexpr size_t kGroups = 96;                        ///< of sites a piece of parallel work
 constexpr size_t kMostNeighbours = 128;               ///< per site, on the stack
 constexpr size_t kMostChunkPoints = size_t{1} << 29;  ///< sites times edges must fit 32 bits
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -31,6 +31,8 @@ constexpr size_t kHaloShare = 2, kLeastHalo = size_t{1} << 18;
 constexpr uint64_t kHaloPointBytes = 128;
 constexpr uint64_t kFewestHalo = 1 << 14;
 constexpr int kMostNarrowings = 6;  ///< tries of a halo a quarter as wide when there are more
+/// Sites that share what is gathered around them.
+constexpr size_t kGroupSites = 16;
 
 double distance2(const Box& a, const Box& b) {
     const glm::dvec3 gap = glm::max(glm::max(a.min - b.max, b.min - a.max), glm::dvec3(0.0));
@@ -45,10 +47,6 @@ double widest(const Box& box) {
     return std::max({size.x, size.y, size.z});
 }
 
-bool less(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-}
-
 Box bounds_of(std::span<const glm::dvec3> points) {
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     for (const auto& p : points) {
@@ -57,18 +55,6 @@ Box bounds_of(std::span<const glm::dvec3> points) {
     }
     return box;
 }
-
-/// How far the k nearest of a point can be at most, from those of the one before: no farther than that one
-/// and then its k nearest. Spares a search most of what it would take up only to drop it again.
-struct SearchBound {
-    glm::dvec3 previous{0.0};
-    double reach = kInfinity;
-    double limit2(const glm::dvec3& p) const {
-        constexpr double kMoreThanRounding = 1 + 1e-9;
-        const double farthest = (glm::distance(p, previous) + reach) * kMoreThanRounding;
-        return farthest * farthest;
-    }
-};
 
 /// The cells of a grid that lie within one cell of given points.
 class CellSet {
@@ -103,42 +89,26 @@ class CellSet {
 
 }  // namespace
 
-Result<ChunkNeighbours> ChunkNeighbours::load(ChunkCache& cache, size_t chunk, uint64_t halo_bytes) {
-    ChunkNeighbours loaded(cache, chunk, halo_bytes);
+Result<ChunkNeighbours> ChunkNeighbours::load(ChunkCache& cache, size_t chunk, NeighbourSearch search,
+                                              uint64_t halo_bytes) {
+    ChunkNeighbours loaded(cache, chunk, search, halo_bytes);
     LUCARNE_ASSIGN(const auto points, cache.positions(chunk));
     if (points->size() >= kMostChunkPoints) return failed("normals", "a chunk of more than 2^29 points");
     loaded.sort_sites(*points);
-    loaded.box_ = bounds_of(loaded.sites_);
+    loaded.box_ = bounds_of(*points);
     loaded.find_around();
-    loaded.index_ = PointIndex(loaded.sites_);
     return loaded;
 }
 
 void ChunkNeighbours::sort_sites(const std::vector<glm::dvec3>& points) {
-    const Box box = bounds_of(points);
-    const double scale = 2097151.0 / std::max(widest(box), 1e-290);
-    std::vector<std::pair<uint64_t, uint32_t>> keys(points.size());
-    parallel_ranges(points.size(), kGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const glm::dvec3 cell = (points[i] - box.min) * scale;
-            keys[i] = {morton(static_cast<uint64_t>(cell.x), static_cast<uint64_t>(cell.y),
-                              static_cast<uint64_t>(cell.z)),
-                       static_cast<uint32_t>(i)};
-        }
-    });
-    std::sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
-        if (a.first != b.first) return a.first < b.first;
-        const auto &p = points[a.second], &q = points[b.second];
-        return p == q ? a.second < b.second : less(p, q);
-    });
-    order_.reserve(keys.size());
-    sites_.reserve(keys.size());
-    for (const auto& [key, i] : keys) {
-        if (sites_.empty() || sites_.back() != points[i]) {
-            first_.push_back(static_cast<uint32_t>(order_.size()));
-            sites_.push_back(points[i]);
-        }
-        order_.push_back(i);
+    order_ = morton_order(points);
+    sites_.reserve(points.size());
+    first_.reserve(points.size() + 1);
+    for (size_t at = 0; at < order_.size(); ++at) {
+        const glm::dvec3& p = points[order_[at]];
+        if (at > 0 && points[order_[at - 1]] == p) continue;
+        first_.push_back(static_cast<uint32_t>(at));
+        sites_.push_back(p);
     }
     first_.push_back(static_cast<uint32_t>(order_.size()));
 }
@@ -163,51 +133,60 @@ bool ChunkNeighbours::reaches_out(uint32_t site, double reach2) const {
     return false;
 }
 
-Result<void> ChunkNeighbours::search(std::span<const uint32_t> sites, size_t k, const Visit& visit) {
+Result<void> ChunkNeighbours::search(size_t k, const Visit& visit) {
     assert(k <= kMostNeighbours);
+    std::vector<uint32_t> starts;  // of groups
+    if (search_ == NeighbourSearch::leaf) {
+        auto index = std::make_unique<LeafIndex>(sites_);
+        starts.assign(index->leaves().begin(), index->leaves().end());
+        index_ = std::move(index);
+    } else {
+        index_ = make_index(search_, sites_);
+        for (size_t i = 0; i < sites_.size(); i += kGroupSites) starts.push_back(static_cast<uint32_t>(i));
+        starts.push_back(static_cast<uint32_t>(sites_.size()));
+    }
     std::mutex mutex;
-    std::vector<std::pair<uint32_t, double>> pending;  // site, radius to be known around it
-    parallel_ranges(sites.size(), kGrain, [&](size_t first, size_t last) {
-        std::array<Neighbour, kMostNeighbours> nearest;
-        std::vector<std::pair<uint32_t, double>> out;
-        SearchBound bound;
-        for (const uint32_t site : sites.subspan(first, last - first)) {
-            const size_t found = index_.merge_nearest(sites_[site], std::span(nearest).first(k), 0, 0,
-                                                      bound.limit2(sites_[site]));
-            const double reach2 = found == k ? nearest[k - 1].distance2 : kInfinity;
-            bound = {sites_[site], std::sqrt(reach2)};
-            if (reaches_out(site, reach2)) {
-                out.emplace_back(site, std::sqrt(reach2));
-                continue;
+    std::vector<Pending> pending;
+    parallel_ranges(starts.size() - 1, kGroups, [&](size_t first, size_t last) {
+        std::vector<Pending> out;
+        std::vector<uint32_t> sites;
+        Surroundings around(*this, 0.0);
+        for (size_t group = first; group < last; ++group) {
+            sites.resize(starts[group + 1] - starts[group]);
+            std::iota(sites.begin(), sites.end(), starts[group]);
+            around.begin(sites, k);
+            for (const uint32_t site : sites) {
+                const Patch& nearest = around.visit(site, k);
+                const double reach2 = nearest.count == k ? nearest.distance2[k - 1] : kInfinity;
+                double needed = std::sqrt(reach2);
+                if (!reaches_out(site, reach2)) needed = visit(site, nearest, true, around);
+                if (needed > 0) out.push_back({site, needed});
             }
-            const double needed =
-                visit(site, std::span(nearest).first(found), true, Surroundings(*this, site, 0.0));
-            if (needed > 0) out.emplace_back(site, needed);
         }
         const std::lock_guard lock(mutex);
         pending.insert(pending.end(), out.begin(), out.end());
     });
     if (pending.empty()) return {};
-
-    std::sort(pending.begin(), pending.end());
-    std::vector<double> reaches;
-    std::vector<uint32_t> pending_sites;
-    for (const auto& [site, reach] : pending) {
-        pending_sites.push_back(site);
-        if (std::isfinite(reach)) reaches.push_back(reach);
-    }
-    double radius = widest(cache_->chunks().bounds(chunk_)) / 64;
-    if (!reaches.empty()) {
-        const auto median = reaches.begin() + static_cast<ptrdiff_t>(reaches.size() / 2);
-        std::nth_element(reaches.begin(), median, reaches.end());
-        radius = std::min(radius * 64 * kWidestHalo, *median);
-    }
-    return search_beyond(std::move(pending_sites), radius, k, visit);
+    std::sort(pending.begin(), pending.end(),
+              [](const Pending& a, const Pending& b) { return a.site < b.site; });
+    return search_beyond(std::move(pending), k, visit);
 }
 
-Result<void> ChunkNeighbours::search_beyond(std::vector<uint32_t> pending, double radius, size_t k,
-                                            const Visit& visit) {
-    double widest_halo = kWidestHalo * widest(cache_->chunks().bounds(chunk_));
+/// As wide a halo first as half of the sites need.
+double ChunkNeighbours::first_radius(std::span<const Pending> pending) const {
+    const double size = widest(cache_->chunks().bounds(chunk_));
+    std::vector<double> reaches;
+    for (const auto& [site, reach] : pending)
+        if (std::isfinite(reach)) reaches.push_back(reach);
+    if (reaches.empty()) return size / 64;
+    const auto median = reaches.begin() + static_cast<ptrdiff_t>(reaches.size() / 2);
+    std::nth_element(reaches.begin(), median, reaches.end());
+    return std::min(size * kWidestHalo, *median);
+}
+
+Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t k, const Visit& visit) {
+    double radius = first_radius(pending),
+           widest_halo = kWidestHalo * widest(cache_->chunks().bounds(chunk_));
     for (int narrowed = 0; !pending.empty();) {
         LUCARNE_ASSIGN(const bool complete, load_halo(pending, radius));
         if (!complete &&
@@ -217,30 +196,35 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<uint32_t> pending, doubl
             continue;
         }
         const bool last_try = !complete || radius >= widest_halo;
-        const auto halo_offset = static_cast<uint32_t>(sites_.size());
+        const auto ask = [&](uint32_t site, Surroundings& around) {
+            const Patch& nearest = around.visit(site, k);
+            const double reach = nearest.count == k ? std::sqrt(double{nearest.distance2[k - 1]}) : kInfinity;
+            const bool exact = complete && (reach <= radius || !reaches_out(site, reach * reach));
+            return exact || last_try ? visit(site, nearest, exact, around) : reach;
+        };
         std::mutex mutex;
-        std::vector<uint32_t> still;
-        double farthest = 0;
-        parallel_ranges(pending.size(), kGrain / 8, [&](size_t first, size_t last) {
-            std::array<Neighbour, kMostNeighbours> buffer;
-            const auto nearest = std::span(buffer).first(k);
-            for (const uint32_t site : std::span(pending).subspan(first, last - first)) {
-                size_t found = index_.merge_nearest(sites_[site], nearest, 0, 0);
-                found = halo_index_.merge_nearest(sites_[site], nearest, found, halo_offset);
-                const double reach = found == k ? std::sqrt(nearest[k - 1].distance2) : kInfinity;
-                const bool exact = complete && (reach <= radius || !reaches_out(site, reach * reach));
-                double needed = reach;
-                if (exact || last_try)
-                    needed = visit(site, nearest.first(found), exact,
-                                   Surroundings(*this, site, last_try ? kInfinity : radius));
-                if (needed > 0) {
-                    const std::lock_guard lock(mutex);
-                    still.push_back(site);
-                    farthest = std::max(farthest, needed);
-                }
+        std::vector<Pending> still;
+        parallel_ranges(pending.size(), kGroups * kGroupSites / 4, [&](size_t first, size_t last) {
+            std::vector<uint32_t> sites;
+            std::vector<Pending> out;
+            Surroundings around(*this, last_try ? kInfinity : radius);
+            for (size_t i = first; i < last;) {
+                sites.clear();
+                for (; i < last && sites.size() < kGroupSites &&
+                       (sites.empty() || pending[i].site - sites.front() < 2 * kGroupSites);
+                     ++i)
+                    sites.push_back(pending[i].site);
+                around.begin(sites, k);
+                for (const uint32_t site : sites)
+                    if (const double needed = ask(site, around); needed > 0) out.push_back({site, needed});
             }
+            const std::lock_guard lock(mutex);
+            still.insert(still.end(), out.begin(), out.end());
         });
-        std::sort(still.begin(), still.end());
+        std::sort(still.begin(), still.end(),
+                  [](const Pending& a, const Pending& b) { return a.site < b.site; });
+        double farthest = 0;
+        for (const Pending& p : still) farthest = std::max(farthest, p.radius);
         pending = std::move(still);
         // Four times as wide, or as wide as is certainly enough.
         radius = std::min({4 * radius, farthest, widest_halo});
@@ -248,36 +232,19 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<uint32_t> pending, doubl
     return {};
 }
 
-bool ChunkNeighbours::Surroundings::knows(double radius) const {
-    return radius <= halo || !of.reaches_out(site, radius * radius);
-}
-
-size_t ChunkNeighbours::Surroundings::nearest(double radius,
-                                              const std::function<bool(const glm::vec3& offset)>& wanted,
-                                              std::span<Neighbour> nearest) const {
-    const glm::dvec3& at = of.sites_[site];
-    const auto search = [&](const PointIndex& index, const std::vector<glm::dvec3>& points, size_t found,
-                            size_t first) {
-        return index.merge_nearest(at, nearest, found, static_cast<uint32_t>(first), radius * radius,
-                                   [&](uint32_t i) { return wanted(glm::vec3(points[i] - at)); });
-    };
-    const size_t found = search(of.index_, of.sites_, 0, 0);
-    return search(of.halo_index_, of.halo_, found, of.sites_.size());
-}
-
 void ChunkNeighbours::drop_indices() {
-    index_ = PointIndex();
-    halo_index_ = PointIndex();
-    std::vector<glm::dvec3>().swap(halo_);
+    index_.reset();
+    halo_index_.reset();
+    halo_.release();
     std::vector<PointRef>().swap(halo_points_);
 }
 
-Result<bool> ChunkNeighbours::load_halo(std::span<const uint32_t> pending, double radius) {
-    halo_index_ = PointIndex();
+Result<bool> ChunkNeighbours::load_halo(std::span<const Pending> pending, double radius) {
+    halo_index_.reset();
     halo_.clear();
     halo_points_.clear();
     std::vector<glm::dvec3> centres;
-    for (const uint32_t site : pending) centres.push_back(sites_[site]);
+    for (const Pending& p : pending) centres.push_back(sites_[p.site]);
     Box region = bounds_of(centres);
     region.min -= radius;
     region.max += radius;
@@ -286,7 +253,8 @@ Result<bool> ChunkNeighbours::load_halo(std::span<const uint32_t> pending, doubl
 
     const size_t most = std::min<uint64_t>(std::max(kLeastHalo, kHaloShare * sites_.size()),
                                            std::max(kFewestHalo, halo_bytes_ / kHaloPointBytes));
-    std::vector<std::pair<glm::dvec3, PointRef>> found;
+    std::vector<glm::dvec3> found;
+    std::vector<PointRef> refs;
     for (const Around& other : around_) {
         if (other.distance2 > radius * radius) break;
         std::vector<glm::dvec3> near;
@@ -301,18 +269,16 @@ Result<bool> ChunkNeighbours::load_halo(std::span<const uint32_t> pending, doubl
             const glm::dvec3& p = (*points)[i];
             if (distance2(p, wanted) > 0 || !cells.contains(p)) continue;
             if (found.size() == most) return false;
-            found.emplace_back(p, PointRef{other.chunk, static_cast<uint32_t>(i)});
+            found.push_back(p);
+            refs.push_back({other.chunk, static_cast<uint32_t>(i)});
         }
     }
-    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-        return a.first == b.first ? a.second.index < b.second.index : less(a.first, b.first);
-    });
-    for (const auto& [p, ref] : found) {
-        if (!halo_.empty() && halo_.back() == p) continue;
-        halo_.push_back(p);
-        halo_points_.push_back(ref);
+    for (const uint32_t i : morton_order(found)) {
+        if (halo_.size() > 0 && halo_[halo_.size() - 1] == found[i]) continue;
+        halo_.push_back(found[i]);
+        halo_points_.push_back(refs[i]);
     }
-    halo_index_ = PointIndex(halo_);
+    halo_index_ = make_index(search_, halo_);
     return true;
 }
 

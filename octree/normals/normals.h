@@ -34,7 +34,15 @@ class ChunkAccess {
 inline constexpr uint64_t kNormalBytesPerPoint = 220;
 inline constexpr uint32_t kMostNormalNeighbours = 127;
 
+/// How neighbours are found. Both find the same ones; where several are at one distance, which of them may
+/// differ.
+enum class NeighbourSearch {
+    leaf,   ///< leaves of points along a Morton curve, planes in closed form (leaf_index.h)
+    flann,  ///< PCL's planes over FLANN's kd-tree: the usual way, to compare with
+};
+
 struct NormalOptions {
+    NeighbourSearch search = NeighbourSearch::leaf;
     uint32_t neighbours = 16;  ///< besides the point itself; 3 to kMostNormalNeighbours
     std::vector<glm::dvec3> stations;
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may hold in all

@@ -10,18 +10,10 @@
 
 namespace lucarne::octree {
 
-struct PlaneFitter::Scratch {
+Plane pcl_plane(const Patch& patch) {
     pcl::PointCloud<pcl::PointXYZ> cloud;
-};
-
-PlaneFitter::PlaneFitter() : scratch_(std::make_unique<Scratch>()) {}
-PlaneFitter::~PlaneFitter() = default;
-
-Plane PlaneFitter::fit(std::span<const glm::vec3> points) {
-    auto& cloud = scratch_->cloud;
-    cloud.resize(points.size());
-    for (size_t i = 0; i < points.size(); ++i)
-        cloud[i] = pcl::PointXYZ(points[i].x, points[i].y, points[i].z);
+    cloud.resize(patch.count);
+    for (size_t i = 0; i < patch.count; ++i) cloud[i] = pcl::PointXYZ(patch.x[i], patch.y[i], patch.z[i]);
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     Eigen::Vector4d centroid = Eigen::Vector4d::Zero();
     pcl::computeMeanAndCovarianceMatrix(cloud, covariance, centroid);

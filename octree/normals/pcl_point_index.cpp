@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <flann/flann.hpp>
 
 #include "octree/normals/point_index.h"
@@ -8,16 +12,14 @@ namespace {
 /// A FLANN result set over a caller's sorted array, so that a second index can go on where the first ended.
 class MergingResult final : public flann::ResultSet<double> {
  public:
-    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset, double limit2,
-                  const PointIndex::Wanted* wanted = nullptr)
-        : nearest_(nearest), found_(found), offset_(offset), limit2_(limit2), wanted_(wanted) {
+    MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset)
+        : nearest_(nearest), found_(found), offset_(offset) {
         update_worst();
     }
     bool full() const override { return found_ == nearest_.size(); }
     double worstDist() const override { return worst_; }
     void addPoint(double distance2, size_t index) override {
         if (!(distance2 < worst_)) return;
-        if (wanted_ && !(*wanted_)(static_cast<uint32_t>(index))) return;
         if (!full()) ++found_;
         size_t at = found_ - 1;
         for (; at > 0 && nearest_[at - 1].distance2 > distance2; --at) nearest_[at] = nearest_[at - 1];
@@ -27,49 +29,75 @@ class MergingResult final : public flann::ResultSet<double> {
     size_t found() const { return found_; }
 
  private:
-    void update_worst() { worst_ = full() ? nearest_.back().distance2 : limit2_; }
+    void update_worst() { worst_ = full() ? nearest_.back().distance2 : std::numeric_limits<double>::max(); }
     std::span<Neighbour> nearest_;
     size_t found_;
     uint32_t offset_;
-    double limit2_, worst_ = 0;
-    const PointIndex::Wanted* wanted_;
+    double worst_ = 0;
 };
 
-flann::Matrix<double> matrix_of(std::span<const glm::dvec3> points) {
-    static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
-    // FLANN's matrix has no const form; the tree copies the points and never writes them.
-    return {const_cast<double*>(&points.data()->x), points.size(), 3};
-}
+/// Takes all points within a radius.
+class AllWithin final : public flann::ResultSet<double> {
+ public:
+    AllWithin(double limit2, std::vector<uint32_t>& found) : limit2_(limit2), found_(found) {}
+    bool full() const override { return true; }
+    double worstDist() const override { return limit2_; }
+    void addPoint(double distance2, size_t index) override {
+        if (distance2 <= limit2_) found_.push_back(static_cast<uint32_t>(index));
+    }
+
+ private:
+    double limit2_;
+    std::vector<uint32_t>& found_;
+};
+
+class FlannIndex final : public PointIndex {
+ public:
+    explicit FlannIndex(const PointArrays& points)
+        : points_(points), interleaved_(interleave(points)), tree_(matrix()) {
+        tree_.buildIndex();
+    }
+    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
+                         uint32_t offset) const override {
+        if (nearest.empty()) return found;
+        MergingResult result(nearest, found, offset);
+        tree_.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+        return result.found();
+    }
+    bool gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const override {
+        const glm::dvec3 centre = (box.min + box.max) * 0.5, half = (box.max - box.min) * 0.5;
+        const double reach = radius + std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
+        std::vector<uint32_t> found;
+        AllWithin result(reach * reach * (1 + 1e-9), found);
+        tree_.findNeighbors(result, &centre.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+        std::sort(found.begin(), found.end());
+        const glm::vec3 everywhere(std::numeric_limits<float>::max() / 4);
+        for (const uint32_t i : found) {
+            tile.append(points_, i, i + 1, offset, -everywhere, everywhere, 0);
+            if (tile.count > most) return false;
+        }
+        return true;
+    }
+
+ private:
+    static std::vector<double> interleave(const PointArrays& points) {
+        std::vector<double> interleaved;
+        interleaved.reserve(3 * points.size());
+        for (size_t i = 0; i < points.size(); ++i)
+            interleaved.insert(interleaved.end(), {points.x[i], points.y[i], points.z[i]});
+        return interleaved;
+    }
+    flann::Matrix<double> matrix() { return {interleaved_.data(), points_.size(), 3}; }
+
+    const PointArrays& points_;
+    std::vector<double> interleaved_;
+    flann::KDTreeSingleIndex<flann::L2_3D<double>> tree_;
+};
 
 }  // namespace
 
-struct PointIndex::Tree {
-    explicit Tree(std::span<const glm::dvec3> points) : index(matrix_of(points)) { index.buildIndex(); }
-    flann::KDTreeSingleIndex<flann::L2_3D<double>> index;
-};
-
-PointIndex::PointIndex() = default;
-PointIndex::PointIndex(std::span<const glm::dvec3> points) {
-    if (!points.empty()) tree_ = std::make_unique<Tree>(points);
-}
-PointIndex::PointIndex(PointIndex&&) noexcept = default;
-PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
-PointIndex::~PointIndex() = default;
-
-size_t PointIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
-                                 uint32_t offset, double limit2) const {
-    if (!tree_ || nearest.empty()) return found;
-    MergingResult result(nearest, found, offset, limit2);
-    tree_->index.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-    return result.found();
-}
-
-size_t PointIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
-                                 uint32_t offset, double limit2, const Wanted& wanted) const {
-    if (!tree_ || nearest.empty()) return found;
-    MergingResult result(nearest, found, offset, limit2, &wanted);
-    tree_->index.findNeighbors(result, &query.x, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-    return result.found();
+std::unique_ptr<PointIndex> make_flann_index(const PointArrays& points) {
+    return std::make_unique<FlannIndex>(points);
 }
 
 }  // namespace lucarne::octree

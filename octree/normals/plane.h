@@ -1,10 +1,11 @@
 #pragma once
 
 #include <array>
-#include <memory>
-#include <span>
 
 #include <glm/vec3.hpp>
+
+#include "octree/normals/normals.h"
+#include "octree/normals/tile.h"
 
 namespace lucarne::octree {
 
@@ -15,18 +16,13 @@ struct Plane {
         variances{};  ///< eigenvalues of the covariance, rising; variances[0] along the normal
 };
 
-/// PCL's plane estimator (the mean and covariance, the closed-form eigenvectors), in double precision. Holds
-/// its scratch: one a thread.
-class PlaneFitter {
- public:
-    PlaneFitter();
-    ~PlaneFitter();
-    /// `points` near the origin; at least three.
-    Plane fit(std::span<const glm::vec3> points);
+/// What PCL's estimator gives for the points of which these are the sums (pcl_plane), without trigonometry.
+Plane plane_of(const Moments& moments);
 
- private:
-    struct Scratch;
-    std::unique_ptr<Scratch> scratch_;
-};
+/// PCL's plane estimator: the mean and covariance, the closed-form eigenvectors, in double precision.
+Plane pcl_plane(const Patch& patch);
+
+/// By whichever goes with the search. At least three points.
+Plane fit_plane(NeighbourSearch search, const Patch& patch);
 
 }  // namespace lucarne::octree

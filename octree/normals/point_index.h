@@ -1,13 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
+
+#include "octree/normals/normals.h"
+#include "octree/normals/tile.h"
 
 namespace lucarne::octree {
 
@@ -16,33 +18,31 @@ struct Neighbour {
     uint32_t index = 0;
 };
 
-/// Nearest neighbours among points held in double precision: FLANN's single kd-tree. Measured: double costs
-/// no more than float here, and needs no local origin at projected coordinates. Searching is thread-safe.
+/// Nearest neighbours among points held in double precision. Searching is thread-safe.
 class PointIndex {
  public:
-    PointIndex();  ///< of no points
-    /// `points` must be finite, under kLargestCoordinate, and outlive the index.
-    explicit PointIndex(std::span<const glm::dvec3> points);
-    PointIndex(PointIndex&&) noexcept;
-    PointIndex& operator=(PointIndex&&) noexcept;
-    ~PointIndex();
+    virtual ~PointIndex() = default;
 
     /// Merges this index' points into `nearest`, whose first `found` entries are sorted by distance already;
-    /// an index of the result is the point's plus `offset`. Points as far as the root of `limit2` are left
-    /// out. Returns how many entries are filled now.
-    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found, uint32_t offset,
-                         double limit2 = std::numeric_limits<double>::max()) const;
-    /// The same of only those points that `wanted` (asked with the point's index) lets through.
-    using Wanted = std::function<bool(uint32_t index)>;
-    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found, uint32_t offset,
-                         double limit2, const Wanted& wanted) const;
+    /// an index of the result is the point's plus `offset`. Returns how many entries are filled now.
+    virtual size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
+                                 uint32_t offset) const = 0;
+    /// Appends the points within `radius` of a box to `tile`, numbered from `offset`, perhaps some that are
+    /// farther, too. False as soon as the tile has more than `most` points: then some are missing.
+    virtual bool gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const = 0;
 
     /// Squares of larger coordinates would overflow inside the search.
     static constexpr double kLargestCoordinate = 1e150;
-
- private:
-    struct Tree;
-    std::unique_ptr<Tree> tree_;
 };
+
+/// An index of the kind wanted; none of no points. `points` must be finite, under kLargestCoordinate, outlive
+/// the index, and stand in the order of morton_order().
+std::unique_ptr<PointIndex> make_index(NeighbourSearch search, const PointArrays& points);
+/// PCL's usual: FLANN's single kd-tree. In whatever order the points are.
+std::unique_ptr<PointIndex> make_flann_index(const PointArrays& points);
+
+/// The order of points along a Morton curve of 21 bits an axis through their bounds; points at the same place
+/// stand together, in their old order.
+std::vector<uint32_t> morton_order(std::span<const glm::dvec3> points);
 
 }  // namespace lucarne::octree

@@ -1,14 +1,11 @@
 #include "octree/normals/surface_sample.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
-
-#include "octree/normals/normals.h"
 
 namespace lucarne::octree {
 namespace {
@@ -36,51 +33,41 @@ constexpr float kMostApart = 10.0f;
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
 
-/// The squared distance from near[i] to its kTheirRank-th nearest among `near`, the point itself left out.
-float their_reach2(std::span<const glm::vec3> near, size_t i) {
-    std::array<float, kTheirRank> best;  // ascending
-    best.fill(std::numeric_limits<float>::max());
-    for (size_t j = 1; j < near.size(); ++j) {
-        const glm::vec3 apart = near[i] - near[j];
-        const float d2 = glm::dot(apart, apart);
-        if (j == i || d2 >= best.back()) continue;
-        size_t at = kTheirRank - 1;
-        for (; at > 0 && best[at - 1] > d2; --at) best[at] = best[at - 1];
-        best[at] = d2;
+/// Squared distances from one of the points to all.
+float distance2(const Patch& near, size_t i, size_t j) {
+    const float x = near.x[i] - near.x[j], y = near.y[i] - near.y[j], z = near.z[i] - near.z[j];
+    return x * x + y * y + z * z;
+}
+
+/// The squared distance from a neighbour to its kTheirRank-th nearest among them, the point itself left out.
+float their_reach2(const Patch& near, size_t i) {
+    static_assert(kTheirRank == 2);
+    float first = std::numeric_limits<float>::max(), second = first;
+    for (size_t j = 1; j < near.count; ++j) {
+        const float d2 = j == i ? std::numeric_limits<float>::max() : distance2(near, i, j);
+        second = std::min(second, std::max(first, d2));
+        first = std::min(first, d2);
     }
-    return best.back();
+    return second;
 }
 
 /// Whether their_reach2(near, i) is less than `limit2`.
-bool reaches_within(std::span<const glm::vec3> near, size_t i, float limit2) {
+bool reaches_within(const Patch& near, size_t i, float limit2) {
     size_t within = 0;  // itself included
-    for (size_t j = 1; j < near.size(); ++j) {
-        const glm::vec3 apart = near[i] - near[j];
-        within += glm::dot(apart, apart) < limit2;
-    }
+    for (size_t j = 1; j < near.count; ++j) within += distance2(near, i, j) < limit2;
     return within > kTheirRank;
 }
 
 /// Whether the neighbourhood of the point is much sparser than those of its neighbours (as the local outlier
 /// factor compares them: Breunig et al. 2000), from the neighbours' distances among themselves. Within a
 /// surface the first neighbour asked ends it.
-bool stands_apart(std::span<const glm::vec3> near) {
-    if (near.size() <= kOwnRank) return false;
-    const float limit = glm::dot(near[kOwnRank], near[kOwnRank]) / (kSparser * kSparser);
-    if (!reaches_within(near, near.size() - 1, limit) && !reaches_within(near, kOwnRank, limit)) return false;
+bool stands_apart(const Patch& near) {
+    if (near.count <= kOwnRank) return false;
+    const float limit = near.distance2[kOwnRank] / (kSparser * kSparser);
+    if (!reaches_within(near, near.count - 1, limit) && !reaches_within(near, kOwnRank, limit)) return false;
     size_t denser = 0;
-    for (size_t i = 1; i < near.size(); ++i) denser += reaches_within(near, i, limit);
-    return 2 * denser >= near.size() - 1;
-}
-
-/// The share that the neighbours of a point in the air have: what it is to be drawn with, having none of its
-/// own.
-float share_of_neighbours(std::span<const glm::vec3> near) {
-    std::array<float, kMostSampled> reaches;
-    for (size_t i = 1; i < near.size(); ++i) reaches[i - 1] = their_reach2(near, i);
-    const auto median = reaches.begin() + static_cast<ptrdiff_t>((near.size() - 1) / 2);
-    std::nth_element(reaches.begin(), median, reaches.begin() + static_cast<ptrdiff_t>(near.size() - 1));
-    return std::numbers::pi_v<float> * *median / kTheirRank;
+    for (size_t i = 1; i < near.count; ++i) denser += reaches_within(near, i, limit);
+    return 2 * denser >= near.count - 1;
 }
 
 float deviation_of(const Plane& plane, size_t points) {
@@ -98,94 +85,73 @@ float deviation_of(const Plane& plane, size_t points) {
     return static_cast<float>(std::min(10.0, std::sqrt(variance)));
 }
 
-/// The range of heights of the layer that holds the point itself, which is at 0.
-struct Layer {
-    float low, high;
-    bool holds(float height) const { return height >= low && height <= high; }
-};
-/// A gap of nearly half the range or more is looked for at the middle of it.
-Layer own_layer(std::span<const float> heights, float spacing) {
-    const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
-    const float low = *lowest, high = *highest, middle = (low + high) / 2;
-    float below = low, above = high;
-    size_t lower = 0;
-    for (const float h : heights) {
-        if (h < middle) {
-            below = std::max(below, h);
-            ++lower;
-        } else {
-            above = std::min(above, h);
-        }
-    }
+/// The range of heights of the layer that holds the point itself, which is at 0. A gap of nearly half the
+/// range or more is looked for at the middle of it.
+Range own_layer(const std::vector<float>& heights, size_t count, const Range& range, float spacing) {
+    const float thickness = range.high - range.low,
+                least = std::max(kLayerGap * thickness, kLayerSpacing * spacing);
+    if (thickness < least) return range;
+    const float middle = (range.low + range.high) / 2;
+    const Gap gap = gap_at(heights, count, range, middle);
     const bool own_is_lower = middle > 0;
-    const size_t own = own_is_lower ? lower : heights.size() - lower;
-    if (above - below < std::max(kLayerGap * (high - low), kLayerSpacing * spacing) || own < kLeastLayer)
-        return {low, high};
-    return own_is_lower ? Layer{low, below} : Layer{above, high};
-}
-
-bool lies_in_plane_of_others(std::span<const glm::vec3> near, PlaneFitter& fitter) {
-    const auto others = near.subspan(1);
-    const Plane plane = fitter.fit(others);
-    if (deviation_of(plane, others.size()) > kGoodDeviation) return false;
-    double height = 0;
-    for (const auto& other : others) height += glm::dot(glm::dvec3(other), plane.normal);
-    height /= static_cast<double>(others.size());
-    return std::abs(height) <= kInPlane * glm::length(near[1]) + kInNoise * std::sqrt(plane.variances[0]);
-}
-
-ShareCell cell_of(std::span<const glm::vec3> offsets, std::span<const float> heights, const glm::vec3& normal,
-                  const Layer& layer) {
-    ShareCell cell(normal, glm::length(offsets.back()), offsets.size() - 1);
-    const float highest = std::max(-layer.low, layer.high);
-    for (size_t i = 1; i < offsets.size(); ++i) {
-        const float widest = cell.widest_cut();
-        if (glm::dot(offsets[i], offsets[i]) - highest * highest >= widest * widest) break;
-        if (layer.holds(heights[i])) cell.cut(offsets[i]);
-    }
-    return cell;
+    const size_t own = own_is_lower ? gap.lower : count - gap.lower;
+    if (gap.above - gap.below < least || own < kLeastLayer) return range;
+    return own_is_lower ? Range{range.low, gap.below} : Range{gap.above, range.high};
 }
 
 }  // namespace
 
-SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_count, bool whole_cloud,
-                             PlaneFitter& fitter) {
-    SurfaceSample sample;
-    if (offsets.size() < 4) return sample;
-    const auto near = offsets.first(std::min(offsets.size(), area_count));
-    const float reach2 = glm::dot(near.back(), near.back());
-    const bool sees_from_afar = glm::dot(near[1], near[1]) > kIsolated * kIsolated * reach2;
-    if (!whole_cloud && near.size() > kOwnRank && (sees_from_afar || stands_apart(offsets))) {
-        sample.area = kStrayArea;
-        const bool near_enough =
-            glm::dot(near[1], near[1]) < kMostApart * kMostApart * share_of_neighbours(offsets);
-        if (!near_enough || !lies_in_plane_of_others(near, fitter)) return sample;
-        sample.apart = true;
+SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
+    Plane plane = fit_plane(search_, patch);
+    Range range = heights_over(patch, glm::vec3(plane.normal), heights_);
+    const Range layer = own_layer(heights_, patch.count, range, spacing);
+    size_t used = patch.count;
+    if (layer.low > range.low || layer.high < range.high) {
+        layer_.clear();
+        layer_.make_room(patch.count);
+        for (size_t i = 0; i < patch.count; ++i)
+            if (heights_[i] >= layer.low && heights_[i] <= layer.high)
+                layer_.push_back(patch.offset(i), patch.index[i]);
+        layer_.pad();
+        used = layer_.count;
+        plane = fit_plane(search_, layer_);
     }
+    const auto& v = plane.variances;
+    return {glm::vec3(plane.normal), deviation_of(plane, used), layer,
+            v[2] > 0 ? static_cast<float>(v[1] / v[2]) : 0.0f};
+}
 
-    Plane plane = fitter.fit(offsets);
-    std::array<float, kMostSampled> heights;
-    for (size_t i = 0; i < offsets.size(); ++i) heights[i] = glm::dot(offsets[i], glm::vec3(plane.normal));
-    const float spacing = std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(near.size() - 1));
-    const Layer layer = own_layer(std::span(heights).first(offsets.size()), spacing);
+bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch) {
+    layer_.clear();
+    layer_.make_room(patch.count);
+    for (size_t i = 1; i < patch.count; ++i) layer_.push_back(patch.offset(i), patch.index[i]);
+    layer_.pad();
+    const Plane plane = fit_plane(search_, layer_);
+    if (deviation_of(plane, layer_.count) > kGoodDeviation) return false;
+    double height = 0;
+    for (size_t i = 0; i < layer_.count; ++i) height += glm::dot(glm::dvec3(layer_.offset(i)), plane.normal);
+    height /= static_cast<double>(layer_.count);
+    return std::abs(height) <=
+           kInPlane * std::sqrt(patch.distance2[1]) + kInNoise * std::sqrt(plane.variances[0]);
+}
 
-    std::array<glm::vec3, kMostSampled> own;
-    size_t used = 0;
-    for (size_t i = 0; i < offsets.size(); ++i)
-        if (layer.holds(heights[i])) own[used++] = offsets[i];
-    if (used < offsets.size()) plane = fitter.fit(std::span(own).first(used));
+bool is_stray(const Patch& nearest, size_t usual) {
+    const size_t near = std::min(nearest.count, usual);
+    if (near <= kOwnRank) return false;
+    const bool sees_from_afar = nearest.distance2[1] > kIsolated * kIsolated * nearest.distance2[near - 1];
+    return sees_from_afar || stands_apart(nearest);
+}
 
-    sample.normal = glm::vec3(plane.normal);
-    sample.deviation = deviation_of(plane, used);
-    if (!(sample.deviation < kPoorDeviation)) {
-        // A blob has no disc, and a stray point must not get that of the empty space around it.
-        sample.area = std::min(spacing * spacing, share_of_neighbours(offsets));
-        return sample;
-    }
-    ShareCell cell = cell_of(offsets, std::span(heights).first(offsets.size()), sample.normal, layer);
-    sample.area = cell.area();
-    if (cell.open()) sample.rim = cell;
-    return sample;
+float share_of_neighbours(const Patch& nearest) {
+    std::vector<float> reaches(nearest.count - 1);
+    for (size_t i = 1; i < nearest.count; ++i) reaches[i - 1] = their_reach2(nearest, i);
+    const auto median = reaches.begin() + static_cast<ptrdiff_t>((nearest.count - 1) / 2);
+    std::nth_element(reaches.begin(), median, reaches.end());
+    return std::numbers::pi_v<float> * *median / kTheirRank;
+}
+
+bool is_near_enough(const Patch& nearest) {
+    return nearest.distance2[1] < kMostApart * kMostApart * share_of_neighbours(nearest);
 }
 
 }  // namespace lucarne::octree

@@ -1,31 +1,16 @@
 #pragma once
 
-#include <optional>
-#include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "octree/normals/plane.h"
-#include "octree/normals/surface_share.h"
+#include "octree/normals/tile.h"
 
 namespace lucarne::octree {
 
 /// The deviation of points that are isolated or have too few neighbours: more of them would not help.
 inline constexpr float kNoPlane = 1e9f;
-
-/// What a point's neighbourhood says of the surface there.
-struct SurfaceSample {
-    glm::vec3 normal{0.0f};      ///< unit, sign arbitrary; zero where there is no plane at all
-    float deviation = kNoPlane;  ///< standard error of the normal, radians
-    float area = 0.0f;           ///< the location's share of the surface, kStrayArea in the air; 0: unknown
-    /// At the rim of a sheet or of a patch denser than what is around it: the known neighbours leave the cell
-    /// open. Its area_at_rim() counts, once cut by what else it wants.
-    std::optional<ShareCell> rim;
-    /// The point stands apart from its neighbours, in their plane: a sparse point beside a dense patch if the
-    /// surface goes on beyond it, on all sides that are open; else a stray one.
-    bool apart = false;
-};
-
 /// A normal whose standard error is larger is asked from more neighbours (3 degrees: what millimetres of
 /// noise make at centimetres of spacing, and more than a picture forgives on flat walls) ...
 inline constexpr float kGoodDeviation = 0.052f;
@@ -33,18 +18,46 @@ inline constexpr float kGoodDeviation = 0.052f;
 /// more, planes with noise equal to their spacing 4.
 inline constexpr float kPoorDeviation = 0.26f;
 
-/// From the offsets to the point itself (zero) and to its neighbours, nearest first, at most kMostSampled in
-/// all; `area_count` is the usual number of them, whose reach tells the spacing. `whole_cloud`: there are no
-/// further points, so that distances say nothing about isolation.
-///  - The plane is PCL's. Where the neighbourhood falls apart into layers along the normal (both faces of a
-///  thin
-///    wall), only the point's own layer is used.
-///  - The standard error of the normal is that of an eigenvector (Anderson 1963, theorem 1): with eigenvalues
-///    l0 <= l1 <= l2 over n points, var = sum over i = 1, 2 of l0 li / (n (li - l0)^2), which grows without
-///    bound for lines (l1 -> l0) and blobs (l2 -> l0) alike.
-///  - The area is that of the point's cell among the neighbours in its layer (surface_share.h).
-SurfaceSample sample_surface(std::span<const glm::vec3> offsets, size_t area_count, bool whole_cloud,
-                             PlaneFitter& fitter);
-inline constexpr size_t kMostSampled = 128;
+/// What a point's neighbourhood says of the surface there.
+struct SurfaceFit {
+    glm::vec3 normal{0.0f};      ///< unit, sign arbitrary
+    float deviation = kNoPlane;  ///< standard error of the normal, radians
+    Range layer{0, 0};           ///< heights over the plane of the point's own surface
+    float roundness = 0;         ///< the middle variance over the largest: 0 for points on a line
+};
+
+/// Fits planes to neighbourhoods: patches with the point itself first, its neighbours after it. Holds its
+/// scratch: one a thread.
+class SurfaceFitter {
+ public:
+    explicit SurfaceFitter(NeighbourSearch search) : search_(search) {}
+
+    /// At least four points.
+    ///  - The plane is PCL's. Where the neighbourhood falls apart into layers along the normal (both faces of
+    ///  a thin wall) by `spacing`, only the point's own layer is used.
+    ///  - The standard error of the normal is that of an eigenvector (Anderson 1963, theorem 1): with
+    ///  eigenvalues l0 <= l1 <= l2 over n points, var = sum over i = 1, 2 of l0 li / (n (li - l0)^2), which
+    ///  grows without bound for lines (l1 -> l0) and blobs (l2 -> l0) alike.
+    SurfaceFit fit(const Patch& patch, float spacing);
+    /// Over the plane of the last fit.
+    const std::vector<float>& heights() const { return heights_; }
+    /// Whether the point lies in the plane of its neighbours as well as these do.
+    bool lies_in_plane_of_others(const Patch& patch);
+
+ private:
+    NeighbourSearch search_;
+    std::vector<float> heights_;
+    Patch layer_;
+};
+
+/// Whether the point hangs in the air, away from all surfaces, as its neighbours, nearest first, tell: the
+/// nearest of the first `usual` is hardly nearer than the farthest, or the others stand much closer to each
+/// other.
+bool is_stray(const Patch& nearest, size_t usual);
+/// The share of the surface that the neighbours of a point in the air have: what it is to be drawn with,
+/// having none of its own.
+float share_of_neighbours(const Patch& nearest);
+/// Whether a stray point is near enough to its neighbours to go on with their surface.
+bool is_near_enough(const Patch& nearest);
 
 }  // namespace lucarne::octree

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace lucarne::octree {
@@ -15,31 +16,42 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kKnown = 0.8f;
 /// How much farther than the known neighbours the surface is looked for. At the rim of a dense patch these
 /// are all of the patch; a sparse point a third of its spacing away from it sees 16 of them within half its
-/// spacing. Twice as far would cost a second per million points of a scan with many rims.
+/// spacing. Twice as far would cost much in a scan with many rims.
 constexpr float kLook = 4.0f;
 /// What goes on with the surface: lower than this over the tangent plane, over the distance along it (14
 /// degrees).
 constexpr float kSlope = 0.25f;
 /// The least share that a cell at a rim fills of the disc around it. A strip between two neighbours of a rim
 /// then ends about a spacing outside.
-constexpr float kFill = 0.35f;
+constexpr float kFill = 0.4f;
 constexpr float kShrink = 0.85f;
 constexpr int kMostShrinks = 12;
 constexpr int kRimSteps = 4;  ///< from a spacing (neighbours in half a disc) to nearly the fixed point, which
                               ///< a straight rim has at .55 spacings
-constexpr float kCuts = 1.001f;  ///< more than rounding
 constexpr float kCoincident = 1e-10f;
+constexpr size_t kBlock = 64;  ///< neighbours projected at a time
 
-const std::array<glm::vec2, 8>& octagon() {
-    constexpr float h = std::numbers::sqrt2_v<float> / 2;
-    static const std::array<glm::vec2, 8> directions{
-        {{1, 0}, {h, h}, {0, 1}, {-h, h}, {-1, 0}, {-h, -h}, {0, -1}, {h, -h}}};
-    return directions;
-}
+/// The two coordinates in the tangent plane of some points, and twice these over their squared length: what
+/// they cut by. Zero, which cuts nothing, where `wanted` says no.
+struct Projected {
+    std::array<float, kBlock> x, y;
+    size_t count = 0;
 
-float cross(const glm::vec2& a, const glm::vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
+    template <class Wanted>
+    void take(const Patch& patch, size_t first, const glm::vec3& to_x, const glm::vec3& to_y,
+              const Wanted& wanted) {
+        count = std::min(kBlock, patch.count - first);
+        for (size_t i = 0; i < count; ++i) {
+            const float px = patch.x[first + i], py = patch.y[first + i], pz = patch.z[first + i];
+            const float u = px * to_x.x + py * to_x.y + pz * to_x.z,
+                        v = px * to_y.x + py * to_y.y + pz * to_y.z;
+            const float length2 = u * u + v * v;
+            const float scale = wanted(first + i, length2) ? 2.0f / length2 : 0.0f;
+            x[i] = scale * u;
+            y[i] = scale * v;
+        }
+    }
+};
 
 }  // namespace
 
@@ -54,108 +66,96 @@ ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours)
                                                                 : glm::vec3(0, 0, 1);
     x_ = glm::normalize(glm::cross(normal, axis));
     y_ = glm::cross(normal, x_);
-    const float half = widest_search_ / 2, side = half * (std::numbers::sqrt2_v<float> - 1);
-    for (const glm::vec2& at :
-         {glm::vec2(half, -side), glm::vec2(half, side), glm::vec2(side, half), glm::vec2(-side, half),
-          glm::vec2(-half, side), glm::vec2(-half, -side), glm::vec2(-side, -half), glm::vec2(side, -half)})
-        corners_[count_++] = {at, true};
-    measure();
+    nearness_.fill(2 / widest_search_);
 }
 
-void ShareCell::cut(const glm::vec3& offset) {
-    const glm::vec2 q(glm::dot(offset, x_), glm::dot(offset, y_));
-    const float length2 = glm::dot(q, q);
-    if (length2 <= kCoincident * reach_ * reach_)
-        ++coincident_;
-    else if (length2 < 4 * farthest_ * farthest_)
-        cut(q, length2 / 2, false);
-}
-
-/// Keeps what has dot(direction, p) <= distance (Sutherland, Hodgman 1974).
-void ShareCell::cut(const glm::vec2& direction, float distance, bool bound) {
-    std::array<float, kMostCorners> over;
-    bool any = false;
-    for (size_t i = 0; i < count_; ++i) {
-        over[i] = glm::dot(direction, corners_[i].at) - distance;
-        any |= over[i] > 0;
+void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer) {
+    const float coincident2 = kCoincident * reach_ * reach_;
+    Projected cuts;
+    size_t here = 0;  // the point itself, too
+    for (size_t first = 0; first < neighbours.count; first += kBlock) {
+        cuts.take(neighbours, first, x_, y_, [&](size_t i, float length2) {
+            const bool in = (heights[i] >= layer.low) & (heights[i] <= layer.high);
+            const bool apart = length2 > coincident2;
+            here += in & !apart;
+            return in & apart;
+        });
+        cut_by(cuts.x.data(), cuts.y.data(), cuts.count, nearness_);
     }
-    if (!any) return;
-    std::array<Corner, kMostCorners> kept;
-    size_t count = 0;
-    for (size_t i = 0; i < count_; ++i) {
-        const size_t next = i + 1 < count_ ? i + 1 : 0;
-        const bool in = over[i] <= 0, next_in = over[next] <= 0;
-        if (count + 2 > kMostCorners) return;  // of so many corners another cut would not change much
-        if (in) kept[count++] = corners_[i];
-        if (in == next_in) continue;
-        const float t = over[i] / (over[i] - over[next]);
-        const glm::vec2 at = corners_[i].at + t * (corners_[next].at - corners_[i].at);
-        kept[count++] = {at, in ? bound : corners_[i].bound};
+    coincident_ = std::max<size_t>(here, 1) - 1;
+}
+
+void ShareCell::cut_open(const Patch& around) {
+    const float widest2 = widest_cut() * widest_cut(), coincident2 = kCoincident * reach_ * reach_;
+    std::array<float, kDirections> further = nearness_;
+    Projected cuts;
+    for (size_t first = 0; first < around.count; first += kBlock) {
+        cuts.take(around, first, x_, y_, [&](size_t i, float length2) {
+            const float height = around.x[i] * normal_.x + around.y[i] * normal_.y + around.z[i] * normal_.z;
+            return (length2 > coincident2) & (length2 < widest2) &
+                   (height * height <= kSlope * kSlope * length2);
+        });
+        size_t used = 0;
+        for (size_t i = 0; i < cuts.count; ++i) {
+            cuts.x[used] = cuts.x[i];
+            cuts.y[used] = cuts.y[i];
+            used += (cuts.x[i] != 0) | (cuts.y[i] != 0);
+        }
+        cut_by(cuts.x.data(), cuts.y.data(), used, further);
     }
-    std::copy_n(kept.begin(), count, corners_.begin());
-    count_ = count;
-    measure();
+    const float known = 1 / (kKnown * reach_);
+    for (size_t d = 0; d < kDirections; ++d)
+        if (nearness_[d] < known) nearness_[d] = further[d];
 }
 
-void ShareCell::cut_off(float radius) {
-    for (const auto& direction : octagon()) cut(direction, radius, true);
+float ShareCell::least() const {
+    return *std::min_element(nearness_.begin(), nearness_.end());
 }
 
-void ShareCell::measure() {
-    float farthest2 = 0;
-    for (size_t i = 0; i < count_; ++i)
-        farthest2 = std::max(farthest2, glm::dot(corners_[i].at, corners_[i].at));
-    farthest_ = std::sqrt(farthest2);
+float ShareCell::widest_cut() const {
+    return 2 / least();
 }
 
 bool ShareCell::open() const {
-    return farthest_ > kKnown * reach_;
-}
-
-bool ShareCell::wants(const glm::vec3& offset) const {
-    const glm::vec2 q(glm::dot(offset, x_), glm::dot(offset, y_));
-    const float length2 = glm::dot(q, q), height = glm::dot(offset, normal_), known = kKnown * reach_;
-    if (height * height > kSlope * kSlope * length2) return false;
-    for (size_t i = 0; i < count_; ++i) {
-        const glm::vec2& p = corners_[i].at;
-        if (2 * glm::dot(p, q) > kCuts * length2 && glm::dot(p, p) > known * known) return true;
-    }
-    return false;
-}
-
-float ShareCell::area() const {
-    float twice = 0;
-    for (size_t i = 0; i < count_; ++i)
-        twice += cross(corners_[i].at, corners_[i + 1 < count_ ? i + 1 : 0].at);
-    return twice / 2 / static_cast<float>(1 + coincident_);
+    return least() * kKnown * reach_ < 1;
 }
 
 bool ShareCell::closed() const {
-    return std::none_of(corners_.begin(), corners_.begin() + count_, [](const Corner& c) { return c.bound; });
+    return least() > 2 / widest_search_;
 }
 
-/// Of the distance of the cell's sides from the point, over their angles; the octagon's left out.
-float ShareCell::mean_square_of_sides() const {
-    float twice_area = 0, angles = 0;
-    for (size_t i = 0; i < count_; ++i) {
-        if (corners_[i].bound) continue;
-        const glm::vec2 &a = corners_[i].at, &b = corners_[i + 1 < count_ ? i + 1 : 0].at;
-        twice_area += cross(a, b);
-        angles += std::atan2(cross(a, b), glm::dot(a, b));
+float ShareCell::area() const {
+    float sum = 0;
+    for (const float n : nearness_) sum += 1 / (n * n);
+    return kPi / kDirections * sum / static_cast<float>(1 + coincident_);
+}
+
+void ShareCell::cut_off(float radius) {
+    for (float& n : nearness_) n = std::max(n, 1 / radius);
+}
+
+/// Of the distances of the cell's sides from the point, over their angles; what is farther left out.
+float ShareCell::mean_square_within(float radius) const {
+    float sum = 0, count = 0;
+    for (const float n : nearness_) {
+        if (n * radius <= 1) continue;
+        sum += 1 / (n * n);
+        ++count;
     }
-    return angles > 0 ? twice_area / angles : 0.0f;
+    return count > 0 ? sum / count : 0.0f;
 }
 
 float ShareCell::area_at_rim() {
-    if (!closed())
-        for (int step = 0; step < kRimSteps; ++step) {
-            const float radius = step == 0 ? rim_spacing_ : std::sqrt(mean_square_of_sides());
-            if (radius > 0) cut_off(radius);
-        }
+    if (!closed()) {
+        float radius = rim_spacing_;
+        for (int step = 1; step < kRimSteps && radius > 0; ++step)
+            radius = std::sqrt(mean_square_within(radius));
+        if (radius > 0) cut_off(radius);
+    }
     for (int step = 0; step < kMostShrinks; ++step) {
-        const float filled = area() * static_cast<float>(1 + coincident_);
-        if (filled >= kFill * kPi * farthest_ * farthest_) break;
-        cut_off(kShrink * farthest_);
+        const float filled = area() * static_cast<float>(1 + coincident_), farthest = 1 / least();
+        if (filled >= kFill * kPi * farthest * farthest) break;
+        cut_off(kShrink * farthest);
     }
     return area();
 }

@@ -104,11 +104,13 @@ TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
         NormalOptions options;
         options.stations = scan.stations;
         const Estimate found = estimate(scan.cloud, options);
-        const PointIndex index(truth.cloud.points);
+        PointArrays surface;
+        for (const auto& p : truth.cloud.points) surface.push_back(p);
+        const auto index = make_flann_index(surface);
         size_t mixed = 0, mixed_drawn = 0, real = 0, real_left_out = 0;
         for (size_t i = 0; i < scan.cloud.points.size(); ++i) {
             Neighbour nearest;
-            index.merge_nearest(scan.cloud.points[i], std::span(&nearest, 1), 0, 0);
+            index->merge_nearest(scan.cloud.points[i], std::span(&nearest, 1), 0, 0);
             const bool stray = found.normals[i] == glm::vec3(0.0f) && found.areas[i] <= kStrayArea;
             if (nearest.distance2 > kInTheAir * kInTheAir)
                 ++mixed, mixed_drawn += !stray;

@@ -107,6 +107,9 @@ void add_convert(CLI::App& app, Command& chosen) {
                                                               {"keep", NormalsMode::keep},
                                                               {"estimate", NormalsMode::estimate},
                                                               {"none", NormalsMode::none}};
+    using octree::NeighbourSearch;
+    static const std::map<std::string, NeighbourSearch> kSearches = {{"leaf", NeighbourSearch::leaf},
+                                                                     {"flann", NeighbourSearch::flann}};
     auto options = std::make_shared<ConvertOptions>();
     options->build.resume = octree::Resume::later;
     auto* command = app.add_subcommand("convert", "Build an octree cache from scans");
@@ -138,6 +141,12 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->capture_default_str()
         ->check(CLI::Range(3u, octree::kMostNormalNeighbours))
         ->type_name("K");
+    command
+        ->add_option("--neighbours-search", options->build.neighbour_search,
+                     "How these are found: leaf is fast, flann is PCL over FLANN, to compare with")
+        ->transform(CLI::CheckedTransformer(kSearches))
+        ->type_name("leaf|flann")
+        ->default_str("leaf");
     command->add_flag_callback(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
         "Go on from the last stage that an interrupted conversion finished");

@@ -1,0 +1,213 @@
+#include "octree/normals/leaf_index.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include <glm/common.hpp>
+
+#include "octree/build/radix_sort.h"
+#include "octree/key.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint32_t kLeafPoints = 24;  ///< most; 16 is a usual number
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The Morton code of a place within bounds, 21 bits an axis.
+struct MortonGrid {
+    glm::dvec3 low;
+    double scale;
+
+    explicit MortonGrid(const Box& box) : low(box.min) {
+        const glm::dvec3 size = box.max - box.min;
+        scale = 2097151.0 / std::max({size.x, size.y, size.z, 1e-290});
+    }
+    uint64_t code(const glm::dvec3& p) const {
+        const glm::dvec3 cell = (p - low) * scale;
+        return morton(static_cast<uint64_t>(cell.x), static_cast<uint64_t>(cell.y),
+                      static_cast<uint64_t>(cell.z));
+    }
+};
+
+template <class Points>
+Box bounds_of(const Points& points) {
+    Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    for (size_t i = 0; i < points.size(); ++i) {
+        box.min = glm::min(box.min, points[i]);
+        box.max = glm::max(box.max, points[i]);
+    }
+    return box;
+}
+
+bool less(const glm::dvec3& a, const glm::dvec3& b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+}  // namespace
+
+std::vector<uint32_t> morton_order(std::span<const glm::dvec3> points) {
+    const MortonGrid grid(bounds_of(points));
+    std::vector<CodeIndex> keys(points.size());
+    for (size_t i = 0; i < points.size(); ++i) keys[i] = {grid.code(points[i]), static_cast<uint32_t>(i)};
+    sort_by_code(keys, 3 * kMaxLevel);
+    std::vector<uint32_t> order(points.size());
+    for (size_t first = 0, last; first < keys.size(); first = last) {
+        for (last = first; last < keys.size() && keys[last].code == keys[first].code; ++last)
+            order[last] = keys[last].index;
+        std::stable_sort(order.begin() + static_cast<ptrdiff_t>(first),
+                         order.begin() + static_cast<ptrdiff_t>(last),
+                         [&](uint32_t a, uint32_t b) { return less(points[a], points[b]); });
+    }
+    return order;
+}
+
+LeafIndex::LeafIndex(const PointArrays& points) : points_(&points) {
+    const MortonGrid grid(bounds_of(points));
+    std::vector<uint64_t> codes(points.size());
+    for (size_t i = 0; i < points.size(); ++i) codes[i] = grid.code(points[i]);
+    cut(0, static_cast<uint32_t>(points.size()), codes);
+    first_.push_back(static_cast<uint32_t>(points.size()));
+    build_tree();
+}
+
+/// Halves the cell that holds all of [first, last) until few are left; in the same finest cell, the points.
+void LeafIndex::cut(uint32_t first, uint32_t last, std::span<const uint64_t> codes) {
+    if (last - first <= kLeafPoints) {
+        if (last > first) first_.push_back(first);
+        return;
+    }
+    const uint64_t differ = codes[first] ^ codes[last - 1];
+    uint32_t middle = first + (last - first) / 2;
+    if (differ != 0) {
+        const uint64_t bit = std::bit_floor(differ), upper = (codes[last - 1] & ~(bit - 1));
+        middle = static_cast<uint32_t>(std::lower_bound(codes.begin() + first, codes.begin() + last, upper) -
+                                       codes.begin());
+    }
+    cut(first, middle, codes);
+    cut(middle, last, codes);
+}
+
+Box LeafIndex::bounds_of_leaf(size_t leaf) const {
+    Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    for (uint32_t i = first_[leaf]; i < first_[leaf + 1]; ++i) {
+        box.min = glm::min(box.min, (*points_)[i]);
+        box.max = glm::max(box.max, (*points_)[i]);
+    }
+    return box;
+}
+
+void LeafIndex::build_tree() {
+    const Box none{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    size_t count = first_.size() - 1;
+    do {
+        std::vector<Node> level((count + kFan - 1) / kFan);
+        for (size_t i = 0; i < level.size() * kFan; ++i) {
+            Box box = i < count && levels_.empty() ? bounds_of_leaf(i) : none;
+            if (i < count && !levels_.empty()) {
+                const Node& node = levels_.back()[i];
+                for (int axis = 0; axis < 3; ++axis) {
+                    box.min[axis] = *std::min_element(node.low[static_cast<size_t>(axis)].begin(),
+                                                      node.low[static_cast<size_t>(axis)].end());
+                    box.max[axis] = *std::max_element(node.high[static_cast<size_t>(axis)].begin(),
+                                                      node.high[static_cast<size_t>(axis)].end());
+                }
+            }
+            for (int axis = 0; axis < 3; ++axis) {
+                level[i / kFan].low[static_cast<size_t>(axis)][i % kFan] = box.min[axis];
+                level[i / kFan].high[static_cast<size_t>(axis)][i % kFan] = box.max[axis];
+            }
+        }
+        count = level.size();
+        levels_.push_back(std::move(level));
+    } while (count > 1);
+}
+
+/// Squared distances of a node's boxes from a box.
+void LeafIndex::distances(const Node& node, const Box& box, std::array<double, kFan>& distance2) {
+    distance2.fill(0);
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const double to = box.min[static_cast<int>(axis)], from = box.max[static_cast<int>(axis)];
+        for (size_t i = 0; i < kFan; ++i) {
+            const double under = node.low[axis][i] - from, over = to - node.high[axis][i];
+            const double most = under > over ? under : over, apart = most > 0 ? most : 0;
+            distance2[i] += apart * apart;
+        }
+    }
+}
+
+bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const {
+    const double limit2 = radius * radius;
+    const glm::vec3 low(box.min - tile.origin), high(box.max - tile.origin);
+    const auto tile_limit2 = static_cast<float>(limit2) * 1.00001f;  // floats round
+    std::array<Step, kMostSteps> stack;
+    size_t waiting = 0;
+    stack[waiting++] = {0, static_cast<uint32_t>(levels_.size() - 1), 0};
+    std::array<double, kFan> distance2;
+    while (waiting > 0) {
+        const Step step = stack[--waiting];
+        distances(levels_[step.level][step.node], box, distance2);
+        // The first is taken up first, so that a tile is in the points' order.
+        if (step.level > 0) {
+            for (size_t i = kFan; i-- > 0;)
+                if (distance2[i] <= limit2)
+                    stack[waiting++] = {0, step.level - 1, static_cast<uint32_t>(step.node * kFan + i)};
+            continue;
+        }
+        for (size_t i = 0; i < kFan; ++i) {
+            const size_t leaf = step.node * kFan + i;
+            if (!(distance2[i] <= limit2) || leaf + 1 >= first_.size()) continue;
+            tile.append(*points_, first_[leaf], first_[leaf + 1], offset, low, high, tile_limit2);
+            if (tile.count > most) return false;
+        }
+    }
+    return true;
+}
+
+/// Depth first, the nearest box first (Roussopoulos, Kelley, Vincent 1995).
+size_t LeafIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
+                                uint32_t offset) const {
+    if (nearest.empty()) return found;
+    const auto worst = [&] { return found < nearest.size() ? kInfinity : nearest.back().distance2; };
+    const auto take = [&](double d2, uint32_t index) {
+        if (!(d2 < worst())) return;
+        if (found < nearest.size()) ++found;
+        size_t at = found - 1;
+        for (; at > 0 && nearest[at - 1].distance2 > d2; --at) nearest[at] = nearest[at - 1];
+        nearest[at] = {d2, index};
+    };
+    std::array<Step, kMostSteps> stack;
+    size_t waiting = 0;
+    stack[waiting++] = {0, static_cast<uint32_t>(levels_.size()), 0};
+    std::array<double, kFan> distance2;
+    while (waiting > 0) {
+        const Step step = stack[--waiting];
+        if (step.distance2 >= worst()) continue;
+        if (step.level == 0) {
+            for (uint32_t i = first_[step.node]; i < first_[step.node + 1]; ++i) {
+                const glm::dvec3 d = (*points_)[i] - query;
+                take(d.x * d.x + d.y * d.y + d.z * d.z, i + offset);
+            }
+            continue;
+        }
+        distances(levels_[step.level - 1][step.node], {query, query}, distance2);
+        const size_t below = waiting;
+        for (size_t i = kFan; i-- > 0;) {
+            if (!(distance2[i] < worst())) continue;
+            size_t at = waiting++;
+            for (; at > below && stack[at - 1].distance2 < distance2[i]; --at) stack[at] = stack[at - 1];
+            stack[at] = {distance2[i], step.level - 1, static_cast<uint32_t>(step.node * kFan + i)};
+        }
+    }
+    return found;
+}
+
+std::unique_ptr<PointIndex> make_index(NeighbourSearch search, const PointArrays& points) {
+    if (points.size() == 0) return nullptr;
+    if (search == NeighbourSearch::flann) return make_flann_index(points);
+    return std::make_unique<LeafIndex>(points);
+}
+
+}  // namespace lucarne::octree

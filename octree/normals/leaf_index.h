@@ -1,0 +1,41 @@
+#pragma once
+
+#include "octree/normals/point_index.h"
+
+namespace lucarne::octree {
+
+/// Points along a Morton curve, cut where the cells of an octree end into leaves of a few points, and a tree
+/// of boxes over these, eight to a node. Nothing but the boxes is held besides the points: 4 bytes a point. A
+/// search takes up whole leaves, for all queries of a leaf at once.
+class LeafIndex final : public PointIndex {
+ public:
+    explicit LeafIndex(const PointArrays& points);
+
+    size_t merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
+                         uint32_t offset) const override;
+    bool gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const override;
+    /// Where the leaves begin, and the number of points: ascending.
+    std::span<const uint32_t> leaves() const { return first_; }
+
+ private:
+    static constexpr size_t kFan = 8;
+    struct Node {
+        std::array<std::array<double, kFan>, 3> low, high;
+    };
+    /// A box of the tree that a search still has to look into: a node of `level`, or a leaf.
+    struct Step {
+        double distance2;
+        uint32_t level, node;
+    };
+    static constexpr size_t kMostSteps = 12 * kFan;  ///< eight to the power of 11 leaves
+    static void distances(const Node& node, const Box& box, std::array<double, kFan>& distance2);
+    void cut(uint32_t first, uint32_t last, std::span<const uint64_t> codes);
+    void build_tree();
+    Box bounds_of_leaf(size_t leaf) const;
+
+    const PointArrays* points_;
+    std::vector<uint32_t> first_;
+    std::vector<std::vector<Node>> levels_;  ///< the first over the leaves, the last one node
+};
+
+}  // namespace lucarne::octree

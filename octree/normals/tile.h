@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace lucarne::octree {
+
+/// Points in double precision, one array a coordinate.
+struct PointArrays {
+    std::vector<double> x, y, z;
+
+    size_t size() const { return x.size(); }
+    glm::dvec3 operator[](size_t i) const { return {x[i], y[i], z[i]}; }
+    void push_back(const glm::dvec3& p) {
+        x.push_back(p.x);
+        y.push_back(p.y);
+        z.push_back(p.z);
+    }
+    void reserve(size_t count);
+    void clear();
+    void release();  ///< gives the memory back
+};
+
+/// All vector loops below go over so many floats at a time, and read and write up to the next multiple.
+inline constexpr size_t kLanes = 8;
+
+/// The points around a few queries, relative to an origin among them: small enough to stay in the first
+/// cache, and floats are exact enough there. The arrays are longer than `count`, and hold zeros up to the
+/// next multiple of kLanes once pad() was called.
+struct Tile {
+    glm::dvec3 origin{0.0};
+    size_t count = 0;
+    std::vector<float> x, y, z;
+    std::vector<uint32_t> index;  ///< which points they are
+
+    void clear(const glm::dvec3& new_origin);
+    void make_room(size_t more);  ///< for so many points beyond `count`, and kLanes
+    void pad();
+    /// Appends those of points [first, last) whose distance from the box low .. high (relative to the origin)
+    /// is at most the root of `limit2`; their index is the point's plus `offset`.
+    void append(const PointArrays& points, size_t first, size_t last, uint32_t offset, const glm::vec3& low,
+                const glm::vec3& high, float limit2);
+};
+
+/// Points around one of them as offsets from it; zeros up to the next multiple of kLanes.
+struct Patch {
+    size_t count = 0;
+    std::vector<float> x, y, z, distance2;
+    std::vector<uint32_t> index;
+
+    void clear() { count = 0; }
+    void make_room(size_t points);
+    void push_back(const glm::vec3& offset, uint32_t point);  ///< make_room() first
+    void pad();
+    glm::vec3 offset(size_t i) const { return {x[i], y[i], z[i]}; }
+
+    /// Becomes the tile's points within the root of `limit2` of `centre` (relative to the tile's origin).
+    void take_within(const Tile& tile, const glm::vec3& centre, float limit2);
+    /// Becomes the `most` nearest of another patch, nearest first; of those at one distance, the first.
+    void take_nearest(Patch& from, size_t most);
+};
+
+/// Sums over points: how many, their coordinates, and the products xx, yy, zz, xy, xz, yz.
+struct Moments {
+    size_t count = 0;
+    std::array<float, 3> sum{};
+    std::array<float, 6> products{};
+};
+Moments moments_of(const Patch& patch);
+
+/// Heights over the plane through the centre, padded as the patch; returns the lowest and the highest.
+struct Range {
+    float low, high;
+};
+Range heights_over(const Patch& patch, const glm::vec3& normal, std::vector<float>& heights);
+
+/// What is next to `middle`: the highest below it, the lowest not below it, and how many are below. `heights`
+/// are padded with zeros up to a multiple of kLanes.
+struct Gap {
+    float below, above;
+    size_t lower;
+};
+Gap gap_at(const std::vector<float>& heights, size_t count, const Range& range, float middle);
+
+/// Directions about a point in a plane. The first is turned by .2113 of a step, which is where a sum over
+/// directions integrates a function with kinks at multiples of 45 degrees (cells of a regular grid) to second
+/// order (the root of the second Bernoulli polynomial).
+inline constexpr size_t kDirections = 32;
+struct Directions {
+    std::array<float, kDirections> x, y;
+};
+const Directions& directions();
+
+/// nearness[d] = max over i of x[i] ux[d] + y[i] uy[d], and of itself: each (x, y) is twice a neighbour's
+/// offset over its squared length, so that 1 / nearness is how far the cell reaches in a direction.
+void cut_by(const float* x, const float* y, size_t count, std::array<float, kDirections>& nearness);
+
+}  // namespace lucarne::octree

@@ -1,0 +1,197 @@
+// The loops of tile.cpp, included once for each kind of processor, inside a namespace. `Packer` is what keeps
+// chosen lanes there.
+
+template <class Vector, class T>
+LUCARNE_INLINE Vector load(const T* from) {
+    Vector v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
+}
+template <class Vector, class T>
+LUCARNE_INLINE void store(T* to, const Vector& v) {
+    std::memcpy(to, &v, sizeof v);
+}
+LUCARNE_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
+    return a > b ? a : b;
+}
+LUCARNE_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
+    return a < b ? a : b;
+}
+
+#ifdef LUCARNE_WIDE
+struct Packer {
+    LUCARNE_INLINE explicit Packer(const Words& chosen) {
+        mask = static_cast<uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps((__m256i)chosen)));
+        const __m256i packed = _mm256_set1_epi32(static_cast<int>(kPacking[mask]));
+        order = _mm256_srlv_epi32(packed, _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
+    }
+    template <class T, class Vector>
+    LUCARNE_INLINE void put(const Vector& values, T* to) const {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                            _mm256_permutevar8x32_epi32((__m256i)values, order));
+    }
+    LUCARNE_INLINE size_t count() const {
+        return static_cast<size_t>(__builtin_popcount(mask));
+    }
+    uint32_t mask;
+    __m256i order;
+};
+#else
+/// Keeps the chosen lanes of up to five arrays side by side: appends them and says how many. One lane after
+/// the other, without a branch.
+struct Packer {
+    LUCARNE_INLINE explicit Packer(const Words& chosen) { store(flags, chosen); }
+    template <class T, class Vector>
+    LUCARNE_INLINE void put(const Vector& values, T* to) const {
+        T lanes[kLanes];
+        store(lanes, values);
+        size_t at = 0;
+        for (size_t i = 0; i < kLanes; ++i) {
+            to[at] = lanes[i];
+            at += flags[i] != 0;
+        }
+    }
+    LUCARNE_INLINE size_t count() const {
+        size_t sum = 0;
+        for (const int32_t flag : flags) sum += flag != 0;
+        return sum;
+    }
+    int32_t flags[kLanes];
+};
+#endif
+
+LUCARNE_INLINE Lanes relative(const std::vector<double>& values, size_t at, double origin) {
+    return __builtin_convertvector(load<Doubles>(&values[at]) - origin, Lanes);
+}
+
+LUCARNE_INLINE Lanes beyond(const Lanes& v, float low, float high) {
+    const Lanes none{};
+    return greater(greater(low - v, v - high), none);
+}
+
+LUCARNE_INLINE void append_lanes(Tile& tile, const Lanes& x, const Lanes& y, const Lanes& z,
+                                 const Words& index, size_t lanes, const glm::vec3& low,
+                                 const glm::vec3& high, float limit2) {
+    const Lanes dx = beyond(x, low.x, high.x), dy = beyond(y, low.y, high.y), dz = beyond(z, low.z, high.z);
+    const Words chosen = (dx * dx + dy * dy + dz * dz <= limit2) & (kLane < static_cast<int32_t>(lanes));
+    const Packer packer(chosen);
+    packer.put(x, &tile.x[tile.count]);
+    packer.put(y, &tile.y[tile.count]);
+    packer.put(z, &tile.z[tile.count]);
+    packer.put(index, &tile.index[tile.count]);
+    tile.count += packer.count();
+}
+
+[[gnu::noinline]] void append(Tile& tile, const PointArrays& points, size_t first, size_t last,
+                                uint32_t offset, const glm::vec3& low, const glm::vec3& high, float limit2) {
+    size_t i = first;
+    for (; i < last && i + kLanes <= points.size(); i += kLanes)
+        append_lanes(tile, relative(points.x, i, tile.origin.x),
+                             relative(points.y, i, tile.origin.y), relative(points.z, i, tile.origin.z),
+                             kLane + static_cast<int32_t>(i + offset), last - i, low, high, limit2);
+    for (; i < last; ++i) {  // the end of the arrays
+        const glm::vec3 p(points[i] - tile.origin);
+        append_lanes(tile, p.x - Lanes{}, p.y - Lanes{}, p.z - Lanes{},
+                             kLane + static_cast<int32_t>(i + offset), 1, low, high, limit2);
+    }
+}
+
+[[gnu::noinline]] void within(Patch& patch, const Tile& tile, const glm::vec3& centre, float limit2) {
+    patch.count = 0;
+    for (size_t i = 0; i < tile.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&tile.x[i]) - centre.x, y = load<Lanes>(&tile.y[i]) - centre.y,
+                    z = load<Lanes>(&tile.z[i]) - centre.z;
+        const Lanes d2 = x * x + y * y + z * z;
+        const Packer packer((d2 <= limit2) & (kLane < static_cast<int32_t>(tile.count - i)));
+        packer.put(x, &patch.x[patch.count]);
+        packer.put(y, &patch.y[patch.count]);
+        packer.put(z, &patch.z[patch.count]);
+        packer.put(d2, &patch.distance2[patch.count]);
+        packer.put(load<Words>(&tile.index[i]), &patch.index[patch.count]);
+        patch.count += packer.count();
+    }
+}
+
+/// The place of each value among all; equal ones stay in their order.
+[[gnu::noinline]] void rank(const float* values, size_t count, int32_t* ranks) {
+    for (size_t block = 0; block < count; block += kLanes) {
+        const Lanes own = load<Lanes>(&values[block]);
+        const size_t end = std::min(count, block + kLanes);
+        Words rank{};
+        size_t j = 0;
+        for (; j < block; ++j) rank -= values[j] <= own;
+        for (; j < end; ++j)
+            rank -= (values[j] < own) | ((values[j] == own) & (kLane > static_cast<int32_t>(j - block)));
+        for (; j < count; ++j) rank -= values[j] < own;
+        store(&ranks[block], rank);
+    }
+}
+
+LUCARNE_INLINE float total(const Lanes& v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+[[gnu::noinline]] Moments moments(const Patch& patch) {
+    Lanes sx{}, sy{}, sz{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]);
+        sx += x;
+        sy += y;
+        sz += z;
+        xx += x * x;
+        yy += y * y;
+        zz += z * z;
+        xy += x * y;
+        xz += x * z;
+        yz += y * z;
+    }
+    return {patch.count,
+            {total(sx), total(sy), total(sz)},
+            {total(xx), total(yy), total(zz), total(xy), total(xz), total(yz)}};
+}
+
+[[gnu::noinline]] Range heights(const Patch& patch, const glm::vec3& normal, float* heights) {
+    Lanes low{}, high{};
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes h = load<Lanes>(&patch.x[i]) * normal.x + load<Lanes>(&patch.y[i]) * normal.y +
+                        load<Lanes>(&patch.z[i]) * normal.z;
+        low = lesser(low, h);
+        high = greater(high, h);
+        store(&heights[i], h);
+    }
+    Range range{0, 0};
+    for (size_t i = 0; i < kLanes; ++i)
+        range = {std::min(range.low, low[i]), std::max(range.high, high[i])};
+    return range;
+}
+
+[[gnu::noinline]] Gap gap(const float* heights, size_t count, const Range& range, float middle) {
+    Lanes below = range.low - Lanes{}, above = range.high - Lanes{};
+    Words lower{};
+    for (size_t i = 0; i < count; i += kLanes) {
+        const Lanes h = load<Lanes>(&heights[i]);
+        const Words inside = kLane < static_cast<int32_t>(count - i), is_lower = (h < middle) & inside;
+        below = is_lower ? greater(below, h) : below;
+        above = (~is_lower & inside) ? lesser(above, h) : above;
+        lower -= is_lower;
+    }
+    Gap gap{range.low, range.high, 0};
+    for (size_t i = 0; i < kLanes; ++i) {
+        gap.below = std::max(gap.below, below[i]);
+        gap.above = std::min(gap.above, above[i]);
+        gap.lower += static_cast<size_t>(lower[i]);
+    }
+    return gap;
+}
+
+[[gnu::noinline]] void cut(const float* x, const float* y, size_t count, const Directions& to,
+                             float* nearness) {
+    constexpr size_t kVectors = kDirections / kLanes;
+    Lanes near[kVectors];
+    for (size_t v = 0; v < kVectors; ++v) near[v] = load<Lanes>(&nearness[v * kLanes]);
+    for (size_t i = 0; i < count; ++i)
+        for (size_t v = 0; v < kVectors; ++v)
+            near[v] = greater(near[v], load<Lanes>(&to.x[v * kLanes]) * x[i] +
+                                           load<Lanes>(&to.y[v * kLanes]) * y[i]);
+    for (size_t v = 0; v < kVectors; ++v) store(&nearness[v * kLanes], near[v]);
+}
