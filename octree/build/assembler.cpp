@@ -23,12 +23,13 @@ Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const Node
       loader_(loader),
       stride_(loader.schema().stride),
       sampler_(limits),
-      emitter_(loader.schema()),
+      emitter_(loader),
       samples_(std::move(samples)) {}
 
 Result<void> Assembler::add(size_t index, Subtree&& tree) {
     {
         const Subtree done = std::move(tree);  // gone before the sampling above it starts
+        subtree_encode_seconds_ += done.encode_seconds;
         LUCARNE_ASSIGN(const uint64_t base, writer_.append(done.payload));
         for (auto entry : done.entries) {
             entry.payload_offset += base;

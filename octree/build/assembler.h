@@ -18,6 +18,9 @@ class Assembler {
     /// Takes the subtree of chunk number `index`; call in order.
     Result<void> add(size_t index, Subtree&& tree);
 
+    /// CPU time spent on compressing, in the subtrees taken as well.
+    double encode_seconds() const { return subtree_encode_seconds_ + emitter_.encode_seconds(); }
+
  private:
     struct Waiting {
         Pending node;
@@ -36,6 +39,7 @@ class Assembler {
     uint32_t stride_;
     NodeSampler sampler_;
     Emitter emitter_;
+    double subtree_encode_seconds_ = 0;
     ScratchFile samples_;
     std::vector<Waiting> stack_;
     uint64_t end_ = 0;  ///< records in the scratch file; those behind the top of the stack are free again

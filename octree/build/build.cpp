@@ -224,10 +224,15 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     }
     const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
     LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
+    double encoding = 0;
     LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
         LUCARNE_ASSIGN(Assembler assembler, Assembler::create(writer, loader, limits, folder));
-        return build_chunks(store, loader, limits, memory, work.resumable(), assembler);
+        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler);
+        encoding = assembler.encode_seconds();
+        return built;
     }));
+    report.stages.back().cpu_seconds -= encoding;
+    report.stages.push_back({"encode", 0, encoding});
     LUCARNE_TRY(
         timed(report, "write", [&] { return writer.finish(header_of(inputs, facts, loader.schema())); }));
     work.done();

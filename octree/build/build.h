@@ -33,7 +33,7 @@ struct BuildOptions {
 
 struct StageTime {
     std::string name;
-    double wall_seconds = 0, cpu_seconds = 0;
+    double wall_seconds = 0, cpu_seconds = 0;  ///< wall 0: ran within the stage before
 };
 
 struct BuildReport {

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "octree/build/node_sampler.h"
+#include "octree/build/record_loader.h"
+#include "octree/build/surface_rounding.h"
 #include "octree/codec/payload.h"
 
 namespace lucarne::octree {
@@ -10,7 +12,10 @@ namespace lucarne::octree {
 /// Turns settled children into payloads and directory entries.
 class Emitter {
  public:
-    explicit Emitter(const io::Schema& schema) : stride_(schema.stride), encoder_(schema) {}
+    explicit Emitter(const RecordLoader& loader)
+        : stride_(loader.schema().stride),
+          rounding_(loader.estimated_normal(), loader.estimated_area(), stride_),
+          encoder_(loader.schema()) {}
 
     /// Appends the settled child's payload and its entry, whose offset counts from the start of `payload`.
     /// `record(i)` is the i-th of its sample.
@@ -22,7 +27,7 @@ class Emitter {
         entry.payload_offset = payload.size();
         sampler.kept(child, curve_, passes_);
         collect(curve_, record);
-        if (!compress(entry, payload)) {
+        if (!compress(entry, payload)) {  // some few records: as they are, whole
             collect(order_, record);
             payload.insert(payload.end(), records_.begin(), records_.end());
         }
@@ -30,6 +35,9 @@ class Emitter {
         entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
         entries.push_back(entry);
     }
+
+    /// CPU time spent on rounding and compressing so far.
+    double encode_seconds() const { return seconds_; }
 
  private:
     template <class Record>
@@ -41,11 +49,14 @@ class Emitter {
             to += stride_;
         }
     }
-    /// Appends the records compressed; false, and nothing is appended, where that gains nothing.
+    /// Rounds the records' surface estimates and appends them compressed; false, and nothing is appended,
+    /// where that gains nothing.
     bool compress(format::Entry& entry, std::vector<std::byte>& payload);
 
     uint32_t stride_;
+    SurfaceRounding rounding_;
     codec::PayloadEncoder encoder_;
+    double seconds_ = 0;
     std::vector<uint32_t> order_, curve_;
     std::vector<uint8_t> passes_;
     std::vector<std::byte> records_;

@@ -22,6 +22,9 @@ class RecordLoader {
     Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
     /// The point's surface share, 0 where unknown.
     float area(const std::byte* record) const;
+    /// Where estimates stand; null where nothing was estimated.
+    const io::Attribute* estimated_normal() const { return normal_; }
+    const io::Attribute* estimated_area() const { return area_; }
 
  private:
     const ChunkStore& chunks_;

@@ -16,7 +16,7 @@ class Builder {
           limits_(limits),
           stride_(loader.schema().stride),
           sampler_(limits),
-          emitter_(loader.schema()) {}
+          emitter_(loader) {}
 
     Result<void> load(size_t index, uint64_t count);
     Subtree build();
@@ -115,6 +115,7 @@ Subtree Builder::build() {
     result_.sample.reserve(sample.size() * stride_);
     for (const uint32_t i : sample)
         result_.sample.insert(result_.sample.end(), record(i), record(i) + stride_);
+    result_.encode_seconds = emitter_.encode_seconds();
     return std::move(result_);
 }
 

@@ -13,6 +13,7 @@ struct Subtree {
     std::vector<format::Entry> entries;  ///< depth first, payload offsets from the start of `payload`
     Pending root;
     std::vector<std::byte> sample;  ///< the root's sample, whole records in Morton order
+    double encode_seconds = 0;      ///< CPU time
 };
 
 /// Builds chunk number `index` in memory.

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "gi/gbuffer/gbuffer.h"
+#include "tests/bench/conversion.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
 #include "viewer/views.h"
@@ -23,54 +22,9 @@
 namespace lucarne {
 namespace {
 
-struct Usage {
-    double cpu_seconds = 0, peak_mebibytes = 0;
-};
-
-/// Runs `lucarne` with these arguments as a process of its own, so that its memory is its own.
-Result<Usage> run_lucarne(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), LUCARNE_BINARY);
-    std::vector<char*> argv;
-    for (auto& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child < 0) return failed("fork", "no new process");
-    if (child == 0) {
-        execv(argv[0], argv.data());
-        _exit(127);
-    }
-    int status = 0;
-    rusage used{};
-    wait4(child, &status, 0, &used);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        return failed("lucarne " + arguments[1], fmt::format("ended with status {}", status));
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
-}
-
-void row(const std::string& what, double value, const std::string& unit, double target) {
-    fmt::print("{:<68} {:>9.1f} {:<7} target {:>7.0f}  {}\n", what, value, unit, target,
-               value <= target ? "kept" : "MISSED");
-    std::fflush(stdout);
-}
-
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
-}
-
-Result<void> bench_conversion(const std::filesystem::path& folder) {
-    const std::string scan = folder / "nave20m.las", cache = folder / "nave20m.luc";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "20M", "--overwrite"}));
-    LUCARNE_ASSIGN(const Usage used, run_lucarne({"convert", scan, "-o", cache, "--normals", "none",
-                                                  "--memory", "1G", "--overwrite"}));
-    row("conversion of 20M points without normals, --memory 1G: CPU", used.cpu_seconds, "s", 26);
-    row("the same: peak resident memory", used.peak_mebibytes, "MiB", 1024);
-    std::filesystem::remove(scan);
-    std::filesystem::remove(cache);
-    return {};
 }
 
 Result<void> bench_normals(const std::filesystem::path& folder) {
@@ -172,7 +126,7 @@ Result<void> bench(const std::filesystem::path& folder) {
     fmt::print("{} hardware threads\n", std::thread::hardware_concurrency());
     LUCARNE_TRY(bench_frames(folder));
     LUCARNE_TRY(bench_normals(folder));
-    return bench_conversion(folder);
+    return bench_conversion(folder, 20'000'000);
 }
 
 }  // namespace

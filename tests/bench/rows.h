@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+struct Usage {
+    double cpu_seconds = 0, peak_mebibytes = 0;
+};
+
+/// Runs `lucarne` with these arguments as a process of its own, so that its memory is its own.
+inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), LUCARNE_BINARY);
+    std::vector<char*> argv;
+    for (auto& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child < 0) return failed("fork", "no new process");
+    if (child == 0) {
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    wait4(child, &status, 0, &used);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return failed("lucarne " + arguments[1], fmt::format("ended with status {}", status));
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
+}
+
+inline void row(const std::string& what, double value, const std::string& unit, double target) {
+    fmt::print("{:<68} {:>9.2f} {:<7} target {:>7.1f}  {}\n", what, value, unit, target,
+               value <= target ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+
+}  // namespace lucarne
