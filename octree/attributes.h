@@ -16,10 +16,11 @@ inline constexpr NormalCode kNoNormal = {0xff, 0xff, 0xff};
 NormalCode encode_normal(const glm::vec3& unit_normal);   ///< zero or non-finite vectors give kNoNormal
 std::optional<glm::vec3> decode_normal(NormalCode code);  ///< empty for kNoNormal
 
-/// The largest step to which codes are rounded where estimates are noisy: .45 degrees for normals (at most to
-/// either side, and axis), an eighth of an octave for areas.
+/// The largest steps to which codes are rounded where estimates are noisy: 2 degrees at worst for normals
+/// (.06 a step), an eighth of an octave for areas.
 inline constexpr int kMostRounding = 32, kMostAreaRounding = 128;
-/// The nearest code on a grid of every `step`th, a power of two up to kMostRounding or kMostAreaRounding.
+/// The code nearest to one of encode_normal or encode_area on a grid of every `step`th, a power of two up to
+/// kMostRounding or kMostAreaRounding.
 NormalCode round_normal(NormalCode code, int step);
 uint16_t round_area(uint16_t code, int step);
 

@@ -72,12 +72,45 @@ TEST(Attributes, AreasSurviveWithinAStepOver63Octaves) {
 
 TEST(Attributes, AreasBeyondTheRangeAreClampedOrUnknown) {
     EXPECT_EQ(encode_area(100, 1), 0);
-    EXPECT_EQ(encode_area(1e-40, 1), 0xfffe);
+    EXPECT_EQ(encode_area(1e-40, 1), 0xff80);
     for (const double area : {0.0, -1.0, static_cast<double>(kNan), static_cast<double>(kInfinity)})
         EXPECT_EQ(encode_area(area, 1), kNoArea);
     EXPECT_EQ(encode_area(1, 0), kNoArea);
     EXPECT_EQ(encode_area(1, static_cast<double>(kNan)), kNoArea);
     EXPECT_EQ(decode_area(kNoArea, 5), 0);
+}
+
+TEST(Attributes, RoundedNormalsAreNearAndTheAxesStay) {
+    for (int step = 1; step <= kMostRounding; step *= 2) {
+        double worst = 0;
+        Random random(4);
+        for (int i = 0; i < 20'000; ++i) {
+            const glm::vec3 n = glm::normalize(
+                glm::vec3(2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1));
+            const NormalCode rounded = round_normal(encode_normal(n), step);
+            EXPECT_EQ(round_normal(rounded, step), rounded);
+            worst = std::max(worst, degrees_between(n, *decode_normal(rounded)));
+        }
+        EXPECT_LT(worst, .062 * (step + 1)) << step;
+        for (int axis = 0; axis < 6; ++axis) {
+            glm::vec3 n(0.0f);
+            n[axis / 2] = axis % 2 ? -1.0f : 1.0f;
+            EXPECT_NEAR(glm::dot(n, *decode_normal(round_normal(encode_normal(n), step))), 1, 1e-6) << axis;
+        }
+        EXPECT_EQ(round_normal(kNoNormal, step), kNoNormal);
+    }
+}
+
+TEST(Attributes, RoundedAreasAreNearAndUnknownStaysUnknown) {
+    for (int step = 1; step <= kMostAreaRounding; step *= 2) {
+        for (int code = 0; code <= 0xff80; ++code) {
+            const uint16_t rounded = round_area(static_cast<uint16_t>(code), step);
+            ASSERT_LE(std::abs(rounded - code), step / 2);
+            ASSERT_EQ(rounded % step, 0);
+            ASSERT_NE(rounded, kNoArea);
+        }
+        EXPECT_EQ(round_area(kNoArea, step), kNoArea);
+    }
 }
 
 }  // namespace
