@@ -40,6 +40,7 @@ struct Header {
     uint16_t record_length = 20;
     uint64_t points = 0;
     uint64_t points_offset = 0;  ///< in the file; of no use for writing
+    bool compressed = false;     ///< LAZ: io/formats/laz; of no use for writing
     glm::dvec3 scale{1.0}, offset{0.0};
     std::vector<Vlr> vlrs;
 
@@ -63,7 +64,7 @@ constexpr bool has_color(uint8_t f) {
     return f == 2 || f == 3 || f == 7 || f == 8;
 }
 
-/// Everything before the points, and the extended records behind them. Rejects what is not uncompressed LAS
+/// Everything before the points, and the extended records behind them. Rejects what is not LAS
 /// of a known point format, and files that cannot hold the points they promise. Records that are broken or
 /// too large to keep (kMostRecordBytes in all) are left out with a warning.
 Result<Header> read_header(const InputFile& file);

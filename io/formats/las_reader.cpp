@@ -9,6 +9,7 @@
 #include "io/formats/las_crs.h"
 #include "io/formats/las_layout.h"
 #include "io/formats/las_writer.h"
+#include "io/formats/laz/reader.h"
 #include "io/formats/stations.h"
 
 namespace lucarne::io {
@@ -56,8 +57,10 @@ class LasSource final : public PointSource {
 
     Result<void> describe() {
         const std::string name = file_->path().string();
+        if (header_.compressed) LUCARNE_TRY(find_chunks());
         info_.path = name;
-        info_.format = fmt::format("LAS 1.{}, point format {}", header_.minor, header_.point_format);
+        info_.format = fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
+                                   header_.point_format);
         info_.declared_points = header_.points;
         info_.metres_per_unit = las::metres_per_unit(name, header_);
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
@@ -75,20 +78,43 @@ class LasSource final : public PointSource {
     const Schema& schema() const override { return schema_; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override {
+        if (compressed_) return laz::open_points(*compressed_, schema_);
         return std::make_unique<LasReader>(file_, header_, schema_);
     }
 
  private:
+    Result<void> find_chunks() {
+        LUCARNE_ASSIGN(auto compression, laz::read_compression(file_->path().string(), header_));
+        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression));
+        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks)};
+        // What a writer of plain LAS must not repeat.
+        std::erase_if(header_.vlrs,
+                      [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });
+        return {};
+    }
+
+    /// `count` records from point `first` on, or of the chunk where that is, fewer at its end.
+    Result<std::vector<std::byte>> raw_records(uint64_t first, uint64_t count) const {
+        if (compressed_) {
+            size_t chunk = 0;
+            for (uint64_t seen = compressed_->chunks[0].points; seen <= first;)
+                seen += compressed_->chunks[++chunk].points;
+            return laz::decode_chunk(*compressed_, chunk, count);
+        }
+        std::vector<std::byte> raw(static_cast<size_t>(count * header_.record_length));
+        LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
+        return raw;
+    }
+
     /// The specification wants colour spread over 16 bits, many writers store 0-255: told by blocks of points
     /// spread evenly over the file. Nothing is converted, so a wrong guess loses nothing.
     Result<uint32_t> sample_color_bits(const Attribute& color) const {
         constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
         const uint64_t step = std::max<uint64_t>(kBlockPoints, header_.points / kBlocks);
-        std::vector<std::byte> raw, record(schema_.stride);
+        std::vector<std::byte> record(schema_.stride);
         for (uint64_t first = 0; first < header_.points; first += step) {
             const uint64_t count = std::min(kBlockPoints, header_.points - first);
-            raw.resize(static_cast<size_t>(count * header_.record_length));
-            LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
+            LUCARNE_ASSIGN(const auto raw, raw_records(first, count));
             for (size_t at = 0; at < raw.size(); at += header_.record_length) {
                 las::decode(header_, &raw[at], 1, record.data(), schema_.stride);
                 for (size_t c = 0; c < 3; ++c)
@@ -100,6 +126,7 @@ class LasSource final : public PointSource {
 
     std::shared_ptr<const InputFile> file_;
     las::Header header_;
+    std::optional<laz::Points> compressed_;
     Schema schema_;
     ScanInfo info_;
 };

@@ -244,10 +244,10 @@ TEST_F(Las, CompressedAndWavePacketFilesAreNamedAsSuch) {
         expect_rejected(file, "wave packets");
     }
     file.format = 0x80 | 3;
-    expect_rejected(file, "LAZ");
+    expect_rejected(file, "no LASzip record");
     file.format = 0;
     file.add_vlr("laszip encoded", 22204, "x");
-    expect_rejected(file, "LAZ");
+    expect_rejected(file, "LASzip record that is cut off");
     file.vlrs.clear();
     file.format = 11;
     expect_rejected(file, "point format 11");

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+
+#include "io/formats/laz/record.h"
+
+namespace lucarne::io::laz {
+
+/// The points of one chunk, any number at a time, as records of a LAS file. Thread-safe against other chunks.
+class ChunkDecoder {
+ public:
+    /// `bytes` is the whole chunk, kept by the caller. Errors: a chunk that is cut off or contradicts itself.
+    static Result<ChunkDecoder> create(const std::string& file, const Compression& compression,
+                                       uint64_t points, std::span<const std::byte> bytes);
+    ChunkDecoder(ChunkDecoder&&) noexcept;
+    ChunkDecoder& operator=(ChunkDecoder&&) noexcept;
+    ~ChunkDecoder();
+
+    /// The next `count` records, one after the other. Errors: bytes that end before the points do.
+    Result<void> decode(uint64_t count, std::byte* records);
+    /// After the last point: how many of the bytes were the chunk.
+    uint64_t consumed() const;
+
+ private:
+    struct State;
+    explicit ChunkDecoder(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace lucarne::io::laz

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "io/formats/laz/record.h"
+
+namespace lucarne::io::laz {
+
+struct ChunkPlace {
+    uint64_t offset = 0, bytes = 0;  ///< in the file
+    uint64_t points = 0;
+};
+
+/// Where the chunks of a file are: from its chunk table, wherever a writer left it. Where there is none,
+/// point-wise files are one stream that only a walk from the start divides: `bytes` of each then reaches to
+/// the end of the points. Errors: tables that do not fit the file or its number of points.
+Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
+                                            const Compression& compression);
+
+}  // namespace lucarne::io::laz

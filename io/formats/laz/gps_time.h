@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <bit>
+
+#include "io/formats/laz/decoder.h"
+#include "io/formats/laz/integers.h"
+
+namespace lucarne::io::laz {
+
+/// Times as 64-bit integers, of up to four pulse trains at once: a time is expected a whole number of the
+/// train's steps after its last one. (LASzip items GPSTIME11 version 2 and the time of POINT14.)
+class GpsTimeModel {
+ public:
+    /// GPSTIME11 says of every point whether its time changed; POINT14 asks only where it did.
+    explicit GpsTimeModel(bool tells_unchanged)
+        : unchanged_(tells_unchanged ? 1 : 0), first_(5 + unchanged_), steps_(kFull + 4 + unchanged_) {}
+
+    void start(uint64_t time) { trains_[0].time = time; }
+    uint64_t decode(Decoder& decoder);
+
+ private:
+    /// Symbols of the number of steps: 0 something else, 1 to 500 that many, 501 to 510 as many backward,
+    /// then (GPSTIME11 only) unchanged, then a new train, then the next, the second next and the third next
+    /// train.
+    static constexpr uint32_t kMostSteps = 500, kMostBackward = 10, kFull = kMostSteps + kMostBackward + 1;
+    static constexpr uint32_t kPatience = 3;  ///< so many exceptions until a train's step is taken anew
+
+    struct Train {
+        uint64_t time = 0;
+        int32_t step = 0;
+        uint32_t exceptions = 0;
+    };
+    void advance(int32_t by) {
+        Train& train = trains_[current_];
+        train.time += static_cast<uint64_t>(int64_t{by});
+    }
+    void new_train(Decoder& decoder);
+    void steps(Decoder& decoder, uint32_t count);
+
+    uint32_t unchanged_;
+    std::array<Train, 4> trains_{};
+    uint32_t current_ = 0, newest_ = 0;
+    SymbolModel first_, steps_;
+    IntegerModel off_{32, 9};
+};
+
+}  // namespace lucarne::io::laz

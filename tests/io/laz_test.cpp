@@ -1,0 +1,176 @@
+// LAZ where the shared files do not reach: the coder itself, tables that are missing, every truncation and
+// many lies.
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "io/formats/laz/color.h"
+#include "io/formats/laz/decoder.h"
+#include "io/formats/laz/encoder.h"
+#include "io/formats/laz/integers.h"
+#include "tests/io/io_testing.h"
+
+namespace lucarne::io {
+namespace {
+
+using testing::read_all;
+
+TEST(LazCoder, GivesSymbolsBitsAndIntegersBack) {
+    std::mt19937 random(1);
+    for (const uint32_t symbols : {2u, 3u, 16u, 17u, 128u, 516u, 2048u}) {
+        std::vector<uint32_t> values(20'000), plain(values.size());
+        for (auto& value : values) value = random() % (random() % 4 ? 2 : symbols);  // mostly the first two
+        for (auto& value : plain) value = random();
+        laz::Encoder encoder;
+        {
+            laz::SymbolModel model(symbols);
+            laz::BitModel bit;
+            for (size_t i = 0; i < values.size(); ++i) {
+                encoder.symbol(model, values[i]);
+                encoder.bit(bit, values[i] & 1);
+                if (i % 16 == 0)
+                    encoder.bits(1 + i / 16 % 32, plain[i] & (0xffffffffu >> (31 - i / 16 % 32)));
+            }
+        }
+        const auto bytes = encoder.finish();
+        laz::Decoder decoder(bytes);
+        laz::SymbolModel model(symbols);
+        laz::BitModel bit;
+        for (size_t i = 0; i < values.size(); ++i) {
+            ASSERT_EQ(decoder.symbol(model), values[i]) << symbols << " symbols, the " << i << "th";
+            ASSERT_EQ(decoder.bit(bit), values[i] & 1);
+            if (i % 16 == 0) {
+                ASSERT_EQ(decoder.bits(1 + i / 16 % 32), plain[i] & (0xffffffffu >> (31 - i / 16 % 32)));
+            }
+        }
+        EXPECT_FALSE(decoder.failed());
+        EXPECT_EQ(decoder.position(), bytes.data() + bytes.size())
+            << "the code is read to its end and no further";
+    }
+}
+
+TEST(LazCoder, GivesIntegersOfEveryWidthBackWhateverWasExpected) {
+    std::mt19937 random(2);
+    for (const uint32_t bits : {8u, 16u, 32u}) {
+        const uint32_t mask = bits == 32 ? 0xffffffffu : (1u << bits) - 1;
+        std::vector<std::pair<int32_t, int32_t>> pairs = {
+            {0, 0}, {0, static_cast<int32_t>(mask)}, {static_cast<int32_t>(mask), 0}};
+        if (bits == 32)
+            pairs.insert(pairs.end(), {{0, INT32_MIN}, {INT32_MIN, INT32_MAX}, {INT32_MAX, INT32_MIN}});
+        for (int i = 0; i < 20'000; ++i) {
+            const auto expected = static_cast<int32_t>(random() & mask);
+            const auto off = static_cast<int32_t>(random()) >> (random() % 32);
+            pairs.emplace_back(
+                expected,
+                static_cast<int32_t>((static_cast<uint32_t>(expected) + static_cast<uint32_t>(off)) & mask));
+        }
+        laz::Encoder encoder;
+        laz::IntegerModel there(bits, 2), back(bits, 2);
+        for (const auto& [expected, value] : pairs) there.code(encoder, expected, value, value & 1);
+        const auto bytes = encoder.finish();
+        laz::Decoder decoder(bytes);
+        for (const auto& [expected, value] : pairs)
+            ASSERT_EQ(back.code(decoder, expected, 0, value & 1), value)
+                << bits << " bits, expected " << expected;
+        EXPECT_FALSE(decoder.failed());
+    }
+}
+
+TEST(LazCoder, GivesColoursBack) {
+    std::mt19937 random(3);
+    std::vector<laz::Color> colors(5000);
+    for (size_t i = 1; i < colors.size(); ++i) {
+        colors[i] = colors[i - 1];
+        if (random() % 3 == 0)
+            for (auto& part : colors[i]) part = static_cast<uint16_t>(random() >> (random() % 32));
+        if (random() % 5 == 0) colors[i][1] = colors[i][2] = colors[i][0];
+    }
+    laz::Encoder encoder;
+    laz::ColorModel there, back;
+    for (size_t i = 1; i < colors.size(); ++i) there.code(encoder, colors[i - 1], colors[i]);
+    const auto bytes = encoder.finish();
+    laz::Decoder decoder(bytes);
+    for (size_t i = 1; i < colors.size(); ++i)
+        ASSERT_EQ(back.code(decoder, colors[i - 1], {}), colors[i]) << i;
+}
+
+TEST(LazCoder, NeverReadsBeyondItsBytesAndSaysSo) {
+    std::mt19937 random(4);
+    for (size_t size = 0; size < 200; ++size) {
+        std::vector<std::byte> bytes(size);
+        for (auto& byte : bytes) byte = static_cast<std::byte>(size % 3 ? random() : 255);
+        laz::Decoder decoder(bytes);
+        laz::SymbolModel model(516);
+        laz::IntegerModel integer(32);
+        for (int i = 0; i < 2000; ++i) {
+            ASSERT_LT(decoder.symbol(model), 516u);
+            integer.code(decoder, i, 0);
+        }
+        EXPECT_TRUE(decoder.failed());
+    }
+}
+
+class LazFile : public ::testing::TestWithParam<const char*> {
+ protected:
+    void SetUp() override {
+        const auto folder = testing::shared_data();
+        if (folder.empty()) GTEST_SKIP() << "the shared data is not here";
+        bytes_ = testing::read_bytes(folder / "las" / GetParam());
+    }
+    /// What reading these bytes gives: the records, or why not.
+    Result<testing::Records> read(const std::string& bytes) const {
+        testing::write_bytes(folder_ / "changed.laz", bytes);
+        auto source = open_scan(folder_ / "changed.laz");
+        if (!source) return tl::unexpected(source.error());
+        return read_all(**source);
+    }
+    uint32_t points_offset() const { return load<uint32_t>(reinterpret_cast<const std::byte*>(&bytes_[96])); }
+
+    const testing::TemporaryFolder folder_;
+    std::string bytes_;
+};
+
+TEST_P(LazFile, ReadsTheSameWhereTheChunkTableIsMissingOrZero) {
+    const auto whole = read(bytes_);
+    ASSERT_TRUE(whole) << whole.error().line();
+    const bool variable = std::string(GetParam()).find("copc") != std::string::npos;
+    for (const char fill : {'\0', '\xff'}) {
+        std::string bytes = bytes_;
+        bytes.replace(points_offset(), 8, 8, fill);
+        const auto again = read(bytes);
+        if (variable) {
+            ASSERT_FALSE(again);
+            EXPECT_THAT(again.error().line(), ::testing::HasSubstr("no chunk table"));
+        } else {
+            ASSERT_TRUE(again) << again.error().line();
+            EXPECT_EQ(again->bytes, whole->bytes);
+        }
+    }
+}
+
+TEST_P(LazFile, TruncatedAnywhereItIsRejected) {
+    for (size_t size = 0; size < bytes_.size(); size += 1 + bytes_.size() / 97) {
+        const auto cut = read(bytes_.substr(0, size));
+        if (cut) continue;  // where only records behind the points are gone
+        EXPECT_EQ(cut.error().kind, ErrorKind::input_rejected) << size << ": " << cut.error().line();
+    }
+    EXPECT_FALSE(read(bytes_.substr(0, points_offset() + 300)));
+}
+
+TEST_P(LazFile, ChangedBytesGiveAnErrorOrPointsAndNothingElse) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 120; ++i) {
+        std::string bytes = bytes_;
+        const size_t from = i % 3 ? points_offset() : 0;
+        for (int n = 0; n < 1 + i % 4; ++n)
+            bytes[from + random() % (bytes.size() - from)] = static_cast<char>(random());
+        (void)read(bytes);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, LazFile,
+                         ::testing::Values("liblas-generated.laz", "1.2-with-color.copc.laz"),
+                         [](const auto& named) { return named.index ? "Layered" : "PointWise"; });
+
+}  // namespace
+}  // namespace lucarne::io
