@@ -4,11 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace lucarne::octree {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
+constexpr float kFree = std::numeric_limits<float>::infinity();
 /// From one pass to the next. The number of points that fit grows by the inverse square, 1.56.
 constexpr float kRadiusStep = 0.8f;
 
@@ -51,7 +53,7 @@ inline void Sampler::insert(uint32_t index) {
     head = index;
 }
 
-inline bool Sampler::free_around(const Point& p) const {
+inline float Sampler::conflict_around(const Point& p) const {
     // Shifted by half a cell and cut: the lower of the two nearest cells of each axis, from -1 (+1: no
     // negative cut).
     const auto lower = [this](float v) { return static_cast<int32_t>(v * cells_ + 0.5f) - 1; };
@@ -61,16 +63,18 @@ inline bool Sampler::free_around(const Point& p) const {
              i != kNone;) {
             const Point& q = points_[i];
             const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
-            if (dx * dx + dy * dy + dz * dz < radius2_) return false;
+            const float distance2 = dx * dx + dy * dy + dz * dz;
+            if (distance2 < radius2_) return distance2;
             i = q.next;
         }
-    return true;
+    return kFree;
 }
 
 void Sampler::take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uint8_t pass) {
     size_t kept = 0;
     for (const uint32_t i : from) {
-        if (free_around(points_[i])) {
+        if (blocked_[i] >= radius2_) blocked_[i] = conflict_around(points_[i]);
+        if (blocked_[i] == kFree) {
             insert(i);
             taken_.push_back(i);
             passes_[i] = pass;
@@ -84,6 +88,7 @@ void Sampler::take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uin
 void Sampler::run(float radius, size_t most) {
     const auto count = static_cast<uint32_t>(points_.size());
     passes_.assign(count, kLastPass);
+    blocked_.assign(count, kFree);
     heads_.resize(std::bit_ceil(std::max<size_t>(count, 64)));
     mask_ = heads_.size() - 1;
     waiting_.resize(count);
@@ -92,6 +97,7 @@ void Sampler::run(float radius, size_t most) {
     taken_.clear();
     reset_grid(radius);
     take(waiting_, waiting_, 0);
+    const bool thinning = taken_.size() > most;
     while (taken_.size() > most) {  // a volume instead of a surface, or many layers: a wider radius
         const auto excess = static_cast<float>(taken_.size()) / static_cast<float>(most);
         radius *= std::max(1.1f, std::min(std::sqrt(excess), 1.15f * std::cbrt(excess)));
@@ -106,6 +112,7 @@ void Sampler::run(float radius, size_t most) {
         std::inplace_merge(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(before),
                            waiting_.end());
     }
+    if (thinning) blocked_.assign(count, kFree);  // who blocked them may have been taken out again
     for (uint8_t pass = 1; pass < kLastPass && !waiting_.empty(); ++pass) {
         radius *= kRadiusStep;
         reset_grid(radius);

@@ -37,7 +37,8 @@ class Sampler {
     void reset_grid(float radius);
     size_t bucket(int32_t x, int32_t y, int32_t z) const;
     void insert(uint32_t point);
-    bool free_around(const Point& point) const;
+    /// The squared distance to some taken point nearer than the radius, infinite where there is none.
+    float conflict_around(const Point& point) const;
     /// Takes what fits from `from` in its order; the rest moves to the front of `rest`.
     void take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uint8_t pass);
 
@@ -46,6 +47,9 @@ class Sampler {
     std::vector<Point> points_;
     std::vector<uint8_t> passes_;
     std::vector<uint32_t> heads_, taken_, waiting_, thinned_;
+    /// Of each point: the squared distance to a taken one. While the radius is larger it need not be asked
+    /// again: most searches are spared.
+    std::vector<float> blocked_;
     float radius2_ = 0, cells_ = 0;  ///< squared radius; grid cells per cube size
     size_t mask_ = 0;
 };

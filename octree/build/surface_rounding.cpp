@@ -28,7 +28,7 @@ int SurfaceRounding::step(std::vector<uint32_t>& differences, int most) {
     if (differences.size() < kFewest) return 1;
     const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
     std::nth_element(differences.begin(), middle, differences.end());
-    return std::min(most, static_cast<int>(std::bit_floor(std::max(2u, *middle) / 2)));
+    return std::min(most, static_cast<int>(std::bit_floor(std::max(1u, *middle))));
 }
 
 void SurfaceRounding::round_normals(std::span<std::byte> records) {

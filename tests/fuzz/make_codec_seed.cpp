@@ -1,0 +1,32 @@
+// make_codec_seed FILE: a payload with every method of octree/codec in the form that fuzz_codec takes.
+#include <fstream>
+
+#include "io/core/random.h"
+#include "octree/codec/payload.h"
+
+int main(int count, char** arguments) {
+    using namespace lucarne;
+    if (count != 2) return 2;
+    constexpr uint16_t kPoints = 300;
+    io::Schema schema;  // the one of kind 204 in fuzz_codec.cpp
+    schema.position = io::PositionType::i32_scaled;
+    schema.stride = 12;
+    schema.add("color", io::ScalarType::u16, 3);
+    schema.add("scan_angle", io::ScalarType::i16);
+    std::vector<std::byte> records(kPoints * size_t{schema.stride}), payload;
+    std::vector<uint8_t> passes(kPoints);
+    Random random(1);
+    for (size_t i = 0; i < kPoints; ++i) {
+        std::byte* at = &records[i * schema.stride];
+        io::store(at, static_cast<int32_t>(1000 * i + random.next() % 500));  // differences
+        io::store(at + 4, static_cast<int32_t>(random.next() % 1000));        // plain bits
+        io::store(at + 14,
+                  static_cast<uint16_t>(257 * (random.next() % 16 * (random.next() % 16))));  // tokens
+        passes[i] = static_cast<uint8_t>(random.next() % 8);
+    }
+    octree::codec::PayloadEncoder(schema).encode(records, passes, payload);
+    std::ofstream out(arguments[1], std::ios::binary);
+    for (const int byte : {204, (kPoints - 1) & 0xff, (kPoints - 1) >> 8}) out.put(static_cast<char>(byte));
+    out.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
+    return out.good() ? 0 : 1;
+}

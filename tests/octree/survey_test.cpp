@@ -1,0 +1,36 @@
+// The benchmark's cloud, at a size a test can afford: what a point takes on disk needs no clock.
+#include <gtest/gtest.h>
+
+#include "io/synthetic/synthetic.h"
+#include "octree/build/build.h"
+#include "octree/cache.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// Bytes a point of the survey's cache. A million points of the same town stand wider apart than the
+/// benchmark's twenty, so that each takes about a byte more.
+double bytes_a_point(NormalsMode normals) {
+    const test::TempFolder folder;
+    io::SyntheticOptions scan;
+    scan.scene = "survey";
+    scan.points = 1'000'000;
+    const auto source = io::synthetic_source(scan).value();
+    BuildOptions options{.inputs = {source.get()}, .output = folder / "survey.luc", .normals = normals};
+    const auto report = build_cache(options).value();
+    EXPECT_TRUE(verify_cache(options.output, [](uint64_t) {}));
+    return static_cast<double>(std::filesystem::file_size(options.output)) /
+           static_cast<double>(report.points);
+}
+
+TEST(Survey, PointsWithColourAndIntensityTakeSixAndAHalfBytes) {
+    EXPECT_LE(bytes_a_point(NormalsMode::none), 6.5);
+}
+
+TEST(Survey, PointsWithNormalsTakeEightAndAHalfBytes) {
+    EXPECT_LE(bytes_a_point(NormalsMode::estimate), 8.5);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
