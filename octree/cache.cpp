@@ -64,8 +64,9 @@ Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const InputFil
                       format::decode(all.last<format::kSuperblockBytes>())};
 }
 
-Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path) {
-    LUCARNE_ASSIGN(InputFile file, InputFile::open(path));
+Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path,
+                                                   std::shared_ptr<HandlePool> handles) {
+    LUCARNE_ASSIGN(InputFile file, InputFile::open(path, std::move(handles)));
     LUCARNE_ASSIGN(const Superblock block, newest_superblock(file));
     std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));
     LUCARNE_TRY(cache->read_directory());
@@ -180,8 +181,9 @@ bool is_cache(const std::filesystem::path& path) {
            std::memcmp(start.data(), format::kMagic.data(), start.size()) == 0;
 }
 
-Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path) {
-    return CacheFile::open(path);
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path,
+                                               std::shared_ptr<HandlePool> handles) {
+    return CacheFile::open(path, std::move(handles));
 }
 
 }  // namespace lucarne::octree

@@ -14,7 +14,9 @@ bool is_cache(const std::filesystem::path& path);
 
 /// Opens a cache: reads superblock, metadata and directory and checks everything that can be checked without
 /// the points (sizes against the file, keys, counts, offsets, overlaps). Errors: ErrorKind::input_rejected.
-Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path);
+/// With `handles` its file shares their number with others.
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path,
+                                               std::shared_ptr<HandlePool> handles = nullptr);
 
 struct VerifyReport {
     uint64_t nodes = 0, points = 0, bytes = 0;

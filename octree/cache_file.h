@@ -20,7 +20,8 @@ Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const 
 /// A cache on disk: directory in memory, points by pread.
 class CacheFile final : public NodeSource {
  public:
-    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path);
+    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path,
+                                                   std::shared_ptr<HandlePool> handles = nullptr);
 
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }

@@ -52,13 +52,41 @@ struct SourceHeader {
     std::vector<io::ScanInfo> scans;
 };
 
+/// What the keys and records of a node follow. A source is one part, or joins several: each with a root, a
+/// schema, a unit and a root cube of its own.
+struct SourcePart {
+    const SourceHeader& header;  ///< in the part's own unit
+    uint32_t index = 0;
+    double scale = 1.0;       ///< of the part's unit in the source's
+    uint32_t first_scan = 0;  ///< of header.scans among the source's
+};
+
 /// Anything that hands out octree nodes: a cache today, a growing build or a remote file later. Thread-safe.
 /// The directory is in memory (64 bytes a node or so); points are loaded node by node.
 class NodeSource {
  public:
     virtual ~NodeSource() = default;
     virtual const SourceHeader& header() const = 0;
-    virtual std::span<const NodeInfo> nodes() const = 0;  ///< breadth first, the root is 0; may be empty
+    /// Parents before children; a part's nodes stand together, its root first. May be empty. Areas are in the
+    /// source's unit.
+    virtual std::span<const NodeInfo> nodes() const = 0;
+    virtual std::vector<uint32_t> roots() const {
+        return nodes().empty() ? std::vector<uint32_t>{} : std::vector<uint32_t>{0};
+    }
+    virtual SourcePart part_of(uint32_t) const { return {header()}; }
+    virtual uint32_t parts() const { return 1; }
+    /// In the source's unit.
+    Cube cube(uint32_t node) const {
+        const SourcePart part = part_of(node);
+        const Cube own = part.header.root.of(nodes()[node].key);
+        return {own.min * part.scale, own.size * part.scale};
+    }
+    /// Of the nodes' records, bytes.
+    uint64_t record_bytes(uint32_t node) const {
+        return uint64_t{nodes()[node].count} * part_of(node).header.schema.stride;
+    }
+    /// What the directory takes of the memory.
+    virtual uint64_t directory_bytes() const { return nodes().size_bytes(); }
     /// Loads and checks one node; blocking. Errors: unreadable, truncated, checksum.
     virtual Result<NodeData> load(uint32_t node) const = 0;
 };

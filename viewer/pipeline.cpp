@@ -10,10 +10,11 @@
 #include "gi/post/tone_map.h"
 #include "gi/registry.h"
 #include "io/core/log.h"
-#include "io/core/parallel.h"
 #include "io/core/process.h"
+#include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
 #include "viewer/cut_choice.h"
+#include "viewer/prepare.h"
 #include "viewer/views.h"
 
 namespace lucarne::viewer {
@@ -21,10 +22,10 @@ namespace {
 
 using octree::ResidencyEvent;
 
-// A frame that does not wait takes nodes in for this share of the time that the last one took, and a step at
-// least: it stays about as short, and slow frames do not keep a picture waiting for its nodes.
-constexpr double kUploadShare = 0.25;
-constexpr size_t kNodesAtOnce = 64;  // packed in parallel before they are uploaded
+// A frame that does not wait takes nodes in for so long, s: a hundred nodes or so, packed on their way.
+constexpr double kLoadingTime = 0.002;
+constexpr size_t kNodesAtOnce = 8;  // between looks at the clock
+constexpr double kAhead = 0.5;      // s of the camera's way that are loaded ahead
 // Of the device's memory for surfels; the light cut's are held a second time by the shadow maps, and pictures
 // and maps take the rest.
 constexpr double kPoolShare = 0.375;
@@ -58,11 +59,12 @@ struct Pipeline::State {
 
     void start_stream();
     void choose_cuts(const FrameRequest& request);
+    void look_ahead(const FrameRequest& request);
     Result<void> stream(bool wait);
     Result<void> take_arrivals(bool wait);
     Result<void> apply(std::span<const ResidencyEvent> events);
     uint64_t pool_surfels() const;
-    uint64_t directory_bytes() const { return source->nodes().size_bytes(); }
+    uint64_t least_stride() const;
     Result<void> build_cut(const octree::Cut& cut, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
@@ -82,6 +84,8 @@ struct Pipeline::State {
 
     CutChooser chooser;
     CutSet chosen;
+    octree::Motion motion;
+    std::vector<octree::Cut> ahead;  // view cuts of where the camera will be
     // What of them stands on the device.
     gi::DeviceCut view, light_cut;
     std::vector<gi::DeviceCut> light_views;
@@ -114,6 +118,14 @@ uint64_t Pipeline::State::pool_surfels() const {
     return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
 }
 
+/// Of the parts' records, bytes.
+uint64_t Pipeline::State::least_stride() const {
+    uint64_t least = source->header().schema.stride;
+    for (const uint32_t root : source->roots())
+        least = std::min<uint64_t>(least, source->part_of(root).header.schema.stride);
+    return least;
+}
+
 /// Begins with nothing resident. What fits the stream's cap fits the pool, because a node costs its pages in
 /// both. A node on its way is held as records and, at most all that were polled, packed.
 void Pipeline::State::start_stream() {
@@ -122,11 +134,12 @@ void Pipeline::State::start_stream() {
         if (pool.holds(node)) pool.evict(node);
     octree::ResidencyOptions how;
     how.memory = pool_bytes(pool.capacity());
-    const uint64_t stride = source->header().schema.stride, left = options.memory - directory_bytes();
+    const uint64_t stride = least_stride(), left = options.memory - source->directory_bytes();
     how.transit = static_cast<uint64_t>(static_cast<double>(left) * static_cast<double>(stride) /
                                         static_cast<double>(stride + sizeof(gi::PackedSurfel)));
     how.threads = options.load_threads;
     how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
+    how.prepare = prepare_surfels(source, scene);
     residency = std::make_unique<octree::Residency>(*source, how);
     cuts_stale = true;
 }
@@ -141,20 +154,25 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     cuts_stale = true;
 }
 
+/// What the camera will see if it goes on as it does.
+void Pipeline::State::look_ahead(const FrameRequest& request) {
+    ahead.clear();
+    if (request.wait || !request.moving || !options.prefetch) return motion.forget();
+    motion.observe(octree_view(request.camera, request.size));
+    const double frames = std::clamp(kAhead / std::max(last_seconds, 1e-3), 2.0, 30.0);
+    for (const double part : {0.5, 1.0})
+        if (const auto view_there = motion.ahead(part * frames))
+            ahead.push_back(octree::view_cut(*source, *view_there, budgets.view, budgets.pixel_spacing));
+}
+
 /// Sends what the stream reports to the device.
 Result<void> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
-    const auto& header = source->header();
-    std::vector<std::vector<gi::PackedSurfel>> packed(events.size());
-    parallel_ranges(events.size(), 1, [&](size_t i, size_t) {
-        if (events[i].data)
-            packed[i] = gi::pack_surfels(header, source->nodes()[events[i].node], *events[i].data, scene);
-    });
-    for (size_t i = 0; i < events.size(); ++i) {
+    for (const ResidencyEvent& event : events) {
         cuts_stale = true;
-        if (events[i].kind != ResidencyEvent::Kind::loaded) pool.evict(events[i].node);
-        if (events[i].kind == ResidencyEvent::Kind::evicted) continue;
-        bytes_loaded += source->nodes()[events[i].node].payload_bytes;
-        LUCARNE_ASSIGN(const bool fits, pool.load(events[i].node, packed[i]));
+        if (event.kind != ResidencyEvent::Kind::loaded) pool.evict(event.node);
+        if (event.kind == ResidencyEvent::Kind::evicted) continue;
+        bytes_loaded += source->nodes()[event.node].payload_bytes;
+        LUCARNE_ASSIGN(const bool fits, pool.load(event.node, prepared_surfels(*event.data)));
         if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
     }
     return {};
@@ -167,13 +185,15 @@ Result<void> Pipeline::State::take_arrivals(bool wait) {
         const auto events = residency->poll(kNodesAtOnce);
         LUCARNE_TRY(apply(events));
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        if (events.empty() || (!wait && spent.count() > kUploadShare * last_seconds)) return {};
+        if (events.empty() || (!wait && spent.count() > kLoadingTime)) return {};
     }
 }
 
 /// Brings the pool closer to the chosen cuts, or with `wait` as close as the caps allow.
 Result<void> Pipeline::State::stream(bool wait) {
-    residency->want(chosen.all());
+    std::vector<const octree::Cut*> later;
+    for (const octree::Cut& cut : ahead) later.push_back(&cut);
+    residency->want(chosen.all(), later);
     for (bool all = false; !all;) {
         all = !wait || residency->wait();
         LUCARNE_TRY(take_arrivals(wait));
@@ -298,10 +318,12 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.bytes_loaded = bytes_loaded;
     const octree::ResidencyStats streamed = residency->stats();
     result.nodes_pending = streamed.pending;
-    const double packed = static_cast<double>(sizeof(gi::PackedSurfel)) / source->header().schema.stride;
+    const double packed = static_cast<double>(sizeof(gi::PackedSurfel)) / static_cast<double>(least_stride());
+    result.ahead_loads = streamed.ahead_loads;
+    result.ahead_hits = streamed.ahead_hits;
     result.cut_share = chosen.share;
     result.memory.host =
-        directory_bytes() + static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
+        source->directory_bytes() + static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
     result.memory.device = device.memory_used();
     result.memory.resident = resident_memory();
     result.accumulated = std::max(accumulated, 1u);
@@ -318,10 +340,10 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
     pipeline->state_ = std::make_unique<State>(device, std::move(source), options);
     State& state = *pipeline->state_;
-    if (options.memory < state.directory_bytes() + kLeastTransit)
+    if (options.memory < state.source->directory_bytes() + kLeastTransit)
         return bad_arguments("--memory",
                              fmt::format("{} are too little: the directory of the octree alone takes {}",
-                                         bytes_text(options.memory), bytes_text(state.directory_bytes())),
+                                         bytes_text(options.memory), bytes_text(state.source->directory_bytes())),
                              "allow more");
     device.set_memory_cap(options.device_memory);
     const uint64_t capacity = state.pool_surfels();
@@ -409,6 +431,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         state.choose_cuts(request);
         state.accumulated = 0;
     }
+    state.look_ahead(request);
     state.times.end();
     for (auto made = state.make_picture(request); !made; made = state.make_picture(request)) {
         // Pictures and maps may need more than what is beside the pool.

@@ -19,6 +19,7 @@ struct PipelineOptions {
     uint64_t memory = uint64_t{512} << 20;       ///< of the host: the octree's directory, nodes on their way
     uint64_t device_memory = uint64_t{2} << 30;  ///< of all buffers; up to 3/8 of it hold surfels
     unsigned load_threads = 2;
+    bool prefetch = true;  ///< loads ahead of a camera that moves, within the caps
 };
 
 /// What is used of the caps, bytes.
@@ -47,6 +48,7 @@ struct FrameStats {
     uint64_t wanted_points = 0, ready_points = 0;  ///< of all cuts, once a cut: chosen and drawn
     uint64_t bytes_loaded = 0;                     ///< since the pipeline was opened
     uint64_t nodes_pending = 0;                    ///< wanted and still on their way
+    uint64_t ahead_loads = 0, ahead_hits = 0;      ///< nodes loaded ahead of the camera; of those, seen later
     double cut_share = 1;  ///< of the points that the budgets allow, what fits the caps
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture

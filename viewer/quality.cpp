@@ -6,17 +6,17 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kTooSlow = 0.15, kWanted = 0.1, kFast = 0.05;  ///< s a picture
+constexpr double kTooSlow = 1.5, kFast = 0.5;  ///< of the wanted time
 constexpr double kLeastScale = 0.25;
 
 }  // namespace
 
 void MovingQuality::observe(double frame_seconds) {
-    if (frame_seconds > kTooSlow) {
+    if (frame_seconds > kTooSlow * wanted_) {
         if (scale_ <= kLeastScale) reduced_ = true;
         // As if all of the time were spent on pixels; by halves at most, for one slow picture proves little.
-        scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(kWanted / frame_seconds)));
-    } else if (frame_seconds < kFast) {
+        scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(wanted_ / frame_seconds)));
+    } else if (frame_seconds < kFast * wanted_) {
         if (scale_ >= 1) reduced_ = false;
         scale_ = std::min(1.0, scale_ * 1.25);
     }

@@ -9,6 +9,8 @@ namespace lucarne::viewer {
 /// is not enough, the settings fall back to the cheapest preset's. At rest nothing is given up.
 class MovingQuality {
  public:
+    /// `wanted`: seconds a picture; half as much again is too slow.
+    explicit MovingQuality(double wanted = 0.1) : wanted_(wanted) {}
     /// `frame_seconds`: how long the last picture took that was made while moving.
     void observe(double frame_seconds);
     double scale() const { return scale_; }  ///< of the picture's sides, 1/4 to 1
@@ -19,7 +21,7 @@ class MovingQuality {
     void reduce(gi::EngineSettings& settings, CutBudgets& budgets) const;
 
  private:
-    double scale_ = 1;
+    double wanted_, scale_ = 1;
     bool reduced_ = false;
 };
 

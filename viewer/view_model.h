@@ -27,6 +27,8 @@ struct ViewModel {
     std::string engine, preset;
     gi::EngineSettings settings;
     CutBudgets budgets;
+    double frame_time = 0.1;  ///< s: what a picture should take while something moves
+    PipelineOptions caps;
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

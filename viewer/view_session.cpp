@@ -62,7 +62,10 @@ void ViewSession::take_picture() {
     const auto latest = worker_.latest();
     if (!latest || (model_.picture && latest->number == model_.picture->number)) return;
     model_.picture = latest;
-    if (latest->moving) quality_.observe(latest->stats.seconds);
+    if (latest->moving) {
+        quality_.observe(latest->stats.seconds);
+        budget_.observe(latest->stats, latest->size);
+    }
     model_.scale = quality_.scale();
     if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0)
         ++whole_pictures_;
@@ -142,9 +145,11 @@ void ViewSession::send_request() {
     if (request.moving) {
         request.frame.size = quality_.size(request.frame.size);
         quality_.reduce(request.settings, request.budgets);
+        request.budgets = budget_.budgets(request.budgets);
     }
     request.scene_version = model_.scene_version;
     if (sent_number_ != 0 && same_request(request, sent_)) return;
+    if (request.engine != sent_.engine || !(request.settings == sent_.settings)) budget_.forget();
     request.scene = model_.scene;
     sent_ = request;
     sent_number_ = worker_.request(std::move(request));

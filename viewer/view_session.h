@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "viewer/cost_model.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
 #include "viewer/view_model.h"
@@ -23,7 +24,12 @@ struct ScriptedShot {
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot)
-        : window_(window), worker_(worker), model_(model), shot_(std::move(shot)) {}
+        : window_(window),
+          worker_(worker),
+          model_(model),
+          shot_(std::move(shot)),
+          quality_(model.frame_time),
+          budget_(model.frame_time) {}
 
     /// Until the window is closed. Errors: the scripted shot cannot be made or written.
     Result<void> run();
@@ -45,6 +51,7 @@ class ViewSession {
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
     MovingQuality quality_;
+    FrameBudget budget_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t scene_seen_ = 0;

@@ -215,19 +215,6 @@ void Buffer::download(size_t offset, std::span<std::byte> out) const {
                             out.data());
 }
 
-void Buffer::move_down(size_t from, size_t to, size_t bytes) {
-    if (to > from || from > bytes_ || bytes > bytes_ - from)
-        throw std::logic_error("move beyond the buffer's end");
-    if (to == from) return;
-    // OpenGL copies no range onto itself: in steps as long as the way.
-    for (size_t done = 0; done < bytes;) {
-        const size_t step = std::min(bytes - done, from - to);
-        glCopyNamedBufferSubData(id_, id_, static_cast<GLintptr>(from + done),
-                                 static_cast<GLintptr>(to + done), static_cast<GLsizeiptr>(step));
-        done += step;
-    }
-}
-
 void Buffer::clear(uint32_t word) {
     if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }

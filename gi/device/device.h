@@ -47,8 +47,6 @@ class Buffer {
     void upload(size_t offset, std::span<const std::byte> data);
     void download(size_t offset, std::span<std::byte> out) const;  ///< waits for the device
     void clear(uint32_t word);                                     ///< every 32-bit word
-    /// Copies bytes of it towards its beginning (`to` <= `from`); the ranges may overlap.
-    void move_down(size_t from, size_t to, size_t bytes);
     template <class T>
     void upload_all(const std::vector<T>& values) {
         upload(0, std::as_bytes(std::span(values)));

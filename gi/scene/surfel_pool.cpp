@@ -1,6 +1,7 @@
 #include "gi/scene/surfel_pool.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -11,6 +12,9 @@
 #include "octree/footprint.h"
 
 namespace lucarne::gi {
+
+static_assert(SurfelPool::kPageSurfels % kBlockSurfels == 0, "no block lies across two pages");
+
 namespace {
 
 constexpr uint32_t pages_for(size_t surfels) {
@@ -89,80 +93,48 @@ Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
     LUCARNE_ASSIGN(pool.buffer_,
                    device.texels(size_t{pages} * kPageSurfels * sizeof(PackedSurfel), "surfel pool"));
     pool.capacity_ = pages * kPageSurfels;
-    pool.free_ = {{0, pages}};
+    for (uint32_t page = pages; page-- > 0;) pool.free_.push_back(page);
     return pool;
 }
 
 Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfels) {
     evict(node);
     const uint32_t pages = pages_for(surfels.size());
-    if (pages == 0) {
-        resident_[node] = {0, 0};
-        return true;
-    }
-    if (pages > capacity_ / kPageSurfels - used_pages_) return false;
-    const auto large_enough = [&](const Span& s) { return s.count >= pages; };
-    auto fits = std::find_if(free_.begin(), free_.end(), large_enough);
-    if (fits == free_.end()) {
-        compact();
-        fits = free_.begin();
-    }
-    const uint32_t first = fits->first * kPageSurfels;
-    fits->first += pages;
-    fits->count -= pages;
-    if (fits->count == 0) free_.erase(fits);
-    used_pages_ += pages;
-    resident_[node] = {first, static_cast<uint32_t>(surfels.size()), hash(surfels)};
-    buffer_.upload(size_t{first} * sizeof(PackedSurfel), std::as_bytes(surfels));
+    if (pages > free_.size()) return false;
+    // The lowest last: freed nodes leave their pages in order, and runs of them are uploaded at once.
+    Resident resident{
+        {free_.end() - pages, free_.end()}, static_cast<uint32_t>(surfels.size()), hash(surfels)};
+    std::reverse(resident.pages.begin(), resident.pages.end());
+    free_.resize(free_.size() - pages);
+    upload(resident, surfels);
+    resident_[node] = std::move(resident);
     return true;
+}
+
+void SurfelPool::upload(const Resident& node, std::span<const PackedSurfel> surfels) {
+    for (size_t page = 0; page < node.pages.size();) {
+        size_t end = page + 1;
+        while (end < node.pages.size() && node.pages[end] == node.pages[end - 1] + 1) ++end;
+        const size_t first = page * kPageSurfels, last = std::min(end * kPageSurfels, surfels.size());
+        buffer_.upload(size_t{node.pages[page]} * kPageSurfels * sizeof(PackedSurfel),
+                       std::as_bytes(surfels.subspan(first, last - first)));
+        page = end;
+    }
 }
 
 void SurfelPool::evict(uint32_t node) {
     const auto found = resident_.find(node);
     if (found == resident_.end()) return;
-    const Span surfels = found->second;
+    const std::vector<uint32_t>& pages = found->second.pages;
+    free_.insert(free_.end(), pages.rbegin(), pages.rend());
     resident_.erase(found);
-    if (surfels.count) release({surfels.first / kPageSurfels, pages_for(surfels.count)});
-}
-
-void SurfelPool::release(Span pages) {
-    used_pages_ -= pages.count;
-    const auto after = std::lower_bound(free_.begin(), free_.end(), pages,
-                                        [](const Span& a, const Span& b) { return a.first < b.first; });
-    auto here = free_.insert(after, pages);
-    if (const auto next = here + 1; next != free_.end() && here->first + here->count == next->first) {
-        here->count += next->count;
-        free_.erase(next);
-    }
-    if (here == free_.begin()) return;
-    if (const auto before = here - 1; before->first + before->count == here->first) {
-        before->count += here->count;
-        free_.erase(here);
-    }
-}
-
-/// Moves all nodes to the beginning, in the order in which they lie, so that what is free is one span.
-void SurfelPool::compact() {
-    std::vector<Span*> spans;
-    for (auto& [node, span] : resident_)
-        if (span.count) spans.push_back(&span);
-    std::sort(spans.begin(), spans.end(), [](const Span* a, const Span* b) { return a->first < b->first; });
-    uint32_t page = 0;
-    for (Span* span : spans) {
-        const uint32_t first = page * kPageSurfels;
-        buffer_.move_down(size_t{span->first} * sizeof(PackedSurfel), size_t{first} * sizeof(PackedSurfel),
-                          size_t{span->count} * sizeof(PackedSurfel));
-        span->first = first;
-        page += pages_for(span->count);
-    }
-    free_ = {{page, capacity_ / kPageSurfels - page}};
 }
 
 bool SurfelPool::holds(uint32_t node) const {
     return resident_.contains(node);
 }
 uint32_t SurfelPool::used() const {
-    return used_pages_ * kPageSurfels;
+    return capacity_ - static_cast<uint32_t>(free_.size()) * kPageSurfels;
 }
 uint32_t SurfelPool::capacity() const {
     return capacity_;
@@ -173,7 +145,6 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
                                   DeviceCut& cut) const {
     const auto nodes = source.nodes();
     const double unit = source.header().metres_per_unit;
-    const bool areas_known = source.header().schema.find(io::names::area) != nullptr;
     std::vector<CutEntry> sorted(entries.begin(), entries.end());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
     std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
@@ -194,11 +165,11 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
             items[parent->second].inner = 1;
         }
         item_of.emplace(entry.node, index);
-        const octree::Cube cube = source.header().root.of(info.key);
+        const octree::Cube cube = source.cube(entry.node);
+        const bool areas_known = source.part_of(entry.node).header.schema.find(io::names::area) != nullptr;
         CutItem item{};
         item.origin = glm::vec3((cube.min - local_origin) * unit);
         item.size = static_cast<float>(cube.size * unit);
-        item.first = resident->second.first;
         cut.fingerprint_ = mix64(cut.fingerprint_, resident->second.content);
         item.count = std::min(entry.count, resident->second.count);
         // A few points of a node among many of its ancestors' leave those as large as they were, and no
@@ -215,7 +186,9 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         };
         for (uint32_t at = 0; at < item.count; at += kBlockSurfels) {
             const uint32_t count = std::min(item.count - at, kBlockSurfels);
-            blocks.push_back({index, item.first + at, count, lod(at) | lod(at + count) << 16});
+            const uint32_t first =
+                resident->second.pages[at / kPageSurfels] * kPageSurfels + at % kPageSurfels;
+            blocks.push_back({index, first, count, lod(at) | lod(at + count) << 16});
         }
         surfels += item.count;
         items.push_back(item);
@@ -229,18 +202,20 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     cut.host_items_ = std::move(items);
     cut.surfels_ = static_cast<uint32_t>(surfels);  // at most the pool's capacity
     cut.blocks_ = static_cast<uint32_t>(blocks.size());
+    cut.host_blocks_ = std::move(blocks);
+    cut.size_ = static_cast<float>(source.header().root.size * unit);
     return {};
 }
 
 std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
     std::vector<Surfel> surfels;
     surfels.reserve(cut.surfels());
-    std::vector<PackedSurfel> packed;
-    for (const CutItem& item : cut.host_items_) {
-        packed.resize(item.count);
-        buffer_.download(size_t{item.first} * sizeof(PackedSurfel),
-                         std::as_writable_bytes(std::span(packed)));
-        for (const PackedSurfel& one : packed) surfels.push_back(unpack(cut.host_items_, item, one));
+    std::array<PackedSurfel, kBlockSurfels> packed;
+    for (const CutBlock& block : cut.host_blocks_) {
+        buffer_.download(size_t{block.first} * sizeof(PackedSurfel),
+                         std::as_writable_bytes(std::span(packed).first(block.count)));
+        for (uint32_t i = 0; i < block.count; ++i)
+            surfels.push_back(unpack(cut.host_items_, cut.host_items_[block.item], packed[i]));
     }
     return surfels;
 }

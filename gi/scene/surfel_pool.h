@@ -30,13 +30,13 @@ struct CutEntry {
     uint32_t count = 0;  ///< prefix
 };
 
-/// A cut on the device, made by SurfelPool::make_cut; valid until a node of it is evicted or the pool moves.
+/// A cut on the device, made by SurfelPool::make_cut; valid until a node of it is evicted or the pool goes.
 /// Bindings are fixed for every shader: see bind().
 class DeviceCut {
  public:
     uint32_t surfels() const { return surfels_; }  ///< points drawn
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
-    float size() const { return host_items_.empty() ? 1.0f : host_items_[0].size; }  ///< m, side of its root
+    float size() const { return size_; }           ///< m, side of the source's root cube
     /// Of what the cut shows: equal for equal surfels at equal places.
     uint64_t fingerprint() const { return fingerprint_; }
     /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
@@ -47,12 +47,14 @@ class DeviceCut {
     const Buffer* pool_ = nullptr;
     Buffer items_, blocks_buffer_;
     std::vector<CutItem> host_items_;
+    std::vector<CutBlock> host_blocks_;
     uint32_t surfels_ = 0, blocks_ = 0;
+    float size_ = 1;
     uint64_t fingerprint_ = 0;
 };
 
 /// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's
-/// load, replace and evict events. A node takes consecutive pages.
+/// load, replace and evict events. A node takes any pages, so that free ones are never too scattered.
 class SurfelPool {
  public:
     static constexpr uint32_t kPageSurfels = 1024;
@@ -60,7 +62,6 @@ class SurfelPool {
     static Result<SurfelPool> create(Device& device, uint32_t capacity);
 
     /// False when there is no room: the caller evicts and tries again. A node that is resident is replaced.
-    /// Where the free pages lie scattered the others are moved together; cuts made before are void then.
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
     bool holds(uint32_t node) const;
@@ -78,17 +79,17 @@ class SurfelPool {
     std::vector<Surfel> download(const DeviceCut& cut) const;
 
  private:
-    struct Span {
-        uint32_t first, count;
-        uint64_t content = 0;  ///< hash of its surfels
+    struct Resident {
+        std::vector<uint32_t> pages;
+        uint32_t count = 0;    ///< surfels
+        uint64_t content = 0;  ///< hash of them
     };
-    void release(Span pages);
-    void compact();
+    void upload(const Resident& node, std::span<const PackedSurfel> surfels);
 
     Buffer buffer_;
-    std::unordered_map<uint32_t, Span> resident_;  ///< in surfels
-    std::vector<Span> free_;                       ///< in pages; sorted by first, merged
-    uint32_t capacity_ = 0, used_pages_ = 0;
+    std::unordered_map<uint32_t, Resident> resident_;
+    std::vector<uint32_t> free_;  ///< pages, the next to be taken last
+    uint32_t capacity_ = 0;       ///< surfels
 };
 
 }  // namespace lucarne::gi

@@ -5,7 +5,7 @@
 #include "gi/shared/surfel_code.h"
 
 layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
-layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (first, count, floor, inner), children
+layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (-, count, floor, inner), children
 layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
 
 // Finds surfel `id` of the cut; false where the id lies in the gap behind a block's last surfel. Workgroups of

@@ -35,35 +35,54 @@ std::filesystem::path unused_name(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Result<InputFile> InputFile::open(const std::filesystem::path& path) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a FIFO must not hang us
-    if (fd < 0) return rejected(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
+Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared_ptr<HandlePool> pool) {
+    // Without O_NONBLOCK a FIFO would hang us.
+    auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (handle->fd() < 0) return rejected(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
     struct stat status {};
-    if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-        ::close(fd);
+    if (::fstat(handle->fd(), &status) != 0 || !S_ISREG(status.st_mode))
         return rejected(path.string(), "is not a regular file");
+    InputFile file;
+    file.size_ = static_cast<uint64_t>(status.st_size);
+    file.identity_ = {status.st_dev, status.st_ino};
+    file.path_ = path;
+    if (pool) {
+        file.number_ = pool->enrol();
+        file.pool_ = std::move(pool);
+    } else {
+        file.own_ = std::move(handle);
     }
-    return InputFile(fd, static_cast<uint64_t>(status.st_size), path);
+    return file;
 }
 
 InputFile::InputFile(InputFile&& other) noexcept {
     *this = std::move(other);
 }
 InputFile& InputFile::operator=(InputFile&& other) noexcept {
-    std::swap(fd_, other.fd_);
+    std::swap(own_, other.own_);
+    std::swap(pool_, other.pool_);
+    std::swap(number_, other.number_);
+    std::swap(identity_, other.identity_);
     std::swap(size_, other.size_);
     std::swap(path_, other.path_);
     return *this;
 }
 InputFile::~InputFile() {
-    if (fd_ >= 0) ::close(fd_);
+    if (pool_) pool_->leave(number_);
+}
+
+Result<std::shared_ptr<const Handle>> InputFile::handle() const {
+    if (!pool_) return own_;
+    return pool_->acquire(number_, path_, identity_);
 }
 
 Result<void> InputFile::read_at(uint64_t offset, std::span<std::byte> out) const {
-    return read_exactly(fd_, offset, out, path_);
+    LUCARNE_ASSIGN(const auto open_handle, handle());
+    return read_exactly(open_handle->fd(), offset, out, path_);
 }
 Result<size_t> InputFile::read_some(uint64_t offset, std::span<std::byte> out) const {
-    return read_up_to(fd_, offset, out, path_);
+    LUCARNE_ASSIGN(const auto open_handle, handle());
+    return read_up_to(open_handle->fd(), offset, out, path_);
 }
 
 Result<void> check_output(const std::filesystem::path& path, bool overwrite) {

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 
 #include "io/core/error.h"
+#include "io/core/handle_pool.h"
 
 namespace lucarne {
 
@@ -14,7 +16,9 @@ namespace lucarne {
 /// unreadable files are rejected with their reason.
 class InputFile {
  public:
-    static Result<InputFile> open(const std::filesystem::path& path);
+    /// With `pool` the handle is one of a bounded number, and the file must keep its name while it is read.
+    static Result<InputFile> open(const std::filesystem::path& path,
+                                  std::shared_ptr<HandlePool> pool = nullptr);
     InputFile(InputFile&& other) noexcept;
     InputFile& operator=(InputFile&& other) noexcept;
     ~InputFile();
@@ -27,8 +31,13 @@ class InputFile {
     Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const;
 
  private:
-    InputFile(int fd, uint64_t size, std::filesystem::path path) : fd_(fd), size_(size), path_(std::move(path)) {}
-    int fd_ = -1;
+    InputFile() = default;
+    Result<std::shared_ptr<const Handle>> handle() const;
+
+    std::shared_ptr<const Handle> own_;  ///< none where there is a pool
+    std::shared_ptr<HandlePool> pool_;
+    uint64_t number_ = 0;  ///< in the pool
+    FileIdentity identity_;
     uint64_t size_ = 0;
     std::filesystem::path path_;
 };

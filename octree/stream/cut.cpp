@@ -48,6 +48,18 @@ struct Candidate {
         if (w <= begin) return 0;
         return static_cast<uint32_t>(count * ((w - begin) / (end - begin)));
     }
+
+    /// What loading it adds to the picture, by the point loaded: the pixels it covers, times by how much the
+    /// spacing of the points falls there. Without it that is 1/sqrt(begin), with `used` of its points
+    /// 1/sqrt(reached), and points that raise the density by (reached - begin) cover used / (reached - begin)
+    /// pixels.
+    float priority_at(double w, uint32_t used) const {
+        const double reached = std::min(w, end);
+        if (!(begin > 0) || !(reached > begin)) return begin > 0 ? 0.0f : 1e30f;
+        const double finer = 1 / std::sqrt(begin) - 1 / std::sqrt(reached);
+        const double gain = used / std::max(1.0, static_cast<double>(count)) * finer / (reached - begin);
+        return static_cast<float>(std::clamp(gain, 0.0, 1e30));
+    }
 };
 
 double distance_to(const Cube& cube, const glm::dvec3& point) {
@@ -58,7 +70,7 @@ double distance_to(const Cube& cube, const glm::dvec3& point) {
 class Sweep {
  public:
     Sweep(const NodeSource& source, const Reach& reach)
-        : nodes_(source.nodes()), root_(source.header().root), reach_(reach) {}
+        : source_(source), nodes_(source.nodes()), reach_(reach) {}
 
     Cut run(uint64_t budget, double w_most) {
         Cut cut;
@@ -72,10 +84,10 @@ class Sweep {
         cut.visited = visited_;
         for (const Candidate& candidate : candidates_) {
             uint32_t count = candidate.count_at(w);
-            if (candidate.node == 0) count = std::max(count, std::min(candidate.count, 1u));  // never nothing
+            if (cut.nodes.empty() && candidate.node == 0)
+                count = std::max(count, std::min(candidate.count, 1u));  // never nothing
             if (count == 0 && (candidate.count > 0 || w < candidate.end)) continue;
-            const double seen = candidate.begin > 0 ? 1 / std::sqrt(candidate.begin) : 1e30;
-            cut.nodes.push_back({candidate.node, count, static_cast<float>(std::min(seen, 1e30))});
+            cut.nodes.push_back({candidate.node, count, candidate.priority_at(w, count)});
             cut.points += count;
         }
         std::ranges::sort(cut.nodes, {}, &CutNode::node);
@@ -86,7 +98,7 @@ class Sweep {
     /// Looks at all nodes that begin before `w_most`, or before the quality at which the whole ones alone are
     /// over the budget; returns that quality.
     double visit(uint64_t budget, double w_most) {
-        add(0, root_.size, 0, true);
+        for (const uint32_t root : source_.roots()) add(root, source_.cube(root).size, 0, true);
         uint64_t whole = 0;
         while (!heap_.empty() && heap_.top().first <= w_most) {
             const auto [end, place] = heap_.top();
@@ -113,7 +125,7 @@ class Sweep {
             candidate.spacing = parent_spacing / 2;
         if (!root) candidate.spacing = std::min(candidate.spacing, parent_spacing);
         const float floor_area = static_cast<float>(candidate.spacing * candidate.spacing);
-        const auto reach = reach_(root_.of(info.key), surfel_radius(0.0f, floor_area));
+        const auto reach = reach_(source_.cube(node), surfel_radius(0.0f, floor_area));
         if (!reach || !(*reach > 0) || !std::isfinite(*reach)) return;
         const auto quality = [&](double spacing) { return (*reach / spacing) * (*reach / spacing); };
         if (!root) candidate.begin = std::max(parent_end, quality(parent_spacing));
@@ -142,8 +154,8 @@ class Sweep {
 
     using Whole = std::pair<double, uint32_t>;  ///< the quality at which candidates_[second] is whole
 
+    const NodeSource& source_;
     std::span<const NodeInfo> nodes_;
-    Cube root_;
     const Reach& reach_;
     std::vector<Candidate> candidates_;
     std::priority_queue<Whole, std::vector<Whole>, std::greater<>> heap_;

@@ -14,7 +14,9 @@ namespace lucarne::octree {
 struct CutNode {
     uint32_t node = 0;
     uint32_t count = 0;
-    float priority = 0;  ///< spacing seen without it, pixels: what loading it adds; larger is sooner
+    /// What loading it adds to the picture by the point: pixels covered times the pixels by which the points'
+    /// spacing falls there. Larger is sooner.
+    float priority = 0;
 };
 
 /// The nodes chosen for a purpose: closed under parents, sorted by node index. All nodes but the cut's leaves
@@ -46,8 +48,8 @@ Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double
 Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget, double texel_spacing = 1.0);
 
 /// What may bounce or block light: everything, seen or not, refined toward `centre` (the camera's focus) in
-/// proportion to distance, as fine as `budget` allows. It is refined toward `lamps` as well: what stands close
-/// before a lamp throws its discs' rims far, and its wall takes most of its light.
+/// proportion to distance, as fine as `budget` allows. It is refined toward `lamps` as well: what stands
+/// close before a lamp throws its discs' rims far, and its wall takes most of its light.
 Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
               std::span<const glm::dvec3> lamps = {});
 

@@ -21,10 +21,13 @@ struct Entry {
     uint64_t bytes = 0;         ///< what a load takes
     uint64_t held_bytes = 0;    ///< what the copy held takes
     uint64_t record_bytes = 0;  ///< of a load, in transit
-    uint64_t last_wanted = 0;   ///< the number of the want() that last named it
+    uint64_t unpolled_bytes = 0;
+    uint64_t last_wanted = 0;  ///< the number of the want() that last named it
     float priority = 0;
     uint32_t count = 0;
     bool held = false, in_flight = false;
+    bool ahead = false;     ///< no cut of a picture wants it, only those ahead
+    bool fetched = false;   ///< loaded ahead, and no picture has wanted it since
     bool admitted = false;  ///< wanted, and within the cap with all that is more important
     bool lost = false;      ///< it or an ancestor failed to load
     bool stale = false;     ///< the source has something newer than what is held or on its way
@@ -56,7 +59,8 @@ struct Residency::State {
     bool stop = false;
     std::vector<std::thread> threads;
 
-    void take_wishes(std::span<const Cut* const> cuts);
+    void take_wishes(std::span<const Cut* const> cuts, bool ahead, std::vector<uint32_t>& wanted);
+    void order_wishes(std::vector<uint32_t> wanted);
     void admit();
     void forget_strangers();
     void evict(uint32_t node);
@@ -65,37 +69,49 @@ struct Residency::State {
     bool nothing_moves() const;
     void forget_event(Entry& entry);
     std::optional<uint32_t> next_load();
+    Result<NodeData> read(uint32_t node, uint64_t record_bytes, uint32_t count) const;
     void finish_load(uint32_t node, Result<NodeData>&& loaded);
     void loader();
     bool goes_before(uint32_t a, uint32_t b) const;
 };
 
-/// Marks the union of the cuts; a parent is never less important than its children.
-void Residency::State::take_wishes(std::span<const Cut* const> cuts) {
-    const auto nodes = source.nodes();
-    ++wants;
-    std::vector<uint32_t> wanted;
+/// Marks the union of the cuts.
+void Residency::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
+                                   std::vector<uint32_t>& wanted) {
+    const size_t nodes = source.nodes().size();
     for (const Cut* cut : cuts)
         for (const CutNode& wish : cut->nodes) {
-            if (wish.node >= nodes.size()) continue;
+            if (wish.node >= nodes) continue;
             Entry& entry = entries[wish.node];
-            if (entry.last_wanted != wants) wanted.push_back(wish.node);
-            entry.priority =
-                entry.last_wanted == wants ? std::max(entry.priority, wish.priority) : wish.priority;
+            const bool named = entry.last_wanted == wants;
+            if (named && ahead && !entry.ahead) continue;
+            if (!named) wanted.push_back(wish.node);
+            entry.priority = named ? std::max(entry.priority, wish.priority) : wish.priority;
+            entry.ahead = ahead;
             entry.last_wanted = wants;
+            if (ahead || !entry.fetched) continue;
+            entry.fetched = false;
+            stats.ahead_hits += entry.held;
         }
+}
+
+/// Puts what is wanted into the queue; a parent is never less important than its children.
+void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
+    const auto nodes = source.nodes();
     std::ranges::sort(wanted, std::greater<>());  // children before parents
     for (const uint32_t node : wanted) {
         Entry& entry = entries[node];
         if (!entry.in_flight) {
             const NodeInfo& info = nodes[node];
             entry.count = info.count;
-            entry.record_bytes = uint64_t{info.count} * source.header().schema.stride;
+            entry.record_bytes = source.record_bytes(node);
             entry.bytes = options.cost ? options.cost(info) : entry.record_bytes;
         }
         if (const auto parent = entries.find(nodes[node].parent);
-            parent != entries.end() && parent->second.last_wanted == wants)
-            parent->second.priority = std::max(parent->second.priority, entry.priority);
+            parent != entries.end() && parent->second.last_wanted == wants) {
+            if (parent->second.ahead == entry.ahead)
+                parent->second.priority = std::max(parent->second.priority, entry.priority);
+        }
     }
     queue = std::move(wanted);
 }
@@ -105,8 +121,9 @@ void Residency::State::take_wishes(std::span<const Cut* const> cuts) {
 void Residency::State::admit() {
     const auto nodes = source.nodes();
     std::ranges::sort(queue, [&](uint32_t a, uint32_t b) {
-        const float pa = entries.at(a).priority, pb = entries.at(b).priority;
-        return pa != pb ? pa > pb : a < b;
+        const Entry &ea = entries.at(a), &eb = entries.at(b);
+        if (ea.ahead != eb.ahead) return eb.ahead;
+        return ea.priority != eb.priority ? ea.priority > eb.priority : a < b;
     });
     for (auto& [node, entry] : entries) entry.admitted = false;
     std::vector<uint32_t> missing;
@@ -127,7 +144,7 @@ void Residency::State::admit() {
         // smaller one further down would be held in the place of something more important.
         full |= !orphan && !too_large && bytes > options.memory - total;
         if (orphan || full || too_large) {
-            ++stats.refused;
+            stats.refused += !entry.ahead;
             continue;
         }
         total += bytes;
@@ -159,7 +176,7 @@ bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
 /// Drops a loaded or replaced event that the caller has not seen: it need not.
 void Residency::State::forget_event(Entry& entry) {
     if (!entry.unpolled) return;
-    bytes_unpolled -= (*entry.unpolled)->data->records.size();
+    bytes_unpolled -= entry.unpolled_bytes;
     events.erase(*entry.unpolled);
     entry.unpolled.reset();
 }
@@ -223,22 +240,21 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     bytes_in_flight -= entry.bytes;
     bytes_unpolled -= entry.record_bytes;
     --loads_in_flight;
-    if (loaded && (loaded->count != entry.count ||
-                   loaded->records.size() != uint64_t{entry.count} * source.header().schema.stride)) {
-        if (entry.stale) return;  // it changed on the way: the next want() asks again
-        loaded = rejected(fmt::format("node {}", node), "it holds something else than the directory says");
-    }
     if (!loaded) {
+        if (entry.stale) return;  // it changed on the way: the next want() asks again
         ++stats.failures;
         broken.insert(node);
         if (!error) error = std::move(loaded).error();
         return;
     }
     ++stats.loads;
-    stats.bytes_loaded += loaded->records.size();
+    stats.bytes_loaded += entry.record_bytes;
+    entry.fetched = entry.ahead && entry.last_wanted == wants;
+    stats.ahead_loads += entry.fetched;
     auto data = std::make_shared<const NodeData>(std::move(*loaded));
     forget_event(entry);
-    bytes_unpolled += data->records.size();
+    entry.unpolled_bytes = entry.record_bytes;
+    bytes_unpolled += entry.unpolled_bytes;
     const auto kind = entry.known ? ResidencyEvent::Kind::replaced : ResidencyEvent::Kind::loaded;
     entry.unpolled = events.insert(events.end(), {kind, node, std::move(data)});
     stats.bytes_held += entry.bytes - entry.held_bytes;
@@ -251,20 +267,29 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     evictable.insert(std::ranges::partition_point(evictable, later), node);
 }
 
+/// On a loading thread, without the lock.
+Result<NodeData> Residency::State::read(uint32_t node, uint64_t record_bytes, uint32_t count) const {
+    try {
+        LUCARNE_ASSIGN(NodeData data, source.load(node));
+        if (data.count != count || data.records.size() != record_bytes)
+            return rejected(fmt::format("node {}", node), "it holds something else than the directory says");
+        if (options.prepare) return options.prepare(node, std::move(data));
+        return data;
+    } catch (const std::exception& problem) {
+        return failed(fmt::format("node {}", node), problem.what());
+    }
+}
+
 void Residency::State::loader() {
     std::unique_lock lock(mutex);
     for (;;) {
         std::optional<uint32_t> node;
         work.wait(lock, [&] { return stop || (node = next_load()).has_value(); });
         if (stop) return;
+        const uint64_t record_bytes = entries.at(*node).record_bytes;
+        const uint32_t count = entries.at(*node).count;
         lock.unlock();
-        Result<NodeData> loaded = [&]() -> Result<NodeData> {
-            try {
-                return source.load(*node);
-            } catch (const std::exception& problem) {
-                return failed(fmt::format("node {}", *node), problem.what());
-            }
-        }();
+        Result<NodeData> loaded = read(*node, record_bytes, count);
         lock.lock();
         finish_load(*node, std::move(loaded));
         work.notify_all();
@@ -294,10 +319,14 @@ Residency::~Residency() {
     for (std::thread& thread : state_->threads) thread.join();
 }
 
-void Residency::want(std::span<const Cut* const> cuts) {
+void Residency::want(std::span<const Cut* const> cuts, std::span<const Cut* const> ahead) {
     {
         const std::lock_guard lock(state_->mutex);
-        state_->take_wishes(cuts);
+        ++state_->wants;
+        std::vector<uint32_t> wanted;
+        state_->take_wishes(cuts, false, wanted);
+        state_->take_wishes(ahead, true, wanted);
+        state_->order_wishes(std::move(wanted));
         state_->admit();
         state_->forget_strangers();
         if (state_->nothing_moves()) state_->idle.notify_all();
@@ -325,8 +354,8 @@ std::vector<ResidencyEvent> Residency::poll(size_t limit) {
                 Entry& entry = state_->entries.at(event.node);
                 entry.unpolled.reset();
                 entry.known = true;
-                state_->bytes_unpolled -= event.data->records.size();
-                state_->bytes_polled += event.data->records.size();
+                state_->bytes_unpolled -= entry.unpolled_bytes;
+                state_->bytes_polled += entry.unpolled_bytes;
             }
             polled.push_back(std::move(event));
             state_->events.pop_front();
@@ -351,9 +380,10 @@ bool Residency::resident(uint32_t node) const {
 ResidencyStats Residency::stats() const {
     const std::lock_guard lock(state_->mutex);
     ResidencyStats stats = state_->stats;
-    stats.pending = state_->queue.size();
+    stats.pending = 0;
+    for (const uint32_t node : state_->queue) stats.pending += !state_->entries.at(node).ahead;
     for (const auto& [node, entry] : state_->entries)
-        stats.pending += (entry.in_flight && entry.admitted) || entry.unpolled;
+        stats.pending += !entry.ahead && ((entry.in_flight && entry.admitted) || entry.unpolled);
     return stats;
 }
 

@@ -20,6 +20,9 @@ struct ResidencyOptions {
     /// What a node takes of `memory`; empty: the bytes of its records. A caller that copies nodes into pages
     /// of its own (a device's pool) counts those, so that what fits here fits there.
     std::function<uint64_t(const NodeInfo&)> cost;
+    /// What an event carries in the place of the records (packed for a device, say), made on a loading
+    /// thread so that the caller's need not; empty: the records. In transit it counts as the records do.
+    std::function<NodeData(uint32_t node, NodeData&&)> prepare;
 };
 
 /// What happened since the last poll, in order. Played back from the start, the nodes loaded and not evicted
@@ -37,6 +40,8 @@ struct ResidencyStats {
     uint64_t refused = 0;       ///< wanted, and the caps have no room for them
     uint64_t bytes_peak = 0;    ///< the most ever held or on their way
     uint64_t transit_peak = 0;  ///< the most records ever in this process
+    uint64_t ahead_loads = 0;   ///< nodes loaded that were wanted ahead alone
+    uint64_t ahead_hits = 0;    ///< of those, wanted for a picture later and still held
 };
 
 /// Keeps the nodes of the wanted cuts resident: loads what is missing in the background, most important first
@@ -51,9 +56,9 @@ class Residency {
     Residency(const Residency&) = delete;
     Residency& operator=(const Residency&) = delete;
 
-    /// Replaces what is wanted: the union of `cuts`. Loads not started that nobody wants any more are
-    /// dropped.
-    void want(std::span<const Cut* const> cuts);
+    /// Replaces what is wanted: the union of `cuts`, and of `ahead` what finds room beside them, loaded after
+    /// them (prefetching). Loads not started that nobody wants any more are dropped; those being read go on.
+    void want(std::span<const Cut* const> cuts, std::span<const Cut* const> ahead = {});
     /// These nodes have changed in the source: those held come again as `replaced` (as evicted and loaded
     /// where there is no room for two copies), those that failed are tried once more. Takes effect with the
     /// next want().

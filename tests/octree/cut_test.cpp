@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -273,6 +274,64 @@ TEST(Cut, KeepsNodesWithoutPointsOfTheirOwnAboveThoseThatHaveThem) {
     const Cut cut = view_cut(source, camera({25, 25, 20}, kDown), 50000);
     EXPECT_GT(cut.points, 10000u);
     expect_sound(source, cut, 50000);
+}
+
+/// What is wrong in the picture while only `held` are loaded: over rays to the plane, the spacing of the
+/// points met, in pixels, above that of the whole cut.
+double spacing_error(const PlaneSource& source, const Cut& cut, const std::set<uint32_t>& held,
+                     const View& view) {
+    const auto count = prefixes(cut);
+    double error = 0;
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const glm::dvec3 ray = view.forward + view.right * (view.tan_half_width * (x / 19.5 - 1)) +
+                                   view.up * (view.tan_half_height * (y / 19.5 - 1));
+            if (!(ray.z < 0)) continue;
+            const double along = -view.position.z / ray.z;
+            const glm::dvec3 point = view.position + ray * along;
+            if (point.x < 0 || point.y < 0 || point.x >= 100 || point.y >= 100) continue;
+            double density = 0, here = 0;  // points a unit^2: of the whole cut, of what is held
+            for (uint32_t node = 0, parent_held = 1;;) {
+                if (!count.contains(node)) break;
+                const double side = source.cube(node).size, added = count.at(node) / (side * side);
+                density += added;
+                parent_held = parent_held && held.contains(node);
+                if (parent_held) here += added;
+                const glm::dvec3 middle = source.cube(node).min + side / 2;
+                const uint32_t child =
+                    source.nodes()[node].child((point.x >= middle.x ? 1 : 0) | (point.y >= middle.y ? 2 : 0));
+                if (child == kNoNode) break;
+                node = child;
+            }
+            const double pixel = 2 * view.tan_half_width / view.width * along;
+            error += (1 / std::sqrt(std::max(here, 1e-6)) - 1 / std::sqrt(density)) / pixel;
+        }
+    return error;
+}
+
+TEST(Cut, LoadingByPriorityMendsThePictureSoonerThanLevelByLevel) {
+    const PlaneSource source(7, 500, 100.0);
+    for (const View& view : {camera({20, 50, 5}, {1, 0.1, -0.4}), camera({50, 50, 3}, {0.2, 1, -0.2})}) {
+        const Cut cut = view_cut(source, view, 1'000'000);
+        const auto error_on_the_way = [&](auto before) {
+            std::vector<CutNode> order = cut.nodes;
+            std::ranges::stable_sort(order, before);
+            std::set<uint32_t> held;
+            double sum = 0;
+            for (size_t i = 0; i < order.size(); ++i) {
+                held.insert(order[i].node);
+                if (i % 16 == 0) sum += spacing_error(source, cut, held, view);
+            }
+            return sum;
+        };
+        const double by_priority =
+            error_on_the_way([](const CutNode& a, const CutNode& b) { return a.priority > b.priority; });
+        const double by_level =
+            error_on_the_way([](const CutNode& a, const CutNode& b) { return a.node < b.node; });
+        std::printf("error on the way: %.0f by priority, %.0f level by level, %zu nodes\n", by_priority,
+                    by_level, cut.nodes.size());
+        EXPECT_LT(by_priority, 0.9 * by_level);
+    }
 }
 
 }  // namespace

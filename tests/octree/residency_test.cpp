@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -331,6 +332,76 @@ TEST(Residency, WantsOfNodesThatDoNotExistAreIgnored) {
     want(residency, cut);
     residency.wait();
     EXPECT_EQ(residency.stats().nodes_held, 1u);
+}
+
+TEST(Residency, WhatIsAheadIsLoadedAfterWhatIsWantedAndNeverInItsPlace) {
+    PlaneSource source(4, kPoints, 1.0);
+    Residency residency(source, {.memory = 4 * kNode, .threads = 1});
+    const Cut now = cut_of(source, {{0, 1.0f}, {1, 0.1f}, {2, 0.2f}});
+    const Cut later = cut_of(source, {{0, 9.0f}, {3, 5.0f}, {4, 4.0f}});
+    const Cut *cuts[] = {&now}, *ahead[] = {&later};
+    residency.want(cuts, ahead);
+    ASSERT_TRUE(residency.wait());
+    EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 2, 1, 3})) << "three wanted, and room for one ahead";
+    EXPECT_EQ(residency.stats().refused, 0u) << "what is ahead is no refusal";
+    EXPECT_EQ(residency.stats().ahead_loads, 1u);
+    residency.poll();
+    // The camera has moved on: what was ahead is wanted, and not read again.
+    const Cut next = cut_of(source, {{0, 1.0f}, {3, 0.5f}});
+    want(residency, next);
+    ASSERT_TRUE(residency.wait());
+    EXPECT_EQ(residency.stats().loads, 4u);
+    EXPECT_EQ(residency.stats().ahead_hits, 1u);
+}
+
+TEST(Residency, PendingCountsWhatIsWantedNowAlone) {
+    PlaneSource source(3, kPoints, 1.0);
+    source.shut();
+    Residency residency(source, {.threads = 1});
+    const Cut now = cut_of(source, {{0, 1.0f}}), later = cut_of(source, {{0, 1.0f}, {1, 1.0f}, {2, 1.0f}});
+    const Cut *cuts[] = {&now}, *ahead[] = {&later};
+    residency.want(cuts, ahead);
+    source.await(1);
+    EXPECT_EQ(residency.stats().pending, 1u);
+    source.open();
+    ASSERT_TRUE(residency.wait());
+    EXPECT_EQ(residency.poll().size(), 3u);
+    EXPECT_EQ(residency.stats().pending, 0u);
+}
+
+TEST(Residency, ACameraThatMovesOnEveryFrameReadsNoNodeTwice) {
+    const PlaneSource source(6, kPoints, 100.0);
+    Residency residency(source, {.memory = uint64_t{1} << 30, .threads = 3});
+    Replay replay(uint64_t{1} << 30);
+    for (int frame = 0; frame < 200; ++frame) {
+        Cut cut = light_cut(source, {0.4 * frame, 30, 1}, 20'000);
+        want(residency, cut);  // long before the last wishes have come
+        replay.play(residency.poll(5));
+    }
+    ASSERT_TRUE(residency.wait());
+    std::vector<uint32_t> order = source.order();
+    std::ranges::sort(order);
+    EXPECT_EQ(std::ranges::adjacent_find(order), order.end());
+}
+
+TEST(Residency, NodesArePreparedOnTheLoadingThreads) {
+    PlaneSource source(2, kPoints, 1.0);
+    const auto here = std::this_thread::get_id();
+    ResidencyOptions options{.threads = 2};
+    options.prepare = [&](uint32_t node, NodeData&& data) {
+        EXPECT_NE(std::this_thread::get_id(), here);
+        EXPECT_EQ(data.records.size(), kNode);
+        return NodeData{data.count, std::vector<std::byte>(8, static_cast<std::byte>(node))};
+    };
+    Residency residency(source, options);
+    const Cut cut = full_cut(source);
+    want(residency, cut);
+    ASSERT_TRUE(residency.wait());
+    for (const ResidencyEvent& event : residency.poll()) {
+        EXPECT_EQ(event.data->records.size(), 8u);
+        EXPECT_EQ(event.data->records[0], static_cast<std::byte>(event.node));
+    }
+    EXPECT_EQ(residency.stats().bytes_loaded, 5 * kNode);
 }
 
 }  // namespace

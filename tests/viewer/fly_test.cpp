@@ -120,5 +120,137 @@ TEST(Fly, MistakesInThePathAndTheArgumentsAreOneLineAndTheRightCode) {
     EXPECT_EQ(bytes_of(report), "{}");
 }
 
+TEST(Fly, SeveralEnginesColdAndWarmAreOneReportAndOnePage) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder);
+    write(folder / "path.json", kPath);
+    const std::string call = "fly " + cache + " --path " + (folder / "path.json") + " --size 48x32 --cold" +
+                             " --engine direct,vpl --frames-dir " + (folder / "frames") + " --html " +
+                             (folder / "r.html") + " -o " + (folder / "r.json");
+    const Outcome flown = test::lucarne(call);
+    ASSERT_EQ(flown.code, 0) << flown.output;
+    const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));
+    ASSERT_EQ(report["flights"].size(), 4u);
+    const std::array<std::pair<const char*, bool>, 4> expected = {
+        {{"direct", true}, {"direct", false}, {"vpl", true}, {"vpl", false}}};
+    for (size_t i = 0; i < expected.size(); ++i) {
+        const auto& flight = report["flights"][i];
+        EXPECT_EQ(flight["engine"], expected[i].first);
+        EXPECT_EQ(flight["start"]["cold"], expected[i].second);
+        EXPECT_GT(flight["start"]["complete_cut_seconds"].get<double>(), 0);
+        EXPECT_FALSE(flight["machine"]["system"].get<std::string>().empty());
+        EXPECT_FALSE(flight["build"]["revision"].get<std::string>().empty());
+        EXPECT_EQ(flight["each_frame"][0]["passes_ms"].size(), flight["passes_ms"].size());
+    }
+    const std::string warm = bytes_of(folder / "frames/vpl/frame_00002.png");
+    EXPECT_FALSE(warm.empty());
+    EXPECT_EQ(warm, bytes_of(folder / "frames/vpl-cold/frame_00002.png"))
+        << "where points come from is not seen";
+    EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("vpl, cold"));
+
+    const Outcome same = test::lucarne("fly --compare " + (folder / "r.json") + " " + (folder / "r.json"));
+    EXPECT_EQ(same.code, 0) << same.output;
+    EXPECT_THAT(same.output, HasSubstr("direct, cold, wait: no difference"));
+}
+
+TEST(Fly, CompareSaysWhatIsSlowerByItsExitCode) {
+    const TemporaryFolder folder;
+    const auto report = [&](const std::string& name, double ms, const std::string& engine) {
+        nlohmann::json frames = nlohmann::json::array();
+        for (int i = 0; i < 40; ++i) frames.push_back({{"time", i}, {"ms", ms + i % 3}});
+        write(folder / name,
+              nlohmann::json{{"engine", engine}, {"mode", "wait"}, {"preset", "high"}, {"each_frame", frames}}
+                  .dump());
+        return folder / name;
+    };
+    const std::string fast = report("fast.json", 20, "vpl"), slow = report("slow.json", 30, "vpl");
+    const Outcome slower = test::lucarne("fly --compare " + fast + " " + slow);
+    EXPECT_EQ(slower.code, 1);
+    EXPECT_THAT(slower.output, HasSubstr("B is slower than A"));
+    const Outcome faster = test::lucarne("fly --compare " + slow + " " + fast);
+    EXPECT_EQ(faster.code, 0) << faster.output;
+    EXPECT_THAT(faster.output, HasSubstr("B is faster than A"));
+    EXPECT_EQ(test::lucarne("fly --compare " + slow + " " + fast + " --margin 60").code, 0);
+    write(folder / "none.json", "{}");
+    EXPECT_EQ(test::lucarne("fly --compare " + slow + " " + (folder / "none.json")).code, 3);
+    EXPECT_EQ(test::lucarne("fly --compare " + slow).code, 2);
+}
+
+TEST(Fly, SoakEndsWithTheMemoryItBeganWith) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder, "300k");
+    write(folder / "path.json", kPath);
+    // LUCARNE_SOAK asks for more seconds: an hour, say.
+    const char* asked = std::getenv("LUCARNE_SOAK");
+    const Outcome flown =
+        test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --size 64x48 --realtime" +
+                      " --engine direct --memory 8M --device-memory 16M --soak " + (asked ? asked : "20") +
+                      " -o " + (folder / "r.json"));
+    ASSERT_EQ(flown.code, 0) << flown.output;
+    const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));
+    const auto& soak = report["soak"];
+    std::printf("%s laps, %s frames, resident %s, device %s\n", soak["laps"].dump().c_str(),
+                soak["frames"].dump().c_str(), soak["resident_memory"].dump().c_str(),
+                soak["device_memory"].dump().c_str());
+    EXPECT_GE(soak["laps"].get<int>(), 2);
+    EXPECT_LT(soak["resident_memory"]["growth"].get<double>(), 16 << 20);
+    EXPECT_LE(report["memory"]["used"].get<double>(), report["memory"]["cap"].get<double>());
+    EXPECT_LE(report["device_memory"]["used"].get<double>(), report["device_memory"]["cap"].get<double>());
+}
+
+TEST(Fly, PoppingIsMeasuredAgainstTheSameFlightWithEveryPoint) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder);
+    write(folder / "path.json", R"({"frames_per_second": 12, "keys": [
+        {"time": 0, "position": [2.7, 0.4, 2.7], "target": [2.7, 5, 2.4]},
+        {"time": 1, "position": [2.6, 0.6, 2.75], "target": [2.75, 5, 2.35]}]})");
+    const auto fly = [&](const std::string& name, const std::string& more) {
+        const Outcome flown =
+            test::lucarne("fly " + cache + " --path " + (folder / "path.json") +
+                          " --engine direct --popping" + " --size 96x72 -o " + (folder / name) + more);
+        EXPECT_EQ(flown.code, 0) << flown.output;
+        return nlohmann::json::parse(bytes_of(folder / name));
+    };
+    const auto report = fly("r.json", " --points 20000");
+    EXPECT_EQ(report["popping"]["full_cut_share"], 1.0);
+    EXPECT_GT(report["picture_change"]["max"].get<double>(), 0);
+    std::printf("popping %s\n", report["popping"].dump().c_str());
+    EXPECT_LT(report["popping"]["ratio"].get<double>(), 2);
+}
+
+TEST(Fly, TwoHundredCachesAreOneSceneUnderOneBudget) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder, "2k");
+    std::string inputs;
+    for (int i = 0; i < 200; ++i) {
+        const std::string copy = folder / ("scan" + std::to_string(i) + ".luc");
+        std::filesystem::copy_file(cache, copy);
+        inputs += copy + " ";
+    }
+    write(folder / "path.json", kPath);
+    // Fewer handles than caches.
+    const Outcome flown =
+        test::shell("ulimit -n 128; " LUCARNE_BINARY " fly " + inputs + " --path " + (folder / "path.json") +
+                    " --size 48x32 --points 50000 --engine direct -o " + (folder / "r.json"));
+    ASSERT_EQ(flown.code, 0) << flown.output;
+    const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));
+    EXPECT_EQ(report["input"].size(), 200u);
+    EXPECT_LE(report["points_per_frame"]["view"]["max"].get<double>(), 50'000);
+    EXPECT_GT(report["points_per_frame"]["view"]["max"].get<double>(), 40'000);
+    EXPECT_EQ(report["complete"]["least"], 1.0);
+}
+
+TEST(Fly, FrameTimeIsForFlightsByTheClock) {
+    const TemporaryFolder folder;
+    const std::string cache = make_cornell(folder);
+    write(folder / "path.json", kPath);
+    const std::string call = "fly " + cache + " --path " + (folder / "path.json") +
+                             " --size 64x48 --engine direct" + " --frame-time 5 -o " + (folder / "r.json");
+    EXPECT_EQ(test::lucarne(call).code, 2);
+    const Outcome flown = test::lucarne(call + " --realtime");
+    ASSERT_EQ(flown.code, 0) << flown.output;
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(folder / "r.json"))["frame_time_ms"], 5.0);
+}
+
 }  // namespace
 }  // namespace lucarne

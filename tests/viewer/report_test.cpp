@@ -18,7 +18,8 @@ TEST(Report, QuantilesInterpolateBetweenRanks) {
 
 FlownFrame frame(double time, double seconds, std::vector<gi::PassTimes::Pass> passes, uint64_t wanted,
                  uint64_t ready) {
-    FlownFrame flown{time, {}, {}, {}};
+    FlownFrame flown;
+    flown.time = time;
     flown.stats.seconds = seconds;
     flown.stats.passes = std::move(passes);
     flown.stats.view_points = ready;

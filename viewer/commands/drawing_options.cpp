@@ -1,5 +1,7 @@
 #include "viewer/commands/drawing_options.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -26,6 +28,13 @@ std::string preset_names() {
     for (const auto& preset : presets())
         names += fmt::format("\n  {:<12}{}", preset.name, preset.description);
     return names;
+}
+
+bool all_have_normals(const octree::NodeSource& source) {
+    return std::ranges::all_of(source.roots(), [&](uint32_t root) {
+        const io::Schema& schema = source.part_of(root).header.schema;
+        return schema.find(io::names::normal) || schema.find(io::names::normal_oct);
+    });
 }
 
 }  // namespace
@@ -80,6 +89,8 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
         .add_option("--device-memory", options.device_memory,
                     "Most of the device's memory, for surfels, pictures and maps together (2G)")
         ->type_name("SIZE");
+    command.add_flag("--no-prefetch", options.no_prefetch,
+                     "Load nothing ahead of a camera that moves (for measuring)");
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
 }
 
@@ -93,6 +104,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     if (!options.device_memory.empty()) {
         LUCARNE_ASSIGN(drawing.caps.device_memory, parse_bytes("--device-memory", options.device_memory));
     }
+    drawing.caps.prefetch = !options.no_prefetch;
     LUCARNE_TRY(gi::make_engine(options.engine));
     gi::EngineSettings& engine = drawing.preset.engine;
     override_with(engine.bounces, options.bounces);
@@ -138,8 +150,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
                                                 std::shared_ptr<const octree::NodeSource> source,
                                                 const DrawingOptions& options, const Drawing& drawing,
                                                 gi::Scene scene) {
-    const auto& schema = source->header().schema;
-    if (!schema.find(io::names::normal) && !schema.find(io::names::normal_oct))
+    if (!all_have_normals(*source))
         log::warn(
             "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
             "convert with --normals estimate for correct light");

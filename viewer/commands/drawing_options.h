@@ -29,12 +29,12 @@ struct DrawingOptions {
     std::optional<uint64_t> points, seed;
     std::optional<double> exposure;
     std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
-    bool best_candidate = false, no_reuse = false;
+    bool best_candidate = false, no_reuse = false, no_prefetch = false;
 };
 
 /// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
 /// --samples
-/// --seed --exposure --best-candidate --no-reuse --memory --device-memory. `options` outlives the command.
+/// --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch. `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
 
 /// The same, looked up and checked.

@@ -1,66 +1,199 @@
+#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "gi/registry.h"
 #include "io/core/file.h"
 #include "io/core/log.h"
+#include "io/core/page_cache.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/flythrough/compare_flights.h"
 #include "viewer/flythrough/flight.h"
-#include "viewer/input.h"
+#include "viewer/flythrough/html_report.h"
+#include "viewer/inputs.h"
 
 namespace lucarne::viewer {
 namespace {
 
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
 struct FlyOptions {
-    std::string input, path, report, frames_folder;
+    std::vector<std::string> inputs, compare;
+    std::string path, report, html, frames_folder;
     DrawingOptions drawing;
-    bool wait = false, realtime = false, flicker = false, overwrite = false;
+    double soak = 0, frame_time_ms = 0, margin = 3;
+    bool wait = false, realtime = false, cold = false, flicker = false, popping = false, overwrite = false;
 };
 
-/// Everything that can be wrong with the outputs, before long work starts.
-Result<void> check_outputs(const FlyOptions& options) {
-    LUCARNE_TRY(check_output(options.report, options.overwrite));
-    if (options.frames_folder.empty()) return {};
-    std::error_code error;
-    std::filesystem::create_directories(options.frames_folder, error);
-    if (error) return failed(options.frames_folder, error.message(), "name a folder that can be written");
-    return check_output(std::filesystem::path(options.frames_folder) / "frame_00001.png", options.overwrite);
+std::vector<std::string> engines_of(const FlyOptions& options) {
+    return CLI::detail::split(options.drawing.engine, ',');
 }
 
-Result<void> fly_command(const FlyOptions& options) {
-    LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
-    LUCARNE_ASSIGN(const CameraPath path, load_path(options.path));
-    LUCARNE_TRY(check_outputs(options));
-    LUCARNE_ASSIGN(const auto source, open_input(options.input));
-    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
-    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_ASSIGN(const auto pipeline,
-                   open_pipeline(*device, source, options.drawing, drawing, std::move(scene)));
+/// One of the flights of a call.
+struct Plan {
+    std::string engine;
+    bool cold = false;
+    std::string frames_folder;  ///< empty: none
+};
 
-    FlightOptions flight_options{drawing.size, !options.realtime, {}, options.overwrite};
-    flight_options.flicker = options.flicker;
-    if (!options.frames_folder.empty()) flight_options.frames_folder = options.frames_folder;
-    LUCARNE_ASSIGN(const Flight flight, fly(*pipeline, path, flight_options));
-    const FlightConditions conditions{options.input,
-                                      options.path,
-                                      options.drawing.engine,
-                                      options.drawing.preset,
-                                      options.realtime ? "realtime" : "wait",
-                                      drawing.size,
-                                      device->info(),
-                                      drawing.preset.engine,
-                                      drawing.preset.budgets,
-                                      drawing.caps,
-                                      flight.wall_seconds};
-    const auto report = flight_report(conditions, flight.frames);
-    LUCARNE_ASSIGN(auto file, OutputFile::create(options.report, options.overwrite));
-    LUCARNE_TRY(file.append(report.dump(2) + "\n"));
-    LUCARNE_TRY(file.commit());
-    log::info("{} frames, {:.1f} ms in the middle, {:.1f} ms at 95 %; {}: {}", flight.frames.size(),
-              report["frame_ms"]["p50"].get<double>(), report["frame_ms"]["p95"].get<double>(),
-              memory_text(drawing.caps, flight.frames.back().stats.memory), options.report);
+/// Every engine, cold before warm; with several flights each has a folder of its own for its frames.
+std::vector<Plan> plans_of(const FlyOptions& options) {
+    std::vector<Plan> plans;
+    for (const std::string& engine : engines_of(options)) {
+        if (options.cold) plans.push_back({engine, true, {}});
+        plans.push_back({engine, false, {}});
+    }
+    for (Plan& plan : plans) {
+        if (options.frames_folder.empty()) continue;
+        const std::filesystem::path base = options.frames_folder;
+        plan.frames_folder = plans.size() == 1 ? base : base / (plan.engine + (plan.cold ? "-cold" : ""));
+    }
+    return plans;
+}
+
+/// Everything that can be wrong with arguments and outputs, before long work starts.
+Result<void> check(const FlyOptions& options) {
+    if (options.inputs.empty()) return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
+    if (options.path.empty()) return bad_arguments("--path", "is missing", "name a camera path");
+    if (options.report.empty()) return bad_arguments("--output", "is missing", "name the report's file");
+    if (options.frame_time_ms > 0 && !options.realtime)
+        return bad_arguments("--frame-time",
+                             "needs --realtime: flights that wait draw the same on every run");
+    LUCARNE_TRY(check_output(options.report, options.overwrite));
+    if (!options.html.empty()) LUCARNE_TRY(check_output(options.html, options.overwrite));
+    for (const Plan& plan : plans_of(options)) {
+        LUCARNE_TRY(gi::make_engine(plan.engine));
+        if (plan.frames_folder.empty()) continue;
+        std::error_code error;
+        std::filesystem::create_directories(plan.frames_folder, error);
+        if (error) return failed(plan.frames_folder, error.message(), "name a folder that can be written");
+        LUCARNE_TRY(
+            check_output(std::filesystem::path(plan.frames_folder) / "frame_00001.png", options.overwrite));
+    }
+    return {};
+}
+
+/// The path once more with every point there is, for what changes from picture to picture.
+Result<FullFlight> fly_at_full_resolution(Pipeline& pipeline, const CameraPath& path, FlightOptions how) {
+    const CutBudgets budgets = pipeline.budgets();
+    pipeline.set_budgets({.view = UINT64_MAX,
+                          .light_view = budgets.light_view,
+                          .light = budgets.light,
+                          .pixel_spacing = 1e-6});
+    how.wait = true;
+    how.frames_folder.reset();
+    how.soak = 0;
+    LUCARNE_ASSIGN(Flight flight, fly(pipeline, path, how));
+    pipeline.set_budgets(budgets);
+    FullFlight full{std::move(flight.frames), 1};
+    for (const FlownFrame& frame : full.frames)
+        full.cut_share = std::min(full.cut_share, frame.stats.cut_share);
+    return full;
+}
+
+Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraPath& path) {
+    DrawingOptions drawing_options = options.drawing;
+    drawing_options.engine = plan.engine;
+    LUCARNE_ASSIGN(const Drawing drawing, resolve(drawing_options));
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
+    FlightConditions conditions;
+    conditions.start.cold = plan.cold;
+    if (plan.cold)
+        for (const std::string& input : options.inputs) {
+            LUCARNE_ASSIGN(const double held, drop_page_cache(input));
+            conditions.start.still_cached = std::max(conditions.start.still_cached, held);
+        }
+    const auto begin = Clock::now();
+    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
+    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
+    LUCARNE_ASSIGN(const auto pipeline,
+                   open_pipeline(*device, source, drawing_options, drawing, std::move(scene)));
+    conditions.start.open_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+
+    FlightOptions how{drawing.size, !options.realtime, {}, options.overwrite};
+    how.flicker = options.flicker;
+    how.changes = options.popping;
+    how.soak = options.soak;
+    how.frame_time = options.frame_time_ms * 1e-3;
+    if (!plan.frames_folder.empty()) how.frames_folder = plan.frames_folder;
+    LUCARNE_ASSIGN(Flight flight, fly(*pipeline, path, how));
+    if (options.popping) {
+        LUCARNE_ASSIGN(conditions.full, fly_at_full_resolution(*pipeline, path, how));
+    }
+    conditions.inputs = options.inputs;
+    conditions.path = options.path;
+    conditions.engine = plan.engine;
+    conditions.preset = options.drawing.preset;
+    conditions.mode = options.realtime ? "realtime" : "wait";
+    conditions.size = drawing.size;
+    conditions.device = device->info();
+    conditions.settings = drawing.preset.engine;
+    conditions.budgets = drawing.preset.budgets;
+    conditions.caps = drawing.caps;
+    conditions.frame_time = how.frame_time;
+    conditions.wall_seconds = flight.wall_seconds;
+    conditions.soak = flight.soak;
+    conditions.build = build_info();
+    conditions.machine = machine_info();
+    Json report = flight_report(conditions, flight.frames);
+    log::info("{}: {} frames, {:.1f} ms in the middle, {:.1f} ms at 95 %; {}", flight_name(report),
+              flight.frames.size(), report["frame_ms"]["p50"].get<double>(),
+              report["frame_ms"]["p95"].get<double>(),
+              memory_text(drawing.caps, flight.frames.back().stats.memory));
+    return report;
+}
+
+Result<void> write_text(const std::string& path, const std::string& text, bool overwrite) {
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(text));
+    return file.commit();
+}
+
+Result<void> fly_all(const FlyOptions& options) {
+    LUCARNE_TRY(check(options));
+    LUCARNE_ASSIGN(const CameraPath path, load_path(options.path));
+    std::vector<Json> flights;
+    for (const Plan& plan : plans_of(options)) {
+        LUCARNE_ASSIGN(flights.emplace_back(), fly_once(options, plan, path));
+    }
+    // One flight is the report itself.
+    const Json report = flights.size() == 1 ? flights.front() : Json{{"flights", flights}};
+    LUCARNE_TRY(write_text(options.report, report.dump(2) + "\n", options.overwrite));
+    if (!options.html.empty()) LUCARNE_TRY(write_text(options.html, html_report(flights), options.overwrite));
+    log::info("{}{}", options.report, options.html.empty() ? "" : ", " + options.html);
+    return {};
+}
+
+/// B's flights against A's of the same engine, mode and start; where each has but one, those two.
+Result<void> compare(const FlyOptions& options) {
+    LUCARNE_ASSIGN(const auto before, read_flights(options.compare[0]));
+    LUCARNE_ASSIGN(const auto after, read_flights(options.compare[1]));
+    size_t compared = 0;
+    std::string slower;
+    for (const FlownReport& b : after) {
+        const bool alone = before.size() == 1 && after.size() == 1;
+        const auto a = std::ranges::find_if(
+            before, [&](const FlownReport& other) { return alone || other.name() == b.name(); });
+        if (a == before.end()) continue;
+        const FlightComparison comparison = compare_flights(*a, b, options.margin / 100);
+        const std::string names = a->name() == b.name() ? b.name() : a->name() + " and " + b.name();
+        log::info("{}: {}", names, verdict_text(comparison, *a, b));
+        if (comparison.verdict == Verdict::slower) slower += (slower.empty() ? "" : "; ") + names;
+        ++compared;
+    }
+    if (compared == 0)
+        return rejected(options.compare[1],
+                        "has no flight of an engine and mode that the other report has, too");
+    if (!slower.empty())
+        return failed(options.compare[1], "is slower than " + options.compare[0] + " (" + slower + ")");
     return {};
 }
 
@@ -68,21 +201,50 @@ Result<void> fly_command(const FlyOptions& options) {
 
 void add_fly(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<FlyOptions>();
-    auto* command = app.add_subcommand("fly", "Fly along a camera path and measure it");
-    command->add_option("INPUT", options->input, "A cache or any scan file")->required();
-    command->add_option("--path", options->path, "The camera path (data/README.md, Flythroughs)")->required();
-    command->add_option("-o,--output", options->report, "The report, JSON")->required();
+    auto* command =
+        app.add_subcommand("fly", "Fly along a camera path and measure it, or compare two reports");
+    command->add_option("INPUT", options->inputs, "Caches or scan files, flown through together");
+    command->add_option("--path", options->path, "The camera path (data/README.md, Flythroughs)");
+    command->add_option("-o,--output", options->report, "The report, JSON");
+    command->add_option("--html", options->html, "The report as a page with plots, too")->type_name("FILE");
     add_drawing_options(*command, options->drawing);
+    command->get_option("--engine")->description("Or several, one flight each: vpl,direct");
     auto* wait = command->add_flag("--wait", options->wait,
                                    "Every frame, every cut whole: the same pixels on every run (default)");
     command->add_flag("--realtime", options->realtime, "By the clock, never waiting: what a user sees")
         ->excludes(wait);
+    command
+        ->add_option("--frame-time", options->frame_time_ms,
+                     "With --realtime: cuts take as many points as keep frames to this time")
+        ->check(CLI::Range(1.0, 1e5))
+        ->type_name("MS");
+    command->add_flag("--cold", options->cold,
+                      "Before each flight another, from files that the system was made to forget");
+    command
+        ->add_option("--soak", options->soak,
+                     "Fly the path again and again for so long, and compare the memory")
+        ->check(CLI::Range(0.0, 1e6))
+        ->type_name("SECONDS");
     command->add_option("--frames-dir", options->frames_folder,
-                        "Write every frame there, frame_00001.png and so on");
+                        "Write every frame there, frame_00001.png and so on (for a video: README.md)");
     command->add_flag("--flicker", options->flicker,
                       "Also report every frame's mean luminance and how much surfaces' light changes");
+    command->add_flag("--popping", options->popping,
+                      "Also report how much pictures change from frame to frame, and in the same flight with "
+                      "every point");
+    command
+        ->add_option("--compare", options->compare,
+                     "Two reports: says whether the second is slower (exit code 1), faster, or neither")
+        ->expected(2)
+        ->type_name("A.json B.json");
+    command->add_option("--margin", options->margin, "Differences up to this are none, per cent")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str()
+        ->type_name("PERCENT");
     command->add_flag("--overwrite", options->overwrite, "Replace what exists");
-    command->callback([options, &chosen] { chosen = [options] { return fly_command(*options); }; });
+    command->callback([options, &chosen] {
+        chosen = [options] { return options->compare.empty() ? fly_all(*options) : compare(*options); };
+    });
 }
 
 }  // namespace lucarne::viewer

@@ -19,13 +19,14 @@
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/input.h"
+#include "viewer/inputs.h"
 
 namespace lucarne::viewer {
 namespace {
 
 struct RenderOptions {
-    std::string input, output, camera, json, gbuffer;
+    std::vector<std::string> inputs;
+    std::string output, camera, json, gbuffer;
     DrawingOptions drawing;
     uint32_t frames = 1;
     double seconds = 0;
@@ -159,7 +160,7 @@ Result<void> render(const RenderOptions& options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_ASSIGN(const auto source, open_input(options.input));
+    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
     LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
     FrameRequest request;
     LUCARNE_ASSIGN(request.camera, find_camera(scene, options.camera));
@@ -196,7 +197,9 @@ Result<void> render(const RenderOptions& options) {
 void add_render(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<RenderOptions>();
     auto* command = app.add_subcommand("render", "Render one picture without a window");
-    command->add_option("input", options->input, "A cache, or any scan file")->required()->type_name("INPUT");
+    command->add_option("input", options->inputs, "Caches or scan files, drawn together")
+        ->required()
+        ->type_name("INPUT...");
     command->add_option("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
         ->required()
         ->type_name("FILE");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
@@ -8,16 +9,18 @@
 #include "io/core/file.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/input.h"
+#include "viewer/inputs.h"
 #include "viewer/view_session.h"
 
 namespace lucarne::viewer {
 namespace {
 
 struct ViewOptions {
-    std::string input, camera, screenshot;
+    std::vector<std::string> inputs;
+    std::string camera, screenshot;
     DrawingOptions drawing;
     uint32_t frames = 1;
+    double frame_time_ms = 100;
     bool overwrite = false;
 };
 
@@ -31,6 +34,8 @@ Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing
     model.preset = drawing.preset.name;
     model.settings = drawing.preset.engine;
     model.budgets = drawing.preset.budgets;
+    model.frame_time = options.frame_time_ms * 1e-3;
+    model.caps = drawing.caps;
     return model;
 }
 
@@ -41,9 +46,9 @@ Result<void> view(const ViewOptions& options) {
         LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
-    LUCARNE_ASSIGN(const auto source, open_input(options.input));
+    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
     LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, source->header()));
-    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne - " + options.input));
+    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne - " + inputs_text(options.inputs)));
     LUCARNE_ASSIGN(const auto worker,
                    PictureWorker::start(window->worker_device(), source, drawing.caps, &Window::wake));
     model.device = worker->device();
@@ -55,9 +60,14 @@ Result<void> view(const ViewOptions& options) {
 void add_view(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<ViewOptions>();
     auto* command = app.add_subcommand("view", "Look around in a cache or a scan, lit by its own surfaces");
-    command->add_option("INPUT", options->input, "A cache or any scan file")->required();
+    command->add_option("INPUT", options->inputs, "Caches or scan files, shown together")->required();
     add_drawing_options(*command, options->drawing);
     command->add_option("--camera", options->camera, "Start with this camera of the scene");
+    command->add_option("--frame-time", options->frame_time_ms,
+                        "What a picture should take while something moves; cuts and size follow it")
+        ->check(CLI::Range(1.0, 1e5))
+        ->capture_default_str()
+        ->type_name("MS");
     command->add_option("--screenshot", options->screenshot,
                         "Save the window as this PNG once it is whole, and close");
     command->add_option("--frames", options->frames, "Whole pictures to wait for with --screenshot")

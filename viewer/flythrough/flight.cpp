@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "gi/compare/metrics.h"
+#include "io/core/process.h"
 #include "io/core/progress.h"
+#include "viewer/cost_model.h"
 #include "viewer/rgba.h"
 
 namespace lucarne::viewer {
@@ -30,51 +32,166 @@ class FlightClock {
     Clock::duration paused_{0};
 };
 
-Result<void> write_frame(const Pipeline& pipeline, const FlightOptions& options, size_t number) {
-    const size_t bytes = size_t{options.size.width} * options.size.height * 4;
-    const auto rgba = pipeline.picture().download_all<std::byte>(bytes);
-    return io::write_png(*options.frames_folder / fmt::format("frame_{:05}.png", number),
-                         without_alpha(rgba, options.size), options.overwrite);
+std::vector<std::byte> shown(const Pipeline& pipeline, ImageSize size) {
+    return pipeline.picture().download_all<std::byte>(size_t{size.width} * size.height * 4);
 }
 
-/// The light of a frame, and against that of the frame before, which it becomes.
-bool measure(const Pipeline& pipeline, std::optional<SeenFrame>& before, FlownFrame& frame) {
-    SeenFrame now = seen_frame(pipeline);
-    frame.luminance = gi::mean_luminance(now.radiance);
-    if (before) frame.flicker = flicker_between(*before, now);
-    before = std::move(now);
-    return true;
+Result<void> write_frame(const Pipeline& pipeline, const FlightOptions& options, size_t number) {
+    return io::write_png(*options.frames_folder / fmt::format("frame_{:05}.png", number),
+                         without_alpha(shown(pipeline, options.size), options.size), options.overwrite);
+}
+
+/// What is measured of a frame against the one before, which it becomes.
+class Measures {
+ public:
+    explicit Measures(const FlightOptions& options) : options_(options) {}
+    bool any() const { return options_.flicker || options_.changes; }
+    /// Always true, so that a clock can stand still meanwhile.
+    bool take(const Pipeline& pipeline, FlownFrame& frame) {
+        if (options_.flicker) {
+            SeenFrame now = seen_frame(pipeline);
+            frame.luminance = gi::mean_luminance(now.radiance);
+            if (seen_) frame.flicker = flicker_between(*seen_, now);
+            seen_ = std::move(now);
+        }
+        if (options_.changes) {
+            auto now = shown(pipeline, options_.size);
+            if (!picture_.empty()) frame.change = change_between(picture_, now, options_.size);
+            picture_ = std::move(now);
+        }
+        return true;
+    }
+    /// The camera jumps: the next frame is compared with none.
+    void forget() {
+        seen_.reset();
+        picture_.clear();
+    }
+
+ private:
+    const FlightOptions& options_;
+    std::optional<SeenFrame> seen_;
+    std::vector<std::byte> picture_;
+};
+
+/// Frames as they come, and where there are too many every second, fourth and so on, so that a long flight's
+/// record does not grow for ever.
+class Record {
+ public:
+    void add(FlownFrame frame) {
+        if (flown_++ % step_ == 0) frames.push_back(std::move(frame));
+        if (frames.size() <= kLongestRecord) return;
+        size_t kept = 0;
+        for (size_t i = 0; i < frames.size(); i += 2) frames[kept++] = std::move(frames[i]);
+        frames.resize(kept);
+        step_ *= 2;
+    }
+    size_t flown() const { return flown_; }
+    std::vector<FlownFrame> frames;
+
+ private:
+    size_t flown_ = 0, step_ = 1;
+};
+
+/// The budgets as they are set, and while a frame-time target is followed those that keep to it.
+class Budgets {
+ public:
+    Budgets(Pipeline& pipeline, const FlightOptions& options)
+        : pipeline_(pipeline),
+          full_(pipeline.budgets()),
+          target_(options.wait ? 0 : options.frame_time),
+          size_(options.size),
+          budget_(target_) {}
+    ~Budgets() { pipeline_.set_budgets(full_); }
+    Budgets(const Budgets&) = delete;
+    Budgets& operator=(const Budgets&) = delete;
+    void observe(const FrameStats& stats) {
+        if (!(target_ > 0)) return;
+        budget_.observe(stats, size_);
+        const CutBudgets next = budget_.budgets(full_);
+        if (!(next == pipeline_.budgets())) pipeline_.set_budgets(next);
+    }
+
+ private:
+    Pipeline& pipeline_;
+    const CutBudgets full_;
+    double target_;
+    ImageSize size_;
+    FrameBudget budget_;
+};
+
+/// All that goes on from frame to frame.
+struct Flying {
+    Pipeline& pipeline;
+    const CameraPath& path;
+    const FlightOptions& options;
+    Progress progress;
+    FlightClock clock{};
+    Measures measures{options};
+    Budgets budgets{pipeline, options};
+    Record record{};
+
+    /// Once along the path.
+    Result<void> lap(size_t number) {
+        const double began = clock.seconds();
+        measures.forget();
+        size_t frame_of_lap = 0;
+        for (bool last = false; !last; ++frame_of_lap) {
+            const double since_start = options.wait
+                                           ? static_cast<double>(frame_of_lap) / path.frames_per_second
+                                           : std::min(clock.seconds() - began, path.duration());
+            // By the clock the last frame is the one at the path's end.
+            last = options.wait ? frame_of_lap + 1 >= path.frames() : since_start >= path.duration();
+            LUCARNE_TRY(draw(path.start() + since_start, number));
+        }
+        return {};
+    }
+
+    Result<void> draw(double time, size_t lap) {
+        FrameRequest request;
+        request.camera = path.at(time);
+        request.size = options.size;
+        request.wait = options.wait;
+        request.moving = true;
+        FlownFrame frame;
+        frame.time = time;
+        frame.lap = lap;
+        LUCARNE_ASSIGN(frame.stats, pipeline.render(request));
+        frame.wall = clock.seconds();
+        if (measures.any()) clock.while_stopped([&] { return measures.take(pipeline, frame); });
+        budgets.observe(frame.stats);
+        record.add(std::move(frame));
+        progress.add(1);
+        if (!options.frames_folder) return {};
+        return clock.while_stopped([&] { return write_frame(pipeline, options, record.flown()); });
+    }
+};
+
+MemoryUse memory_now(const Record& record) {
+    MemoryUse use = record.frames.back().stats.memory;
+    use.resident = resident_memory();
+    return use;
 }
 
 }  // namespace
 
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
+    const bool known_length = options.wait && options.soak == 0;
+    Flying flying{pipeline, path, options,
+                  Progress(options.wait ? "flying" : "flying by the clock", known_length ? path.frames() : 0,
+                           "frames")};
     Flight flight;
-    Progress progress(options.wait ? "flying" : "flying by the clock", options.wait ? path.frames() : 0,
-                      "frames");
-    FlightClock clock;
-    std::optional<SeenFrame> before;
-    for (bool last = false; !last;) {
-        const double since_start = options.wait
-                                       ? static_cast<double>(flight.frames.size()) / path.frames_per_second
-                                       : std::min(clock.seconds(), path.duration());
-        // By the clock the last frame is the one at the path's end.
-        last = options.wait ? flight.frames.size() + 1 >= path.frames() : since_start >= path.duration();
-        FrameRequest request;
-        request.camera = path.at(path.start() + since_start);
-        request.size = options.size;
-        request.wait = options.wait;
-        request.moving = true;
-        FlownFrame frame{path.start() + since_start, {}, {}, {}};
-        LUCARNE_ASSIGN(frame.stats, pipeline.render(request));
-        if (options.flicker) clock.while_stopped([&] { return measure(pipeline, before, frame); });
-        flight.frames.push_back(std::move(frame));
-        progress.add(1);
-        if (options.frames_folder)
-            LUCARNE_TRY(
-                clock.while_stopped([&] { return write_frame(pipeline, options, flight.frames.size()); }));
+    LUCARNE_TRY(flying.lap(0));
+    if (options.soak > 0) {
+        Soak soak;
+        soak.first = memory_now(flying.record);
+        for (soak.laps = 1; flying.clock.seconds() < options.soak; ++soak.laps)
+            LUCARNE_TRY(flying.lap(soak.laps));
+        soak.last = memory_now(flying.record);
+        soak.frames = flying.record.flown();
+        flight.soak = soak;
     }
-    flight.wall_seconds = clock.seconds();
+    flight.wall_seconds = flying.clock.seconds();
+    flight.frames = std::move(flying.record.frames);
     return flight;
 }
 

@@ -18,15 +18,23 @@ struct FlightOptions {
     std::optional<std::filesystem::path> frames_folder;  ///< frame_00001.png and so on
     bool overwrite = false;
     bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance, while the clock stands still
+    bool changes = false;  ///< measure FlownFrame::change, likewise
+    double soak = 0;       ///< s; the path is flown again and again for at least so long
+    double frame_time =
+        0;  ///< s; by the clock, the budgets of cuts follow it (cost_model.h); 0: they are fixed
 };
 
 struct Flight {
-    std::vector<FlownFrame> frames;
+    std::vector<FlownFrame> frames;  ///< of a soak evenly kLongestRecord of them at most
     double wall_seconds = 0;
+    std::optional<Soak> soak;
 };
 
-/// Flies a pipeline that is set up along a path. Frames are written while the clock stands still, so that
-/// writing slows nothing down that is measured. Errors: the pipeline's, a frame that cannot be written.
+inline constexpr size_t kLongestRecord = 8192;
+
+/// Flies a pipeline that is set up along a path. Frames are written and measured while the clock stands
+/// still, so that this slows nothing down that is measured. Errors: the pipeline's, a frame that cannot be
+/// written.
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options);
 
 }  // namespace lucarne::viewer

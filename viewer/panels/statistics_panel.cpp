@@ -51,8 +51,11 @@ void draw_statistics_panel(ViewModel& model) {
             ImGui::Text("cuts %.1f %% complete, %llu nodes to come", stats.complete() * 100,
                         static_cast<unsigned long long>(stats.nodes_pending));
             ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
-            ImGui::Text("loaded %s, device %s", bytes_text(stats.bytes_loaded).c_str(),
-                        bytes_text(picture.device_memory).c_str());
+            ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
+            ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
+                        bytes_text(model.caps.memory).c_str());
+            ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
+                        bytes_text(model.caps.device_memory).c_str());
             passes_table(stats);
         } else {
             ImGui::TextUnformatted("The first picture is on its way.");

@@ -60,19 +60,6 @@ TEST_F(DeviceTest, BufferBeyondTheDevicesLimitIsAnError) {
     EXPECT_EQ(buffer.error().kind, ErrorKind::failed);
 }
 
-TEST_F(DeviceTest, OverlappingMovesTowardsTheBeginningKeepEveryWord) {
-    std::vector<uint32_t> words(1000);
-    std::iota(words.begin(), words.end(), 0u);
-    auto buffer = device->texels(words.size() * 4, "words");
-    ASSERT_TRUE(buffer);
-    buffer->upload_all(words);
-    buffer->move_down(300 * 4, 280 * 4, 650 * 4);
-    std::copy(words.begin() + 300, words.begin() + 950, words.begin() + 280);
-    EXPECT_EQ(buffer->download_all<uint32_t>(words.size()), words);
-    EXPECT_THROW(buffer->move_down(0, 4, 4), std::logic_error);
-    EXPECT_THROW(buffer->move_down(3996, 0, 8), std::logic_error);
-}
-
 TEST_F(DeviceTest, AccessBeyondTheEndOfABufferIsRefused) {
     auto buffer = device->buffer(64, "words");
     ASSERT_TRUE(buffer);

@@ -71,7 +71,7 @@ TEST_F(SurfelPoolTest, EvictedNeighboursMakeRoomForALargerNode) {
     EXPECT_EQ(pool.used(), 6 * kPage);
 }
 
-TEST_F(SurfelPoolTest, ScatteredFreePagesComeTogetherForALargeNodeAndNothingIsLost) {
+TEST_F(SurfelPoolTest, ScatteredFreePagesHoldALargeNodeAndNothingIsLost) {
     // Of single pages every second goes; the others stay what they were when the large node comes.
     std::vector<Surfel> surfels = random_surfels(40000, 3);
     const SurfelCloud cloud(surfels);
@@ -118,7 +118,7 @@ TEST_F(SurfelPoolTest, ManyLoadsAndEvictionsLoseNoPages) {
         ASSERT_EQ(pool.used(), pages * kPage);
     }
     for (uint32_t node = 0; node < 20; ++node) pool.evict(node);
-    EXPECT_TRUE(pool.load(0, filled(32 * kPage, 0)).value()) << "the free pages have come together again";
+    EXPECT_TRUE(pool.load(0, filled(32 * kPage, 0)).value()) << "all pages are free again";
 }
 
 TEST_F(SurfelPoolTest, SurfelsComeBackAsTheyWent) {

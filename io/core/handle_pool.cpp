@@ -1,0 +1,58 @@
+#include "io/core/handle_pool.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace lucarne {
+
+Handle::~Handle() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+uint64_t HandlePool::enrol() {
+    const std::lock_guard lock(mutex_);
+    return next_++;
+}
+
+void HandlePool::leave(uint64_t number) {
+    const std::lock_guard lock(mutex_);
+    const auto place = places_.find(number);
+    if (place == places_.end()) return;
+    kept_.erase(place->second);
+    places_.erase(place);
+}
+
+Result<std::shared_ptr<const Handle>> HandlePool::acquire(uint64_t number, const std::filesystem::path& path,
+                                                          const FileIdentity& identity) {
+    const std::lock_guard lock(mutex_);
+    if (const auto place = places_.find(number); place != places_.end()) {
+        kept_.splice(kept_.begin(), kept_, place->second);
+        return kept_.front().handle;
+    }
+    auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (handle->fd() < 0)
+        return failed(path.string(), fmt::format("cannot be opened again ({})",
+                                                 std::error_code(errno, std::generic_category()).message()));
+    struct stat status {};
+    if (::fstat(handle->fd(), &status) != 0 || identity != FileIdentity{status.st_dev, status.st_ino})
+        return failed(path.string(), "has been replaced since it was opened", "open it again");
+    kept_.push_front({number, handle});
+    places_[number] = kept_.begin();
+    while (kept_.size() > most_) {
+        places_.erase(kept_.back().number);
+        kept_.pop_back();
+    }
+    return handle;
+}
+
+size_t HandlePool::open() const {
+    const std::lock_guard lock(mutex_);
+    return kept_.size();
+}
+
+}  // namespace lucarne

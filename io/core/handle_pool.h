@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include <sys/types.h>
+
+#include "io/core/error.h"
+
+namespace lucarne {
+
+/// A file descriptor that is closed with its last user.
+class Handle {
+ public:
+    explicit Handle(int fd) : fd_(fd) {}
+    ~Handle();
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    int fd() const { return fd_; }
+
+ private:
+    int fd_;
+};
+
+/// Which file a name stood for when it was first opened.
+struct FileIdentity {
+    dev_t device = 0;
+    ino_t inode = 0;
+    bool operator==(const FileIdentity&) const = default;
+};
+
+/// Handles of many files of which only so many are open at once: the longest unused is closed and opened
+/// again when it is needed. Beside those, as many are open as threads read at the moment. Thread-safe.
+class HandlePool {
+ public:
+    explicit HandlePool(size_t most) : most_(most) {}
+
+    /// A number for a file that will be asked for again.
+    uint64_t enrol();
+    void leave(uint64_t number);
+    /// Errors: the file cannot be opened (any more), or its name stands for another file now.
+    Result<std::shared_ptr<const Handle>> acquire(uint64_t number, const std::filesystem::path& path,
+                                                  const FileIdentity& identity);
+    size_t open() const;  ///< handles kept now
+
+ private:
+    struct Kept {
+        uint64_t number;
+        std::shared_ptr<const Handle> handle;
+    };
+
+    const size_t most_;
+    mutable std::mutex mutex_;
+    uint64_t next_ = 0;
+    std::list<Kept> kept_;  ///< the last used first
+    std::unordered_map<uint64_t, std::list<Kept>::iterator> places_;
+};
+
+}  // namespace lucarne

@@ -1,0 +1,103 @@
+#include "octree/stream/joined_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <glm/common.hpp>
+
+namespace lucarne::octree {
+namespace {
+
+using Sources = std::vector<std::shared_ptr<const NodeSource>>;
+
+class JoinedSource final : public NodeSource {
+ public:
+    JoinedSource(Sources sources, size_t nodes) {
+        header_.metres_per_unit = common_unit(sources);
+        nodes_.reserve(nodes);
+        for (auto& source : sources) add(std::move(source));
+        const glm::dvec3 extent = header_.max - header_.min;
+        // As a cache's root cube: a little larger than the box, so that its upper faces are inside.
+        const double side = std::max({extent.x, extent.y, extent.z, 1e-9}) * (1 + 0x1p-20);
+        header_.root = {(header_.min + header_.max - side) / 2.0, side};
+    }
+
+    const SourceHeader& header() const override { return header_; }
+    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    std::vector<uint32_t> roots() const override {
+        std::vector<uint32_t> roots;
+        for (const Part& part : parts_) roots.push_back(part.first_node);
+        return roots;
+    }
+    uint32_t parts() const override { return static_cast<uint32_t>(parts_.size()); }
+    SourcePart part_of(uint32_t node) const override {
+        const Part& part = part_with(node);
+        return {part.source->header(), static_cast<uint32_t>(&part - parts_.data()), part.scale,
+                part.first_scan};
+    }
+    uint64_t directory_bytes() const override {
+        uint64_t bytes = nodes().size_bytes();
+        for (const Part& part : parts_) bytes += part.source->directory_bytes();
+        return bytes;
+    }
+    Result<NodeData> load(uint32_t node) const override {
+        const Part& part = part_with(node);
+        return part.source->load(node - part.first_node);
+    }
+
+ private:
+    struct Part {
+        std::shared_ptr<const NodeSource> source;
+        uint32_t first_node = 0, first_scan = 0;
+        double scale = 1;
+    };
+
+    static double common_unit(const Sources& sources) {
+        const double first = sources.front()->header().metres_per_unit;
+        const bool same = std::ranges::all_of(
+            sources, [&](const auto& source) { return source->header().metres_per_unit == first; });
+        return same ? first : 1.0;
+    }
+
+    void add(std::shared_ptr<const NodeSource> source) {
+        const SourceHeader& own = source->header();
+        if (source->nodes().empty()) return;
+        const Part part{source, static_cast<uint32_t>(nodes_.size()),
+                        static_cast<uint32_t>(header_.scans.size()),
+                        own.metres_per_unit / header_.metres_per_unit};
+        const auto area_scale = static_cast<float>(part.scale * part.scale);
+        for (NodeInfo node : source->nodes()) {
+            if (node.parent != kNoNode) node.parent += part.first_node;
+            if (node.first_child != kNoNode) node.first_child += part.first_node;
+            for (float& floor : node.area_floor) floor *= area_scale;
+            nodes_.push_back(node);
+        }
+        if (parts_.empty()) header_.schema = own.schema;
+        header_.min = parts_.empty() ? own.min * part.scale : glm::min(header_.min, own.min * part.scale);
+        header_.max = parts_.empty() ? own.max * part.scale : glm::max(header_.max, own.max * part.scale);
+        header_.points += own.points;
+        header_.scans.insert(header_.scans.end(), own.scans.begin(), own.scans.end());
+        parts_.push_back(part);
+    }
+
+    const Part& part_with(uint32_t node) const {
+        return *(std::ranges::upper_bound(parts_, node, {}, &Part::first_node) - 1);
+    }
+
+    SourceHeader header_;
+    std::vector<NodeInfo> nodes_;
+    std::vector<Part> parts_;  ///< by first_node
+};
+
+}  // namespace
+
+Result<std::shared_ptr<const NodeSource>> join_sources(Sources sources) {
+    if (sources.empty()) return rejected("sources", "there is none to join");
+    if (sources.size() == 1) return std::move(sources.front());
+    size_t nodes = 0;
+    for (const auto& source : sources) nodes += source->nodes().size();
+    if (nodes >= kNoNode) return rejected("sources", "they have more nodes together than can be numbered");
+    return std::make_shared<const JoinedSource>(std::move(sources), nodes);
+}
+
+}  // namespace lucarne::octree
