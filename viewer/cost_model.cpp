@@ -9,11 +9,12 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kRemembered = 24;           ///< frames: what changed is learned anew in half as many
-constexpr double kLeastSpread = .1;         ///< of a cut's points, between two frames whose slope counts
+constexpr double kLeastSpread = .1;          ///< of a cut's points, between two frames whose slope counts
 constexpr double kLeastView = 1.0 / 16;      ///< of the view's points with room for all
 constexpr double kFall = 0.4, kRise = 1.25;  ///< most change of the view's points from frame to frame
 constexpr double kCalm = 0.04;  ///< smaller changes are left alone: cuts that hold still are not sent again
-constexpr int kPatience = 8;    ///< frames before the lights' cuts change
+constexpr double kWholeEnough = 0.8;  ///< of the cuts: while more is on its way, what is drawn says little
+constexpr int kPatience = 8;          ///< frames before the lights' cuts change
 constexpr int kMostHalvings = 4;
 constexpr double kSpare = 0.6;  ///< of the target: under it the lights' cuts may grow
 
@@ -109,6 +110,7 @@ void FrameBudget::forget() {
 }
 
 void FrameBudget::observe(const FrameStats& frame, ImageSize size) {
+    if (frame.complete() < kWholeEnough) return;
     if (size.width != size_.width || size.height != size_.height) model_.forget();
     size_ = size;
     model_.observe(frame);
@@ -120,11 +122,12 @@ void FrameBudget::observe(const FrameStats& frame, ImageSize size) {
     const double allowed = slope > 0           ? std::max(target_ - others, 0.0) / slope
                            : others <= target_ ? std::numeric_limits<double>::infinity()
                                                : 0.0;
-    const double from = std::max(drawn_[0], 1.0);
-    double next = std::clamp(allowed, from * kFall, from * kRise);
     const double least = most_seen_ * kLeastView;
-    next = std::max(next, least);
-    if (view_ == 0 || std::abs(next - view_) > kCalm * view_) view_ = next;
+    // What is drawn may be less than the budget: nodes are on their way, or the view needs no more.
+    const double next =
+        std::max(least, std::clamp(allowed, drawn_[0] * kFall, std::max(drawn_[0], view_) * kRise));
+    const bool held_down = view_ > 0 || allowed < drawn_[0];
+    if (drawn_[0] > 0 && held_down && !(std::abs(next - view_) <= kCalm * view_)) view_ = next;
 
     slow_ = allowed < least ? slow_ + 1 : 0;
     fast_ = halvings_ > 0 && line->at(drawn_) < kSpare * target_ ? fast_ + 1 : 0;

@@ -13,13 +13,17 @@ namespace {
 struct Machine {
     double view_ns = 50, light_ns = 20, fixed = 0.02;
     uint64_t wanted = 1'800'000;  ///< by the view, whatever the budget
+    double loaded = 1;            ///< share of that
     std::mt19937 random{1};
     int frames = 0;
 
     FrameStats draw(const CutBudgets& budgets) {
         std::uniform_real_distribution<double> noise(0.97, 1.03);
         FrameStats frame;
-        frame.view_points = std::min(budgets.view, wanted);
+        frame.view_points =
+            static_cast<uint64_t>(loaded * static_cast<double>(std::min(budgets.view, wanted)));
+        frame.wanted_points = std::min(budgets.view, wanted);
+        frame.ready_points = frame.view_points;
         frame.light_view_points = budgets.light_view;
         frame.light_points = budgets.light;
         const double disturbed = ++frames % 7 == 0 ? 5 : 1;
@@ -80,6 +84,19 @@ TEST(FrameBudget, WhatIsFastEnoughIsLeftWhole) {
     for (int frame = 0; frame < 30; ++frame) budget.observe(machine.draw(budget.budgets({})), kSize);
     EXPECT_GE(budget.budgets({}).view, machine.wanted);
     EXPECT_EQ(budget.budgets({}).light_view, CutBudgets{}.light_view);
+}
+
+TEST(FrameBudget, WhatIsStillLoadingHoldsNothingDown) {
+    FrameBudget budget(0.08);
+    Machine machine;
+    for (const double loaded : {0.0, 0.0, 1e-6, 0.01, 0.2}) {
+        machine.loaded = loaded;
+        budget.observe(machine.draw(budget.budgets({})), kSize);
+        EXPECT_EQ(budget.budgets({}).view, CutBudgets{}.view) << loaded;
+    }
+    machine.loaded = 1;
+    for (int frame = 0; frame < 40; ++frame) budget.observe(machine.draw(budget.budgets({})), kSize);
+    EXPECT_NEAR(machine.quiet(budget.budgets({})), 0.08, 0.008);
 }
 
 TEST(FrameBudget, FollowsAMachineThatBecomesSlowerAndFasterAgain) {

@@ -133,6 +133,7 @@ Axes axes_of(const Plot& plot) {
             x1 = std::max(x1, x);
         }
     }
+    if (x0 > 0 && x0 < 0.05 * x1) x0 = 0;  // a clock that began a little late
     if (x0 <= x1) axes = {x0, x1 > x0 ? x1 : x0 + 1, 1};
     axes.y1 = y1 > 0 ? y1 * 1.04 : 1;
     return axes;

@@ -1,0 +1,162 @@
+// What streaming is held to, measured by `lucarne fly` and printed beside its target: what loading takes of a
+// frame, cold starts, what loading ahead wins, popping, memory over a long flight, many caches.
+// `./run bench --stream [FOLDER] [SOAK]`: caches in FOLDER (default: a temporary one, 1 GB), SOAK seconds of
+// the long flight (default 60; an hour is 3600).
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/bench/rows.h"
+
+namespace lucarne {
+namespace {
+
+using nlohmann::json;
+
+/// The scan to fly through and where its files are.
+struct Ground {
+    std::filesystem::path folder;
+    std::string soak;
+
+    std::string cache() const { return folder / "nave4m.luc"; }
+    std::string file(const std::string& name) const { return folder / name; }
+};
+
+void figure(const std::string& what, double value, const std::string& unit) {
+    fmt::print("{:<68} {:>9.2f} {}\n", what, value, unit);
+    std::fflush(stdout);
+}
+
+constexpr const char* kPath = LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
+constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
+
+Result<void> make_cache(const Ground& ground) {
+    const std::string scan = ground.file("nave4m.ply");
+    LUCARNE_TRY(run_lucarne(
+        {"generate", "nave", "-o", scan, "--points", "4M", "--even", "--normals", "--overwrite"}));
+    LUCARNE_TRY(run_lucarne({"convert", scan, "-o", ground.cache(), "--normals", "keep", "--overwrite"}));
+    std::filesystem::remove(scan);
+    return {};
+}
+
+/// A flight's report.
+Result<json> fly(const Ground& ground, std::vector<std::string> arguments) {
+    const std::string report = ground.file("report.json");
+    for (const char* also :
+         {"--path", kPath, "--scene", kScene, "--engine", "direct", "--size", "384x216", "--overwrite", "-o"})
+        arguments.emplace_back(also);
+    arguments.push_back(report);
+    arguments.insert(arguments.begin(), "fly");
+    LUCARNE_TRY(run_lucarne(arguments));
+    std::ifstream file(report);
+    return json::parse(file);
+}
+
+Result<void> bench_cold_start(const Ground& ground) {
+    LUCARNE_ASSIGN(const json both, fly(ground, {ground.cache(), "--realtime", "--cold"}));
+    for (const json& flight : both["flights"]) {
+        const std::string start = flight["start"]["cold"] ? "cold" : "warm";
+        const json& complete = flight["start"]["complete_cut_seconds"];
+        if (!complete.is_null())
+            figure(start + " start to the first complete cut, by the clock", complete.get<double>(), "s");
+        figure(start + ": cuts complete, mean over the flight",
+               100 * flight["complete"]["mean"].get<double>(), "%");
+        row(start + ": loading in a frame, p99", flight["loading_ms"]["p99"].get<double>(), "ms", 5);
+    }
+    return {};
+}
+
+Result<void> bench_prefetch(const Ground& ground) {
+    std::vector<double> missing;
+    for (const bool ahead : {false, true}) {
+        std::vector<std::string> arguments = {ground.cache(), "--realtime", "--cold", "--device-memory",
+                                              "96M"};
+        if (!ahead) arguments.emplace_back("--no-prefetch");
+        LUCARNE_ASSIGN(const json both, fly(ground, arguments));
+        missing.push_back(100 * (1 - both["flights"][0]["complete"]["mean"].get<double>()));
+    }
+    figure("points missing in their frame, cold, nothing loaded ahead", missing[0], "%");
+    row("the same, loading ahead", missing[1], "%", missing[0]);
+    return {};
+}
+
+Result<void> bench_popping(const Ground& ground) {
+    // A slow way: every picture nearly the one before.
+    const std::string slow = ground.file("slow.json");
+    std::ofstream(slow) << R"({"frames_per_second": 25, "keys": [
+        {"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65},
+        {"time": 2, "position": [0.1, 3.8, 1.85], "target": [-0.1, 15.5, 5.1], "fov": 65}]})";
+    const std::string report = ground.file("report.json");
+    LUCARNE_TRY(
+        run_lucarne({"fly", ground.cache(), "--popping", "--path", slow, "--scene", kScene, "--engine",
+                     "direct", "--size", "384x216", "--points", "400000", "--overwrite", "-o", report}));
+    std::ifstream file(report);
+    const json flight = json::parse(file);
+    row("largest change between pictures over that of the whole cloud",
+        flight["popping"]["ratio"].get<double>(), "times", 1.5);
+    row("the same, of the worst tile of 16 x 16 pixels", flight["popping"]["tile_ratio"].get<double>(),
+        "times", 1.5);
+    return {};
+}
+
+Result<void> bench_soak(const Ground& ground) {
+    LUCARNE_ASSIGN(const json flight, fly(ground, {ground.cache(), "--realtime", "--soak", ground.soak,
+                                                   "--memory", "64M", "--device-memory", "64M"}));
+    const json& soak = flight["soak"];
+    figure(fmt::format("flight of {} s: laps", ground.soak), soak["laps"].get<double>(), "");
+    row("the same: resident memory, last lap over the first",
+        std::max(0.0, soak["resident_memory"]["growth"].get<double>() / 1048576), "MiB", 8);
+    row("the same: most of the cap of memory", flight["memory"]["used"].get<double>() / 1048576, "MiB", 64);
+    row("the same: most of the cap of device memory", flight["device_memory"]["used"].get<double>() / 1048576,
+        "MiB", 64);
+    return {};
+}
+
+Result<void> bench_many_caches(const Ground& ground) {
+    const std::string scan = ground.file("small.las"), cache = ground.file("small.luc");
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "50k", "--overwrite"}));
+    LUCARNE_TRY(run_lucarne({"convert", scan, "-o", cache, "--overwrite"}));
+    std::vector<std::string> arguments;
+    for (int i = 0; i < 200; ++i) {
+        arguments.push_back(ground.file(fmt::format("small{}.luc", i)));
+        std::filesystem::copy_file(cache, arguments.back(),
+                                   std::filesystem::copy_options::overwrite_existing);
+    }
+    for (const char* also : {"--realtime", "--points", "1000000"}) arguments.emplace_back(also);
+    LUCARNE_ASSIGN(const json flight, fly(ground, arguments));
+    row("200 caches in one scene: points of the view cut",
+        flight["points_per_frame"]["view"]["max"].get<double>() / 1e6, "M", 1);
+    figure("the same: opened after", flight["start"]["open_seconds"].get<double>(), "s");
+    row("the same: loading in a frame, p99", flight["loading_ms"]["p99"].get<double>(), "ms", 5);
+    for (const std::string& argument : arguments)
+        if (argument.ends_with(".luc")) std::filesystem::remove(argument);
+    return {};
+}
+
+Result<void> bench(const Ground& ground) {
+    if (!std::filesystem::exists(ground.cache())) LUCARNE_TRY(make_cache(ground));
+    LUCARNE_TRY(bench_cold_start(ground));
+    LUCARNE_TRY(bench_prefetch(ground));
+    LUCARNE_TRY(bench_popping(ground));
+    LUCARNE_TRY(bench_many_caches(ground));
+    return bench_soak(ground);
+}
+
+}  // namespace
+}  // namespace lucarne
+
+int main(int argc, char** argv) {
+    std::string name = (std::filesystem::temp_directory_path() / "lucarne-stream-XXXXXX").string();
+    const bool own = argc < 2;
+    if (own && !mkdtemp(name.data())) return 1;
+    const lucarne::Ground ground{own ? name : argv[1], argc > 2 ? argv[2] : "60"};
+    const auto done = lucarne::bench(ground);
+    if (own) std::filesystem::remove_all(ground.folder);
+    if (!done) fmt::print(stderr, "lucarne_stream: {}\n", done.error().line());
+    return done ? 0 : 1;
+}
