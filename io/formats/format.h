@@ -21,6 +21,7 @@ struct Format {
 };
 
 const Format& las_format();
+const Format& laz_format();
 const Format& ply_format();
 
 /// A batch holds at most this many bytes of records, however wide they are.

@@ -146,4 +146,11 @@ const Format& las_format() {
     return kFormat;
 }
 
+const Format&
+laz_format() {  // opened as LAS: the header tells them apart, further back than `recognises` looks
+    static constexpr Format kFormat{"LAZ", ".laz", [](std::string_view) { return false; }, open_las,
+                                    las::create_compressed};
+    return kFormat;
+}
+
 }  // namespace lucarne::io

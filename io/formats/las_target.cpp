@@ -38,9 +38,9 @@ bool fits(const Attribute& field, const Attribute& attribute) {
 }
 
 /// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
-void choose_format(Header& header, const Schema& schema, bool from_las) {
+void choose_format(Header& header, const Schema& schema, bool from_las, bool compress) {
     const auto has = [&](std::string_view name) { return schema.find(name) != nullptr; };
-    bool extended = has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
+    bool extended = compress || has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
     if (from_las)
         extended = extended || extended_format(header.point_format);
     else if (!has(names::scan_angle_rank))  // not out of an older LAS file: let every class and return fit
@@ -215,7 +215,7 @@ bool Converter::convert(const std::byte* in, size_t count, std::byte* out) const
 }
 
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
-                           const WriteOptions& options) {
+                           const WriteOptions& options, bool compress) {
     const auto details = nlohmann::json::parse(info.details, nullptr, false);
     const bool from_las = details.is_object() && details.value("format", nlohmann::json()) == "las";
     Target target;
@@ -225,7 +225,8 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     } else {
         header.software = "Lucarne";
     }
-    choose_format(header, schema, from_las);
+    header.compressed = compress;
+    choose_format(header, schema, from_las, compress);
     if (schema.position == PositionType::i32_scaled) {
         header.scale = schema.scale;
         header.offset = schema.offset;

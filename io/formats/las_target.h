@@ -41,8 +41,8 @@ struct Target {
 /// The header kept in `info.details` where the source was LAS, else the smallest point format that has a
 /// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
 /// bytes (where it does not fit, the field gets the nearest value as well). Positions that are not integers
-/// yet get a scale; the loss is reported.
+/// yet get a scale; the loss is reported. To be compressed (LAZ), point formats 6 to 8.
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
-                           const WriteOptions& options);
+                           const WriteOptions& options, bool compress);
 
 }  // namespace lucarne::io::las

@@ -1,4 +1,4 @@
-// LAS 1.0-1.4, uncompressed. Source: see las_header.h.
+// LAS 1.0-1.4 and LAZ. Source: see las_header.h.
 #include "io/formats/las_writer.h"
 
 #include <algorithm>
@@ -9,12 +9,14 @@
 
 #include "io/core/file.h"
 #include "io/formats/las_target.h"
+#include "io/formats/laz/writer.h"
 
 namespace lucarne::io::las {
 namespace {
 
 constexpr uint64_t kMost32 = std::numeric_limits<uint32_t>::max();
 constexpr size_t kChunkBytes = size_t{2} << 20;
+constexpr uint8_t kCompressedBit = 0x80;
 
 /// Little-endian fields one after the other.
 class Bytes {
@@ -86,7 +88,7 @@ Bytes header_block(const Header& h, const Statistics& s, uint64_t points_offset,
     b.put(header_bytes(h.minor));
     b.put(static_cast<uint32_t>(points_offset));
     b.put(records);
-    b.put(h.point_format);
+    b.put(static_cast<uint8_t>(h.point_format | (h.compressed ? kCompressedBit : 0)));
     b.put(h.record_length);
     b.put(static_cast<uint32_t>(old_counts ? h.points : 0));
     for (size_t r = 1; r <= 5; ++r) b.put(static_cast<uint32_t>(old_counts ? s.returns[r] : 0));
@@ -122,6 +124,11 @@ class LasWriter final : public PointWriter {
 
     /// Leaves room for the header and writes the records before the points.
     Result<void> begin() {
+        if (target_.header.compressed) {
+            const auto compression = laz::layered_compression(target_.header);
+            target_.header.vlrs.push_back(laz::compression_record(compression));
+            compressed_.emplace(file_, compression, target_.header.record_length);
+        }
         Bytes front;
         front.text("", header_bytes(target_.header.minor));
         for (const Vlr& vlr : target_.header.vlrs) {
@@ -135,7 +142,8 @@ class LasWriter final : public PointWriter {
             front.put<uint16_t>(0xddcc);  // LAS 1.0: the signature before the points
         points_offset_ = front.data().size();
         if (points_offset_ > kMost32) return failed(path_, "has more records than LAS can hold");
-        return file_.append(front.data());
+        LUCARNE_TRY(file_.append(front.data()));
+        return compressed_ ? compressed_->begin() : Result<void>{};
     }
 
     Result<void> write(std::span<const std::byte> records) override {
@@ -152,6 +160,7 @@ class LasWriter final : public PointWriter {
 
     Result<void> finish() override {
         LUCARNE_TRY(flush());
+        if (compressed_) LUCARNE_TRY(compressed_->finish());
         const uint64_t evlr_offset = file_.position();
         bool any = false;
         for (const Vlr& vlr : target_.header.vlrs) {
@@ -195,7 +204,7 @@ class LasWriter final : public PointWriter {
     }
 
     Result<void> flush() {
-        LUCARNE_TRY(file_.append(buffer_));
+        LUCARNE_TRY(compressed_ ? compressed_->write(buffer_) : file_.append(buffer_));
         buffer_.clear();
         return {};
     }
@@ -206,20 +215,33 @@ class LasWriter final : public PointWriter {
     uint32_t in_stride_;
     size_t return_offset_;
     uint64_t points_offset_ = 0;
+    std::optional<laz::PointsWriter> compressed_;
     Statistics statistics_;
     std::vector<std::byte> converted_, buffer_;
 };
 
-}  // namespace
-
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
-                                            const ScanInfo& info, const WriteOptions& options) {
-    LUCARNE_ASSIGN(auto target, make_target(path.string(), schema, info, options));
+                                            const ScanInfo& info, const WriteOptions& options,
+                                            bool compress) {
+    LUCARNE_ASSIGN(auto target, make_target(path.string(), schema, info, options, compress));
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, options.overwrite));
     auto writer =
         std::make_unique<LasWriter>(std::move(file), path.string(), std::move(target), schema.stride);
     LUCARNE_TRY(writer->begin());
     return writer;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
+                                            const ScanInfo& info, const WriteOptions& options) {
+    return create(path, schema, info, options, false);
+}
+
+Result<std::unique_ptr<PointWriter>> create_compressed(const std::filesystem::path& path,
+                                                       const Schema& schema, const ScanInfo& info,
+                                                       const WriteOptions& options) {
+    return create(path, schema, info, options, true);
 }
 
 }  // namespace lucarne::io::las

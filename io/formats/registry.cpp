@@ -9,8 +9,8 @@
 namespace lucarne::io {
 namespace {
 
-std::array<const Format*, 2> formats() {
-    return {&las_format(), &ply_format()};
+std::array<const Format*, 3> formats() {
+    return {&las_format(), &laz_format(), &ply_format()};
 }
 
 constexpr size_t kHeadBytes = 64;
@@ -51,7 +51,7 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
         if (format->extension == extension) return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
-                         "end the name in .las or .ply");
+                         "end the name in .las, .laz or .ply");
 }
 
 std::string printable(std::string_view name) {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "io/formats/las_layout.h"
 #include "io/formats/laz/color.h"
 #include "io/formats/laz/decoder.h"
 #include "io/formats/laz/encoder.h"
@@ -108,6 +109,92 @@ TEST(LazCoder, NeverReadsBeyondItsBytesAndSaysSo) {
         }
         EXPECT_TRUE(decoder.failed());
     }
+}
+
+/// A scan whose values change now and then, as scans' do, over four scanner channels and five trains of
+/// pulses.
+class RestlessSource final : public PointSource {
+ public:
+    RestlessSource(uint8_t format, uint64_t points, unsigned seed) {
+        las::Header header;
+        header.minor = 4;
+        header.point_format = format;
+        header.record_length = static_cast<uint16_t>(las::record_bytes(format));
+        schema_ = las::make_schema(header);
+        schema_.add("amplitude", ScalarType::f32);
+        schema_.add("echo", ScalarType::u8, 3);
+        info_.path = "restless";
+        info_.color_bits = 16;
+        std::mt19937 random(seed);
+        records_.resize(points * schema_.stride);
+        std::vector<std::byte> last(schema_.stride);
+        std::array<double, 5> times = {1e5, 3e8, -7, 0, 1e-300};
+        for (size_t i = 0; i < points; ++i) {
+            for (size_t b = 0; b < 12; ++b)  // places: a few low bits, sometimes any
+                if (b % 4 == 0 || random() % 64 == 0) last[b] = static_cast<std::byte>(random());
+            for (const Attribute& a : schema_.attributes) {
+                if (random() % 3) continue;
+                if (a.name == names::gps_time) {
+                    const size_t train = random() % times.size();
+                    times[train] += random() % 50 ? 1e-5 * static_cast<double>(random() % 20) : 1e3;
+                    store(&last[a.offset], times[train]);
+                } else {
+                    for (size_t b = 0; b < a.bytes(); ++b)
+                        last[a.offset + b] = static_cast<std::byte>(random() >> (random() % 32));
+                    if (const uint32_t bits = bits_of(a.name))
+                        last[a.offset] &= static_cast<std::byte>((1u << bits) - 1);
+                }
+            }
+            std::copy(last.begin(), last.end(),
+                      records_.begin() + static_cast<std::ptrdiff_t>(i * schema_.stride));
+        }
+    }
+    const Schema& schema() const override { return schema_; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override { return tl::unexpected(Error{}); }
+    const std::vector<std::byte>& records() const { return records_; }
+
+ private:
+    static uint32_t bits_of(std::string_view name) {
+        if (name == names::return_number || name == names::number_of_returns || name == names::class_flags)
+            return 4;
+        if (name == names::scanner_channel) return 2;
+        return name == names::scan_direction || name == names::edge_of_flight_line ? 1 : 0;
+    }
+
+    Schema schema_;
+    ScanInfo info_;
+    std::vector<std::byte> records_;
+};
+
+TEST(LazWriter, WhatItWritesIsReadBackInItsOrderBitByBit) {
+    const testing::TemporaryFolder folder;
+    for (const uint8_t format : {6, 7, 8})
+        for (const uint64_t points : {1, 2, 3'000, 120'001}) {
+            const RestlessSource source(format, points, format);
+            const auto path = folder / "written.laz";
+            auto writer = create_scan(path, source.schema(), source.info(), {.overwrite = true});
+            ASSERT_TRUE(writer) << writer.error().line();
+            ASSERT_TRUE((*writer)->write(source.records()));
+            ASSERT_TRUE((*writer)->finish());
+            const auto opened = open_scan(path);
+            ASSERT_TRUE(opened) << opened.error().line();
+            EXPECT_EQ((*opened)->schema().attributes, source.schema().attributes);
+            EXPECT_EQ((*opened)->info().declared_points, points);
+            const auto records = read_all(**opened, 777);
+            ASSERT_TRUE(records) << records.error().line();
+            EXPECT_TRUE(records->bytes == source.records()) << points << " points of format " << int{format};
+        }
+}
+
+TEST(LazWriter, AScanWithoutPointsIsAFileWithoutPoints) {
+    const testing::TemporaryFolder folder;
+    const RestlessSource source(7, 0, 1);
+    auto writer = create_scan(folder / "empty.laz", source.schema(), source.info(), {});
+    ASSERT_TRUE(writer && (*writer)->finish());
+    const auto opened = open_scan(folder / "empty.laz");
+    ASSERT_TRUE(opened) << opened.error().line();
+    EXPECT_EQ(read_all(**opened)->count, 0u);
 }
 
 class LazFile : public ::testing::TestWithParam<const char*> {

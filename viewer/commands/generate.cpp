@@ -66,7 +66,7 @@ void add_generate(CLI::App& app, Command& chosen) {
     command->add_option("scene", options->scan.scene, "Which scene, see below")
         ->required()
         ->type_name("SCENE");
-    command->add_option("-o,--output", options->output, "The scan to write: .las or .ply")
+    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
         ->required()
         ->type_name("FILE");
     command->add_option("--points", options->points, "How many points: about, or exactly with --even")

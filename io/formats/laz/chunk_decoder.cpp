@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "io/formats/laz/color.h"
-#include "io/formats/laz/point14.h"
+#include "io/formats/laz/layered.h"
 
 namespace lucarne::io::laz {
 namespace {
@@ -70,152 +70,25 @@ class PointWise {
     std::vector<std::byte> last_extra_;
 };
 
-/// Models and last values of an item for each scanner channel. Version 3 of the items goes on from the values
-/// of the channel before when it comes back to a channel; version 4 mended that.
-template <class Models, class Last>
-class Channels {
- public:
-    Channels(uint16_t version, const Models& fresh, Last first, uint32_t channel)
-        : fresh_(fresh), keeps_last_(version < 4), current_(channel) {
-        channels_[channel].emplace(fresh_, std::move(first));
-    }
-    struct Channel {
-        Channel(const Models& m, Last l) : models(m), last(std::move(l)) {}
-        Models models;
-        Last last;
-    };
-    /// The models of a channel and the last values to go on from.
-    std::pair<Models&, Last&> at(uint32_t channel) {
-        Channel& before = *channels_[current_];
-        current_ = channel;
-        auto& now = channels_[channel];
-        const bool fresh = !now;
-        if (fresh) now.emplace(fresh_, before.last);
-        return {now->models, keeps_last_ && !fresh ? before.last : now->last};
-    }
-
- private:
-    Models fresh_;
-    bool keeps_last_;
-    uint32_t current_;
-    std::array<std::optional<Channel>, kChannels> channels_;
-};
-
-struct ColorNirModels {
-    ColorModel color;
-    NirModel nir;
-};
-struct ColorNir {
-    Color color{};
-    uint16_t nir = 0;
-};
-static_assert(sizeof(ColorNir) == 8);
-
-struct Layers {
-    std::vector<Layer> layers;
-    const std::byte* end = nullptr;  ///< of the chunk
-};
-
-/// Point formats 6 to 8: each attribute in layers of its own.
-class Layered {
- public:
-    Layered(const Compression& compression, Layers layers, const std::byte* first)
-        : layers_(std::move(layers.layers)),
-          end_(layers.end),
-          point_(first, std::span(layers_).first<Point14Decoder::kLayers>()) {
-        const uint32_t channel = load<uint8_t>(first + 15) >> 4 & 3;
-        size_t layer = Point14Decoder::kLayers;
-        for (const ItemLayout& item : compression.items) {
-            if (item.item == Item::color14 || item.item == Item::color_nir14) {
-                ColorNir value;
-                std::memcpy(&value, first, item.bytes);
-                color_.emplace(item.version, ColorNirModels{}, value, channel);
-                color_bytes_ = item.bytes;
-                color_layer_ = layer;
-                layer += item.bytes == sizeof(ColorNir) ? 2 : 1;
-            } else if (item.item == Item::bytes14) {
-                extra_.emplace(item.version, std::vector(item.bytes, SymbolModel(256)),
-                               std::vector(first, first + item.bytes), channel);
-                extra_layer_ = layer;
-            }
-            first += item.bytes;
-        }
-    }
-    Layered(const Layered&) = delete;
-
-    static size_t layer_count(const Compression& compression) {
-        size_t count = 0;
-        for (const ItemLayout& item : compression.items) switch (item.item) {
-                case Item::point14:
-                    count += Point14Decoder::kLayers;
-                    break;
-                case Item::color14:
-                    count += 1;
-                    break;
-                case Item::color_nir14:
-                    count += 2;
-                    break;
-                default:
-                    count += item.bytes;
-            }
-        return count;
-    }
-
-    void decode(std::byte* to) {
-        const uint32_t channel = point_.decode(to);
-        to += Point14Decoder::kBytes;
-        if (color_) {
-            auto [models, last] = color_->at(channel);
-            Layer& color = layers_[color_layer_];
-            if (color.changes) last.color = models.color.code(color.decoder, last.color, {});
-            if (color_bytes_ == sizeof(ColorNir)) {
-                Layer& nir = layers_[color_layer_ + 1];
-                if (nir.changes) last.nir = models.nir.code(nir.decoder, last.nir, 0);
-            }
-            std::memcpy(to, &last, color_bytes_);
-            to += color_bytes_;
-        }
-        if (extra_) {
-            auto [models, last] = extra_->at(channel);
-            for (size_t i = 0; i < last.size(); ++i) {
-                Layer& layer = layers_[extra_layer_ + i];
-                if (layer.changes)
-                    last[i] = static_cast<std::byte>(static_cast<uint32_t>(last[i]) +
-                                                     layer.decoder.symbol(models[i]));
-                to[i] = last[i];
-            }
-        }
-    }
-    bool failed() const {
-        return std::any_of(layers_.begin(), layers_.end(),
-                           [](const Layer& layer) { return layer.changes && layer.decoder.failed(); });
-    }
-
-    const std::byte* end() const { return end_; }
-
- private:
-    std::vector<Layer> layers_;
-    const std::byte* end_;
-    Point14Decoder point_;
-    std::optional<Channels<ColorNirModels, ColorNir>> color_;
-    std::optional<Channels<std::vector<SymbolModel>, std::vector<std::byte>>> extra_;
-    size_t color_bytes_ = 0, color_layer_ = 0, extra_layer_ = 0;
-};
-
 auto cut_off(const std::string& file) {
     return rejected(file, "has compressed points that are cut off or damaged");
 }
+
+struct Layers {
+    std::vector<Layer<Decoder>> layers;
+    const std::byte* end = nullptr;  ///< of the chunk
+};
 
 /// The layers behind the first point: how many points the chunk has, the layers' sizes, the layers. The first
 /// layer tells of every point and is always there.
 Result<Layers> read_layers(const std::string& file, const Compression& compression, uint64_t points,
                            std::span<const std::byte> bytes) {
-    const size_t count = Layered::layer_count(compression);
+    const size_t count = Layered<Decoder>::layer_count(compression);
     const size_t sizes = sizeof(uint32_t), data = sizes + count * sizeof(uint32_t);
     if (bytes.size() < data) return cut_off(file);
     if (load<uint32_t>(bytes.data()) != points)
         return rejected(file, "has a chunk whose number of points is not that of its chunk table");
-    Layers layers{std::vector<Layer>(count), nullptr};
+    Layers layers{std::vector<Layer<Decoder>>(count), nullptr};
     std::span<const std::byte> rest = bytes.subspan(data);
     for (size_t i = 0; i < count; ++i) {
         const auto size = load<uint32_t>(bytes.data() + sizes + i * sizeof(uint32_t));
@@ -236,13 +109,14 @@ struct ChunkDecoder::State {
     const std::byte* begin = nullptr;
     std::span<const std::byte> first;  ///< the first point as it is; empty once it is given out
     std::optional<PointWise> point_wise;
-    std::optional<Layered> layered;
+    std::optional<Layered<Decoder>> layered;
+    const std::byte* layers_end = nullptr;
 
-    template <class Points>
-    Result<void> decode(Points& points, uint64_t count, std::byte* to) {
-        for (; count > 0; --count, to += record_bytes) points.decode(to);
-        if (points.failed()) return cut_off(file);
-        return {};
+    bool failed() {
+        if (point_wise) return point_wise->failed();
+        const auto layers = layered->layers();
+        return std::any_of(layers.begin(), layers.end(),
+                           [](const auto& layer) { return layer.changes && layer.coder.failed(); });
     }
 };
 
@@ -262,7 +136,8 @@ Result<ChunkDecoder> ChunkDecoder::create(const std::string& file, const Compres
     if (compression.layered) {
         LUCARNE_ASSIGN(auto layers,
                        read_layers(file, compression, points, bytes.subspan(state->record_bytes)));
-        state->layered.emplace(compression, std::move(layers), bytes.data());
+        state->layers_end = layers.end;
+        state->layered.emplace(compression, std::move(layers.layers), bytes.data());
     } else {
         state->point_wise.emplace(compression, bytes);
     }
@@ -276,12 +151,14 @@ Result<void> ChunkDecoder::decode(uint64_t count, std::byte* records) {
         records += state_->record_bytes;
         --count;
     }
-    return state_->layered ? state_->decode(*state_->layered, count, records)
-                           : state_->decode(*state_->point_wise, count, records);
+    for (; count > 0; --count, records += state_->record_bytes)
+        state_->layered ? state_->layered->code(records) : state_->point_wise->decode(records);
+    if (state_->failed()) return cut_off(state_->file);
+    return {};
 }
 
 uint64_t ChunkDecoder::consumed() const {
-    const std::byte* end = state_->layered ? state_->layered->end() : state_->point_wise->end();
+    const std::byte* end = state_->layered ? state_->layers_end : state_->point_wise->end();
     return static_cast<uint64_t>(end - state_->begin);
 }
 

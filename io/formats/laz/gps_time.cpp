@@ -1,5 +1,8 @@
 #include "io/formats/laz/gps_time.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lucarne::io::laz {
 namespace {
 
@@ -26,26 +29,22 @@ int32_t times(int32_t step, int32_t count) {  // wraps, as the format does
 
 uint64_t GpsTimeModel::decode(Decoder& decoder) {
     for (;;) {
-        Train& train = trains_[current_];
-        uint32_t skipped = 0;  // trains, plus one
-        if (train.step == 0) {
+        uint32_t skipped = 0;  // trains
+        if (trains_[current_].step == 0) {
             const uint32_t symbol = decoder.symbol(first_) + 1 - unchanged_;
-            if (symbol == 1) {
-                train.step = off_.code(decoder, 0, 0, kFirstStep);
-                train.exceptions = 0;
-                advance(train.step);
-            } else if (symbol == 2) {
-                new_train(decoder);
-            } else if (symbol > 2) {
+            if (symbol == 1)
+                first_step(decoder, 0);
+            else if (symbol == 2)
+                new_train(decoder, 0);
+            else if (symbol > 2)
                 skipped = symbol - 2;
-            }
         } else {
             const uint32_t symbol = decoder.symbol(steps_);
             const uint32_t full = kFull + unchanged_;
             if (symbol < kFull)
-                steps(decoder, symbol);
+                steps(decoder, symbol, 0);
             else if (symbol == full)
-                new_train(decoder);
+                new_train(decoder, 0);
             else if (symbol > full)
                 skipped = symbol - full;
         }
@@ -54,18 +53,69 @@ uint64_t GpsTimeModel::decode(Decoder& decoder) {
     }
 }
 
-void GpsTimeModel::new_train(Decoder& decoder) {
+void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {
+    for (;;) {
+        const int32_t step = trains_[current_].step;
+        const uint32_t ahead = trains_ahead(time);
+        SymbolModel& model = step == 0 ? first_ : steps_;
+        const uint32_t full = step == 0 ? 1 : kFull;
+        if (ahead == trains_.size()) {
+            encoder.symbol(model, full);
+            return new_train(encoder, time);
+        }
+        if (ahead == 0) {
+            const int32_t by = *step_between(trains_[current_].time, time);
+            if (step == 0) {
+                encoder.symbol(model, 0);
+                return first_step(encoder, by);
+            }
+            const auto count = static_cast<int32_t>(std::clamp(std::round(static_cast<double>(by) / step),
+                                                               -double{kMostBackward}, double{kMostSteps}));
+            const uint32_t symbol =
+                count < 0 ? kMostSteps - static_cast<uint32_t>(count) : static_cast<uint32_t>(count);
+            encoder.symbol(model, symbol);
+            return steps(encoder, symbol, by);
+        }
+        encoder.symbol(model, full + ahead);
+        current_ = (current_ + ahead) & 3;
+    }
+}
+
+std::optional<int32_t> GpsTimeModel::step_between(uint64_t from, uint64_t to) {
+    const auto by = static_cast<int64_t>(to - from);
+    if (by < INT32_MIN || by > INT32_MAX) return std::nullopt;
+    return static_cast<int32_t>(by);
+}
+
+uint32_t GpsTimeModel::trains_ahead(uint64_t time) const {
+    uint32_t ahead = 0;
+    while (ahead < trains_.size() && !step_between(trains_[(current_ + ahead) & 3].time, time)) ++ahead;
+    return ahead;
+}
+
+template <class Coder>
+void GpsTimeModel::first_step(Coder& coder, int32_t by) {
+    Train& train = trains_[current_];
+    train.step = off_.code(coder, 0, by, kFirstStep);
+    train.exceptions = 0;
+    advance(train.step);
+}
+
+template <class Coder>
+void GpsTimeModel::new_train(Coder& coder, uint64_t time) {
     newest_ = (newest_ + 1) & 3;
-    const auto upper = static_cast<uint32_t>(
-        off_.code(decoder, static_cast<int32_t>(trains_[current_].time >> 32), 0, kUpperHalf));
-    trains_[newest_] = {uint64_t{upper} << 32 | decoder.bits(32), 0, 0};
+    const auto upper =
+        static_cast<uint32_t>(off_.code(coder, static_cast<int32_t>(trains_[current_].time >> 32),
+                                        static_cast<int32_t>(time >> 32), kUpperHalf));
+    trains_[newest_] = {uint64_t{upper} << 32 | coder.bits(32, static_cast<uint32_t>(time)), 0, 0};
     current_ = newest_;
 }
 
-void GpsTimeModel::steps(Decoder& decoder, uint32_t count) {
+template <class Coder>
+void GpsTimeModel::steps(Coder& coder, uint32_t count, int32_t by) {
     Train& train = trains_[current_];
     if (count == 1) {
-        advance(off_.code(decoder, train.step, 0, kOneStep));
+        advance(off_.code(coder, train.step, by, kOneStep));
         train.exceptions = 0;
         return;
     }
@@ -81,7 +131,7 @@ void GpsTimeModel::steps(Decoder& decoder, uint32_t count) {
         whole = static_cast<int32_t>(kMostSteps) - whole;
         context = count < kMostSteps + kMostBackward ? kBack : kFarBack;
     }
-    const int32_t by = off_.code(decoder, times(train.step, whole), 0, context);
+    by = off_.code(coder, times(train.step, whole), by, context);
     if (context == kNoStep || context == kMostStepsAhead || context == kFarBack)
         if (++train.exceptions > kPatience) {
             train.step = by;

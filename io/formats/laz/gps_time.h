@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
-#include <bit>
+#include <optional>
 
 #include "io/formats/laz/decoder.h"
+#include "io/formats/laz/encoder.h"
 #include "io/formats/laz/integers.h"
 
 namespace lucarne::io::laz {
@@ -18,6 +19,8 @@ class GpsTimeModel {
 
     void start(uint64_t time) { trains_[0].time = time; }
     uint64_t decode(Decoder& decoder);
+    /// The inverse, for POINT14 alone: `time` is another than the last.
+    void encode(Encoder& encoder, uint64_t time);
 
  private:
     /// Symbols of the number of steps: 0 something else, 1 to 500 that many, 501 to 510 as many backward,
@@ -35,8 +38,16 @@ class GpsTimeModel {
         Train& train = trains_[current_];
         train.time += static_cast<uint64_t>(int64_t{by});
     }
-    void new_train(Decoder& decoder);
-    void steps(Decoder& decoder, uint32_t count);
+    /// From the time of a train to another, where that fits 32 bits.
+    static std::optional<int32_t> step_between(uint64_t from, uint64_t to);
+    /// The train that a time goes on from best: how many after the current one, 4 for a new one.
+    uint32_t trains_ahead(uint64_t time) const;
+    template <class Coder>
+    void new_train(Coder& coder, uint64_t time);
+    template <class Coder>
+    void first_step(Coder& coder, int32_t by);
+    template <class Coder>
+    void steps(Coder& coder, uint32_t count, int32_t by);
 
     uint32_t unchanged_;
     std::array<Train, 4> trains_{};

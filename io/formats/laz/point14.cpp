@@ -58,47 +58,87 @@ std::array<SymbolModel, 8> eight_models(uint32_t symbols) {
 int32_t plus(int32_t a, int32_t b) {  // wraps
     return static_cast<int32_t>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
 }
+int32_t minus(int32_t a, int32_t b) {
+    return static_cast<int32_t>(static_cast<uint32_t>(a) - static_cast<uint32_t>(b));
+}
 
 }  // namespace
 
-Point14Decoder::Channel::Channel(const Point& first) : last(first), changed(eight_models(128)) {
+template <class Coder>
+Point14Coder<Coder>::Channel::Channel(const Point& first) : last(first), changed(eight_models(128)) {
     heights.fill(first.z);
     intensities.fill(first.intensity);
     time.start(first.time);
 }
 
-Point14Decoder::Point14Decoder(const std::byte* first, std::span<Layer, kLayers> layers) : layers_(layers) {
+template <class Coder>
+Point14Coder<Coder>::Point14Coder(const std::byte* first, std::span<Layer<Coder>, kLayers> layers)
+    : layers_(layers) {
     Point point;
     std::memcpy(&point, first, kBytes);
-    current_ = point.flags >> 4 & 3;
+    current_ = point.channel();
     channels_[current_] = std::make_unique<Channel>(point);
 }
 
-uint32_t Point14Decoder::decode(std::byte* record) {
-    Decoder& decoder = layers_[kReturnsAndPlace].decoder;
+template <class Coder>
+Layer<Coder>* Point14Coder<Coder>::layer(size_t index, bool changes) {
+    Layer<Coder>& layer = layers_[index];
+    if constexpr (Coder::kEncodes) layer.changes |= changes;
+    return Coder::kEncodes || layer.changes ? &layer : nullptr;
+}
+
+template <class Coder>
+uint32_t Point14Coder<Coder>::changes(const Point& next) const {
+    const uint32_t channel = next.channel();
+    const Point& last = channels_[channels_[channel] ? channel : current_]->last;
+    const uint32_t up = (next.number() - last.number()) & 15;
+    return (up == 0    ? 0u
+            : up == 1  ? 1u
+            : up == 15 ? 2u
+                       : kNumber) |
+           (next.count() != last.count() ? kCount : 0u) |
+           (next.scan_angle != last.scan_angle ? kAngleChanges : 0u) |
+           (next.time != last.time ? kTimeChanges : 0u) |
+           (next.point_source != last.point_source ? kSourceChanges : 0u) |
+           (channel != current_ ? kChannelChanges : 0u);
+}
+
+template <class Coder>
+uint32_t Point14Coder<Coder>::code(std::byte* record) {
+    Point next{};
+    uint32_t changed = 0;
+    if constexpr (Coder::kEncodes) {
+        std::memcpy(&next, record, kBytes);
+        changed = changes(next);
+    }
+    Layer<Coder>& layer = layers_[kReturnsAndPlace];
+    layer.changes = true;
     Channel* channel = channels_[current_].get();
     const uint32_t before = first_or_last(channel->last.number(), channel->last.count());
-    const uint32_t changed = decoder.symbol(channel->changed[before + (channel->time_changed ? 4 : 0)]);
+    changed = layer.coder.symbol(channel->changed[before + (channel->time_changed ? 4 : 0)], changed);
     if (changed & kChannelChanges) {
-        const uint32_t next = (current_ + decoder.symbol(channel->other_channel) + 1) % kChannels;
-        if (!channels_[next]) channels_[next] = std::make_unique<Channel>(channel->last);
-        channel = channels_[next].get();
-        current_ = next;
-        channel->last.flags = static_cast<uint8_t>((channel->last.flags & ~0x30u) | next << 4);
+        const uint32_t ahead = (next.channel() - current_ - 1) % kChannels;
+        const uint32_t other = (current_ + layer.coder.symbol(channel->other_channel, ahead) + 1) % kChannels;
+        if (!channels_[other]) channels_[other] = std::make_unique<Channel>(channel->last);
+        channel = channels_[other].get();
+        current_ = other;
+        channel->last.flags = static_cast<uint8_t>((channel->last.flags & ~0x30u) | other << 4);
     }
     const bool time_changes = changed & kTimeChanges;
-    decode_returns(*channel, changed, time_changes);
-    decode_place(*channel, time_changes);
-    decode_rest(*channel, changed, time_changes);
+    code_returns(*channel, next, changed, time_changes);
+    code_place(*channel, next, time_changes);
+    code_rest(*channel, next, changed, time_changes);
     channel->time_changed = time_changes;
-    std::memcpy(record, &channel->last, kBytes);
+    if constexpr (!Coder::kEncodes) std::memcpy(record, &channel->last, kBytes);
     return current_;
 }
 
-void Point14Decoder::decode_returns(Channel& channel, uint32_t changed, bool time_changes) {
-    Decoder& decoder = layers_[kReturnsAndPlace].decoder;
+template <class Coder>
+void Point14Coder<Coder>::code_returns(Channel& channel, const Point& next, uint32_t changed,
+                                       bool time_changes) {
+    Coder& coder = layers_[kReturnsAndPlace].coder;
     uint32_t count = channel.last.count(), number = channel.last.number();
-    if (changed & kCount) count = decoder.symbol(channel.count[count]);
+    if (changed & kCount) count = coder.symbol(channel.count[count], next.count());
     switch (changed & kNumber) {
         case 0:
             break;
@@ -109,60 +149,86 @@ void Point14Decoder::decode_returns(Channel& channel, uint32_t changed, bool tim
             number = (number + 15) & 15;
             break;
         default:
-            number = time_changes ? decoder.symbol(channel.number[number])
-                                  : (number + 2 + decoder.symbol(channel.number_at_same_time)) & 15;
+            number = time_changes
+                         ? coder.symbol(channel.number[number], next.number())
+                         : (number + 2 +
+                            coder.symbol(channel.number_at_same_time, (next.number() - number - 2) & 15)) &
+                               15;
     }
     channel.last.returns = static_cast<uint8_t>(number | count << 4);
 }
 
-void Point14Decoder::decode_place(Channel& channel, bool time_changes) {
-    Decoder& decoder = layers_[kReturnsAndPlace].decoder;
+template <class Coder>
+void Point14Coder<Coder>::code_place(Channel& channel, const Point& next, bool time_changes) {
+    Coder& coder = layers_[kReturnsAndPlace].coder;
     Point& last = channel.last;
     const uint32_t count = last.count(), number = last.number();
     const uint32_t single = count == 1;
     const size_t context = kReturnContext[count][number] * size_t{2} + (time_changes ? 1 : 0);
-    const int32_t x_step = channel.dx.code(decoder, channel.x_steps[context].get(), 0, single);
+    const int32_t x_step =
+        channel.dx.code(coder, channel.x_steps[context].get(), minus(next.x, last.x), single);
     channel.x_steps[context].add(x_step);
-    const int32_t y_step =
-        channel.dy.code(decoder, channel.y_steps[context].get(), 0, single + even_up_to(channel.dx.k(), 20));
+    const int32_t y_step = channel.dy.code(coder, channel.y_steps[context].get(), minus(next.y, last.y),
+                                           single + even_up_to(channel.dx.k(), 20));
     channel.y_steps[context].add(y_step);
     last.x = plus(last.x, x_step);
     last.y = plus(last.y, y_step);
-    if (layers_[kHeight].changes) {
+    if (auto* heights = layer(kHeight, next.z != last.z)) {
         const auto level = std::min<uint32_t>(count > number ? count - number : number - count, 7);
         const uint32_t k = (channel.dx.k() + channel.dy.k()) / 2;
         last.z = channel.heights[level] =
-            channel.z.code(layers_[kHeight].decoder, channel.heights[level], 0, single + even_up_to(k, 18));
+            channel.z.code(heights->coder, channel.heights[level], next.z, single + even_up_to(k, 18));
     }
 }
 
-void Point14Decoder::decode_rest(Channel& channel, uint32_t changed, bool time_changes) {
+template <class Coder>
+void Point14Coder<Coder>::code_class_and_flags(Channel& channel, const Point& next, uint32_t place) {
     Point& last = channel.last;
-    const uint32_t place = first_or_last(last.number(), last.count());
-    if (Layer& layer = layers_[kClassification]; layer.changes) {
+    if (auto* classes = layer(kClassification, next.classification != last.classification)) {
         const size_t context = (last.classification & 31u) * 2u + (place == 3 ? 1u : 0u);
-        last.classification = static_cast<uint8_t>(layer.decoder.symbol(channel.classification[context]));
+        last.classification =
+            static_cast<uint8_t>(classes->coder.symbol(channel.classification[context], next.classification));
     }
-    if (Layer& layer = layers_[kFlags]; layer.changes) {
+    if (auto* layer_of_flags = layer(kFlags, next.other_flags() != last.other_flags())) {
         const uint32_t flags =
-            layer.decoder.symbol(channel.flags[(last.flags & 15u) | (last.flags >> 6) << 4]);
+            layer_of_flags->coder.symbol(channel.flags[last.other_flags()], next.other_flags());
         last.flags = static_cast<uint8_t>((last.flags & 0x30u) | (flags & 15u) | (flags >> 4) << 6);
     }
-    if (Layer& layer = layers_[kIntensity]; layer.changes) {
-        uint16_t& expected = channel.intensities[place * 2 + (time_changes ? 1 : 0)];
-        last.intensity = expected =
-            static_cast<uint16_t>(channel.intensity.code(layer.decoder, expected, 0, place));
-    }
-    if (Layer& layer = layers_[kScanAngle]; layer.changes && (changed & kAngleChanges))
-        last.scan_angle = static_cast<int16_t>(
-            channel.scan_angle.code(layer.decoder, last.scan_angle, 0, time_changes ? 1 : 0));
-    if (Layer& layer = layers_[kUserData]; layer.changes)
-        last.user_data = static_cast<uint8_t>(layer.decoder.symbol(channel.user_data[last.user_data / 4]));
-    if (Layer& layer = layers_[kPointSource]; layer.changes && (changed & kSourceChanges))
-        last.point_source =
-            static_cast<uint16_t>(channel.point_source.code(layer.decoder, last.point_source, 0));
-    if (Layer& layer = layers_[kTime]; layer.changes && time_changes)
-        last.time = channel.time.decode(layer.decoder);
 }
+
+template <class Coder>
+void Point14Coder<Coder>::code_rest(Channel& channel, const Point& next, uint32_t changed,
+                                    bool time_changes) {
+    Point& last = channel.last;
+    const uint32_t place = first_or_last(last.number(), last.count());
+    code_class_and_flags(channel, next, place);
+    if (auto* intensities = layer(kIntensity, next.intensity != last.intensity)) {
+        uint16_t& expected = channel.intensities[place * 2 + (time_changes ? 1 : 0)];
+        last.intensity = expected = static_cast<uint16_t>(
+            channel.intensity.code(intensities->coder, expected, next.intensity, place));
+    }
+    if (changed & kAngleChanges)
+        if (auto* angles = layer(kScanAngle, true))
+            last.scan_angle = static_cast<int16_t>(
+                channel.scan_angle.code(angles->coder, static_cast<uint16_t>(last.scan_angle),
+                                        static_cast<uint16_t>(next.scan_angle), time_changes ? 1 : 0));
+    if (auto* users = layer(kUserData, next.user_data != last.user_data))
+        last.user_data =
+            static_cast<uint8_t>(users->coder.symbol(channel.user_data[last.user_data / 4], next.user_data));
+    if (changed & kSourceChanges)
+        if (auto* sources = layer(kPointSource, true))
+            last.point_source = static_cast<uint16_t>(
+                channel.point_source.code(sources->coder, last.point_source, next.point_source));
+    if (time_changes)
+        if (auto* times = layer(kTime, true)) {
+            if constexpr (Coder::kEncodes)
+                channel.time.encode(times->coder, last.time = next.time);
+            else
+                last.time = channel.time.decode(times->coder);
+        }
+}
+
+template class Point14Coder<Decoder>;
+template class Point14Coder<Encoder>;
 
 }  // namespace lucarne::io::laz

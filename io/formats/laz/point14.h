@@ -11,22 +11,25 @@ namespace lucarne::io::laz {
 
 inline constexpr size_t kChannels = 4;
 
-/// A part of the points coded on its own; one that is empty says that nothing changes in the chunk.
+/// A part of the points coded on its own; one that is left out says that nothing changes in the chunk.
+template <class Coder>
 struct Layer {
-    Decoder decoder;
+    Coder coder;
     bool changes = false;
 };
 
 /// The 30 bytes that point formats 6 to 8 share, in nine layers, with models for each scanner channel (LASzip
-/// item POINT14, versions 3 and 4).
-class Point14Decoder {
+/// item POINT14, versions 3 and 4). One and the same for both ways: a decoder gives what an encoder is given.
+template <class Coder>
+class Point14Coder {
  public:
     static constexpr size_t kBytes = 30;
     static constexpr size_t kLayers = 9;
 
-    Point14Decoder(const std::byte* first, std::span<Layer, kLayers> layers);
-    /// Returns the scanner channel of the point: the other items' models follow it.
-    uint32_t decode(std::byte* record);
+    Point14Coder(const std::byte* first, std::span<Layer<Coder>, kLayers> layers);
+    /// The next record, read or written. Returns the scanner channel of the point: the other items' models
+    /// follow it.
+    uint32_t code(std::byte* record);
 
  private:
 #pragma pack(push, 1)
@@ -42,6 +45,8 @@ class Point14Decoder {
 
         uint32_t number() const { return returns & 15u; }
         uint32_t count() const { return returns >> 4; }
+        uint32_t channel() const { return flags >> 4 & 3u; }
+        uint32_t other_flags() const { return (flags & 15u) | (flags >> 6) << 4; }
     };
 #pragma pack(pop)
     static_assert(sizeof(Point) == kBytes);
@@ -62,13 +67,20 @@ class Point14Decoder {
         std::array<uint16_t, 8> intensities;
         GpsTimeModel time{false};
     };
-    void decode_returns(Channel& channel, uint32_t changed, bool time_changes);
-    void decode_place(Channel& channel, bool time_changes);
-    void decode_rest(Channel& channel, uint32_t changed, bool time_changes);
+    uint32_t changes(const Point& next) const;
+    void code_returns(Channel& channel, const Point& next, uint32_t changed, bool time_changes);
+    void code_place(Channel& channel, const Point& next, bool time_changes);
+    void code_class_and_flags(Channel& channel, const Point& next, uint32_t place);
+    void code_rest(Channel& channel, const Point& next, uint32_t changed, bool time_changes);
+    /// The layer, where it is coded: always into an encoder, which notes whether anything changes.
+    Layer<Coder>* layer(size_t index, bool changes);
 
-    std::span<Layer, kLayers> layers_;
+    std::span<Layer<Coder>, kLayers> layers_;
     std::array<std::unique_ptr<Channel>, kChannels> channels_;
     uint32_t current_;
 };
+
+extern template class Point14Coder<Decoder>;
+extern template class Point14Coder<Encoder>;
 
 }  // namespace lucarne::io::laz

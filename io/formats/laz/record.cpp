@@ -12,6 +12,8 @@ auto refused(const std::string& file, const std::string& why) {
     return rejected(file, why, "recompress it with LASzip 3, or decompress it to LAS");
 }
 
+}  // namespace
+
 std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version) {
     const uint8_t format = header.point_format;
     const auto extra = static_cast<uint16_t>(header.record_length - las::record_bytes(format));
@@ -29,8 +31,6 @@ std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version) {
     }
     return items;
 }
-
-}  // namespace
 
 Result<Compression> read_compression(const std::string& file, const las::Header& header) {
     const las::Vlr* record = header.find(kUser, kRecord);

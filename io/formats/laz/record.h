@@ -37,6 +37,9 @@ struct Compression {
     std::vector<ItemLayout> items;
 };
 
+/// The items of the header's point format and extra bytes.
+std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version);
+
 /// What the record says, checked against the point format and the length of the records. Errors: no such
 /// record, another coder, a compressor or an item that is not read (its name is in the reason), items that
 /// are not the point format's.
