@@ -104,7 +104,7 @@ Result<void> CacheFile::read_directory() {
                           .area_floor = entry.area_floor});
         payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec});
     }
-    columns_ = codec::columns_of(header_.schema);
+    decoders_ = std::make_unique<codec::DecoderPool>(header_.schema);
     return {};
 }
 
@@ -167,8 +167,7 @@ Result<NodeData> CacheFile::load(uint32_t node) const {
                                             fmt::format("node {}", node), raw ? 0 : codec::kReadAhead));
     if (raw) return NodeData{info.count, std::move(bytes)};
     NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * header_.schema.stride)};
-    codec::PayloadDecoder decoder(columns_, header_.schema.stride);
-    if (!decoder.decode(std::span(bytes).first(info.payload_bytes), data.records))
+    if (!decoders_->decode(std::span(bytes).first(info.payload_bytes), data.records))
         return damaged(file_, fmt::format("the points of node {} do not decode", node));
     return data;
 }

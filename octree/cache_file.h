@@ -9,7 +9,7 @@
 
 #include "io/core/file.h"
 #include "octree/cache_format.h"
-#include "octree/codec/payload.h"
+#include "octree/codec/decoder_pool.h"
 #include "octree/metadata.h"
 
 namespace lucarne::octree {
@@ -46,7 +46,7 @@ class CacheFile final : public NodeSource {
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
     std::vector<Payload> payloads_;
-    std::vector<codec::Column> columns_;
+    std::unique_ptr<codec::DecoderPool> decoders_;
 };
 
 }  // namespace lucarne::octree

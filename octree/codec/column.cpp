@@ -166,12 +166,10 @@ bool ColumnDecoder::decode(const ColumnHead& head, std::span<const std::byte> bo
     }
     if (head.method == Method::packed) {
         BitReader bits(body.data());
-        for (auto& v : values) v = bits.take(head.width);
-    } else if (!decode_tokens(head, body, values)) {
-        return false;
+        for (auto& v : values) v = head.base + head.step * bits.take(head.width);
+        return true;
     }
-    for (auto& v : values) v = head.base + head.step * v;
-    return true;
+    return decode_tokens(head, body, values);
 }
 
 bool ColumnDecoder::decode_tokens(const ColumnHead& head, std::span<const std::byte> body,
@@ -188,15 +186,17 @@ bool ColumnDecoder::decode_tokens(const ColumnHead& head, std::span<const std::b
     if ((needed + 7) / 8 != head.extra_bytes) return false;
     BitReader bits(body.data() + head.plane_bytes);
     if (head.method == Method::differences) {
-        uint64_t before = 0;
+        uint64_t value = head.base;
         for (size_t i = 0; i < count; ++i) {
             const uint8_t token = tokens_[i];
-            before += unfold_sign(kTokens.base[token] + bits.take(kTokens.bits[token]));
-            values[i] = before;
+            value += head.step * unfold_sign(kTokens.base[token] + bits.take(kTokens.bits[token]));
+            values[i] = value;
         }
     } else {
-        for (size_t i = 0; i < count; ++i)
-            values[i] = kTokens.base[tokens_[i]] + bits.take(kTokens.bits[tokens_[i]]);
+        for (size_t i = 0; i < count; ++i) {
+            const uint8_t token = tokens_[i];
+            values[i] = head.base + head.step * (kTokens.base[token] + bits.take(kTokens.bits[token]));
+        }
     }
     return true;
 }

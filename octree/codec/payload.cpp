@@ -48,13 +48,13 @@ bool PayloadDecoder::decode(std::span<const std::byte> payload, std::span<std::b
 
     const uint64_t pass_bytes = heads[0].body_bytes(count);
     if (!decoder_.decode(heads[0], payload.first(pass_bytes), count, values_)) return false;
-    std::vector<uint8_t> passes(count);
+    passes_.resize(count);
     for (size_t i = 0; i < count; ++i) {
         if (values_[i] > kLastPass) return false;
-        passes[i] = static_cast<uint8_t>(values_[i]);
+        passes_[i] = static_cast<uint8_t>(values_[i]);
     }
     order_.clear();
-    append_prefix_order(passes, 0, order_);
+    append_prefix_order(passes_, 0, order_);
     curve_.resize(records.size());
     if (!decode_columns(payload.subspan(pass_bytes), std::span(heads).subspan(1))) return false;
     std::byte* to = records.data();

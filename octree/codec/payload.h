@@ -48,6 +48,7 @@ class PayloadDecoder {
     ColumnDecoder decoder_;
     std::vector<uint64_t> values_;
     std::vector<std::byte> curve_;  ///< the records along the curve
+    std::vector<uint8_t> passes_;
     std::vector<uint32_t> order_;
 };
 
