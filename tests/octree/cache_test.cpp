@@ -69,6 +69,21 @@ class Cache : public testing::Test {
         bytes.replace(at, to.size(), to);
         return resealed(bytes, block_);
     }
+    /// The file with these records of a node as codec 0 behind its end.
+    std::string with_raw_node(size_t node, const std::vector<std::byte>& records) const {
+        std::string bytes =
+            bytes_ + std::string(reinterpret_cast<const char*>(records.data()), records.size());
+        auto* at = reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset + node * kEntryBytes;
+        format::Entry entry = format::load_entry(at);
+        entry.codec = format::kCodecRaw;
+        entry.payload_offset = bytes_.size();
+        entry.payload_bytes = static_cast<uint32_t>(records.size());
+        entry.checksum = format::checksum(records);
+        format::store_entry(entry, at);
+        format::Superblock block = block_;
+        block.file_bytes = bytes.size();
+        return resealed(bytes, block);
+    }
     static std::string resealed(std::string bytes, format::Superblock block) {
         const auto all = std::as_bytes(std::span(bytes));
         block.directory_checksum =
@@ -222,26 +237,52 @@ TEST_F(Cache, VerifyFindsPointsOutsideTheirCube) {
     for (size_t i = 0; i < nodes(); ++i)
         if ((*cache)->nodes()[i].child_mask == 0) leaves.push_back(i);
     ASSERT_FALSE(leaves.empty());
-    // The node's points as codec 0 behind the end.
     NodeData data = (*cache)->load(static_cast<uint32_t>(leaves[0])).value();
     io::store(data.records.data(), io::load<float>(data.records.data()) < 5 ? 9.0f : 1.0f);
-    std::string bytes =
-        bytes_ + std::string(reinterpret_cast<const char*>(data.records.data()), data.records.size());
-    auto* entry_at =
-        reinterpret_cast<std::byte*>(bytes.data()) + block_.directory_offset + leaves[0] * kEntryBytes;
-    format::Entry a = format::load_entry(entry_at);
-    a.codec = format::kCodecRaw;
-    a.payload_offset = bytes_.size();
-    a.payload_bytes = static_cast<uint32_t>(data.records.size());
-    a.checksum = format::checksum(data.records);
-    format::store_entry(a, entry_at);
-    block_.file_bytes = bytes.size();
-    const auto name = write(resealed(bytes, block_));
+    const auto name = write(with_raw_node(leaves[0], data.records));
     EXPECT_TRUE(open_cache(name));
     const auto verified = verify_cache(name, [](uint64_t) {});
     ASSERT_FALSE(verified);
     EXPECT_NE(verified.error().line().find("lies outside its cube"), std::string::npos)
         << verified.error().line();
+}
+
+TEST_F(Cache, NodesMayBeCompressedOrRaw) {
+    const auto cache = CacheFile::open(path()).value();
+    uint64_t stored = 0;
+    for (const auto& node : cache->nodes()) stored += node.payload_bytes;
+    EXPECT_LT(stored, 60'000u * 15 * 2 / 3) << "compressed";
+    const NodeData data = cache->load(2).value();
+    const auto name = write(with_raw_node(2, data.records));
+    EXPECT_TRUE(verify_cache(name, [](uint64_t) {}));
+    EXPECT_EQ(CacheFile::open(name).value()->load(2).value().records, data.records);
+}
+
+TEST_F(Cache, CompressedPayloadsThatLieAreRefusedOrHarmless) {
+    size_t refused = 0;
+    for (uint64_t seed = 0; seed < 200; ++seed) {
+        Random random(3, seed);
+        const size_t node = random.next() % nodes();
+        std::string bytes = bytes_;
+        auto* at = reinterpret_cast<std::byte*>(bytes.data());
+        auto* entry_at = at + block_.directory_offset + node * kEntryBytes;
+        format::Entry entry = format::load_entry(entry_at);
+        if (entry.payload_bytes == 0) continue;
+        const size_t most = seed % 2 ? entry.payload_bytes : std::min(entry.payload_bytes, 64u);  // the heads
+        at[entry.payload_offset + random.next() % most] ^= static_cast<std::byte>(1 + random.next() % 255);
+        entry.checksum = format::checksum({at + entry.payload_offset, entry.payload_bytes});
+        format::store_entry(entry, entry_at);
+        const auto opened = open_cache(write(resealed(bytes, block_)));
+        ASSERT_TRUE(opened);
+        const auto loaded = (*opened)->load(static_cast<uint32_t>(node));
+        if (loaded) {
+            EXPECT_EQ(loaded->records.size(), size_t{entry.count} * 15);
+        } else {
+            EXPECT_NE(loaded.error().line().find("do not decode"), std::string::npos);
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 20u);
 }
 
 TEST_F(Cache, IsToldFromOtherFilesByItsContent) {
