@@ -102,9 +102,17 @@ Result<void> CacheFile::read_directory() {
                           .subtree_count = entry.subtree_count,
                           .payload_bytes = entry.payload_bytes,
                           .area_floor = entry.area_floor});
-        payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec});
+        if (entry.layout > header_.layouts.size())
+            return damaged(file_, fmt::format("node {} has the unknown layout {}", i, entry.layout));
+        payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec, entry.layout});
     }
-    decoders_ = std::make_unique<codec::DecoderPool>(header_.schema);
+    layouts_.push_back({header_.schema.stride, std::make_unique<codec::DecoderPool>(header_.schema), {}});
+    for (const auto& layout : header_.layouts) {
+        if (!RecordMap::fits(layout, header_.schema))
+            return damaged(file_, "it has a layout whose records its schema cannot hold");
+        layouts_.push_back(
+            {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header_.schema)});
+    }
     return {};
 }
 
@@ -145,7 +153,7 @@ Result<void> CacheFile::check_payloads() {
     ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
     for (size_t i = 0; i < nodes_.size(); ++i) {
         const uint64_t bytes = nodes_[i].payload_bytes;
-        const uint64_t records = uint64_t{nodes_[i].count} * header_.schema.stride;
+        const uint64_t records = uint64_t{nodes_[i].count} * layouts_[payloads_[i].layout].stride;
         const bool fits = payloads_[i].codec == format::kCodecRaw
                               ? bytes == records
                               : bytes < records && records <= codec::kMostRecordBytes;
@@ -165,11 +173,34 @@ Result<NodeData> CacheFile::load(uint32_t node) const {
     const bool raw = payload.codec == format::kCodecRaw;
     LUCARNE_ASSIGN(auto bytes, read_checked(file_, payload.offset, info.payload_bytes, payload.checksum,
                                             fmt::format("node {}", node), raw ? 0 : codec::kReadAhead));
-    if (raw) return NodeData{info.count, std::move(bytes)};
-    NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * header_.schema.stride)};
-    if (!decoders_->decode(std::span(bytes).first(info.payload_bytes), data.records))
-        return damaged(file_, fmt::format("the points of node {} do not decode", node));
-    return data;
+    const Layout& layout = layouts_[payload.layout];
+    NodeData data{info.count, {}};
+    if (raw) {
+        data.records = std::move(bytes);
+    } else {
+        data.records.resize(size_t{info.count} * layout.stride);
+        if (!layout.decoders->decode(std::span(bytes).first(info.payload_bytes), data.records))
+            return damaged(file_, fmt::format("the points of node {} do not decode", node));
+    }
+    if (!layout.to_schema) return data;
+    NodeData converted{info.count, {}};
+    layout.to_schema->convert(data.records.data(), data.count, converted.records);
+    return converted;
+}
+
+Entry CacheFile::entry(uint32_t node) const {
+    const NodeInfo& info = nodes_[node];
+    const Payload& payload = payloads_[node];
+    return {.key = info.key,
+            .child_mask = info.child_mask,
+            .codec = payload.codec,
+            .layout = payload.layout,
+            .count = info.count,
+            .payload_bytes = info.payload_bytes,
+            .payload_offset = payload.offset,
+            .subtree_count = info.subtree_count,
+            .checksum = payload.checksum,
+            .area_floor = info.area_floor};
 }
 
 bool is_cache(const std::filesystem::path& path) {

@@ -11,6 +11,7 @@
 #include "octree/cache_format.h"
 #include "octree/codec/decoder_pool.h"
 #include "octree/metadata.h"
+#include "octree/record_map.h"
 
 namespace lucarne::octree {
 
@@ -27,13 +28,15 @@ class CacheFile final : public NodeSource {
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t node) const override;
 
+    /// A node's directory entry.
+    format::Entry entry(uint32_t node) const;
     const InputFile& file() const { return file_; }
     const format::Superblock& superblock() const { return block_; }
 
  private:
     struct Payload {
         uint64_t offset = 0, checksum = 0;
-        uint8_t codec = format::kCodecRaw;
+        uint8_t codec = format::kCodecRaw, layout = 0;
     };
 
     CacheFile(InputFile file, const format::Superblock& block) : file_(std::move(file)), block_(block) {}
@@ -46,7 +49,13 @@ class CacheFile final : public NodeSource {
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
     std::vector<Payload> payloads_;
-    std::unique_ptr<codec::DecoderPool> decoders_;
+    /// A schema in which payloads are stored.
+    struct Layout {
+        uint32_t stride = 0;
+        std::unique_ptr<codec::DecoderPool> decoders;
+        std::optional<RecordMap> to_schema;  ///< empty for the cache's own
+    };
+    std::vector<Layout> layouts_;
 };
 
 }  // namespace lucarne::octree

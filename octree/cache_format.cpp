@@ -52,7 +52,7 @@ void store_entry(const Entry& entry, std::byte* at) {
     store(at + 44, static_cast<uint8_t>(entry.key.level));
     store(at + 45, entry.child_mask);
     store(at + 46, entry.codec);
-    store(at + 47, uint8_t{0});
+    store(at + 47, entry.layout);
     store(at + 48, entry.area_floor);
 }
 
@@ -67,6 +67,7 @@ Entry load_entry(const std::byte* at) {
     entry.payload_bytes = load<uint32_t>(at + 40);
     entry.child_mask = load<uint8_t>(at + 45);
     entry.codec = load<uint8_t>(at + 46);
+    entry.layout = load<uint8_t>(at + 47);
     entry.area_floor = load<std::array<float, kPrefixSteps>>(at + 48);
     return entry;
 }

@@ -45,6 +45,7 @@ struct Entry {
     NodeKey key;
     uint8_t child_mask = 0;
     uint8_t codec = kCodecRaw;
+    uint8_t layout = 0;  ///< 0: stored in the cache's schema; i: in that of layouts[i - 1]
     uint32_t count = 0;
     uint32_t payload_bytes = 0;
     uint64_t payload_offset = 0;

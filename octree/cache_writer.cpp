@@ -22,14 +22,36 @@ Result<CacheWriter> CacheWriter::create(const std::filesystem::path& path, bool 
                                         const std::filesystem::path& temp_folder) {
     LUCARNE_ASSIGN(OutputFile output, OutputFile::create(path, overwrite));
     LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
+    CacheWriter writer(std::move(entries));
+    writer.output_ = std::move(output);
     // Room for the superblocks: zeros until finish, so that an unfinished file is no cache.
-    LUCARNE_TRY(output.append(std::vector<std::byte>(format::kFirstPayload)));
-    return CacheWriter(std::move(output), std::move(entries));
+    LUCARNE_TRY(writer.append(std::vector<std::byte>(format::kFirstPayload)));
+    return writer;
+}
+
+Result<CacheWriter> CacheWriter::update(UpdateFile file, const format::Superblock& before, size_t newest,
+                                        const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
+    CacheWriter writer(std::move(entries));
+    LUCARNE_TRY(file.truncate(before.file_bytes));
+    writer.update_ = std::move(file);
+    writer.next_block_ = 1 - newest;
+    writer.generation_ = before.generation + 1;
+    writer.begin_ = writer.end_ = before.file_bytes;
+    return writer;
+}
+
+Result<void> CacheWriter::write_at(uint64_t offset, std::span<const std::byte> data) {
+    return output_ ? output_->write_at(offset, data) : update_->write_at(offset, data);
+}
+Result<void> CacheWriter::read_at(uint64_t offset, std::span<std::byte> out) const {
+    return output_ ? output_->read_at(offset, out) : update_->read_at(offset, out);
 }
 
 Result<uint64_t> CacheWriter::append(std::span<const std::byte> payload) {
-    const uint64_t at = output_.position();
-    LUCARNE_TRY(output_.append(payload));
+    const uint64_t at = end_;
+    LUCARNE_TRY(write_at(at, payload));
+    end_ += payload.size();
     return at;
 }
 
@@ -52,13 +74,13 @@ Result<void> CacheWriter::flush_entries() {
 /// Deals the entries out to their levels' places at the end of the file; returns the directory's checksum.
 Result<uint64_t> CacheWriter::write_directory() {
     LUCARNE_TRY(flush_entries());
-    const uint64_t begin = output_.position(), bytes = nodes_ * kEntryBytes;
+    const uint64_t begin = end_, bytes = nodes_ * kEntryBytes;
     std::array<uint64_t, kMostLevel + 1> cursor{begin};
     for (uint32_t level = 1; level <= kMostLevel; ++level)
         cursor[level] = cursor[level - 1] + per_level_[level - 1] * kEntryBytes;
     std::array<std::vector<std::byte>, kMostLevel + 1> waiting;
     const auto flush = [&](uint32_t level) -> Result<void> {
-        LUCARNE_TRY(output_.write_at(cursor[level], waiting[level]));
+        LUCARNE_TRY(write_at(cursor[level], waiting[level]));
         cursor[level] += waiting[level].size();
         waiting[level].clear();
         return {};
@@ -79,7 +101,7 @@ Result<uint64_t> CacheWriter::write_directory() {
     XXH3_64bits_reset(state.get());
     for (uint64_t at = 0; at < bytes; at += block.size()) {
         const std::span part(block.data(), std::min<uint64_t>(block.size(), bytes - at));
-        LUCARNE_TRY(output_.read_at(begin + at, part));
+        LUCARNE_TRY(read_at(begin + at, part));
         XXH3_64bits_update(state.get(), part.data(), part.size());
     }
     return XXH3_64bits_digest(state.get());
@@ -87,22 +109,38 @@ Result<uint64_t> CacheWriter::write_directory() {
 
 Result<void> CacheWriter::finish(const SourceHeader& header) {
     format::Superblock block;
-    block.generation = 1;
+    block.generation = generation_;
     const std::string metadata = metadata_text(header);
     if (metadata.size() > format::kMaxMetadata)
         return failed("metadata", fmt::format("{} bytes are more than a cache holds", metadata.size()));
-    block.metadata_offset = output_.position();
+    const auto text = std::as_bytes(std::span(metadata));
     block.metadata_bytes = metadata.size();
-    block.metadata_checksum = format::checksum(std::as_bytes(std::span(metadata)));
-    LUCARNE_TRY(output_.append(metadata));
-    block.directory_offset = output_.position();
+    block.metadata_checksum = format::checksum(text);
+    LUCARNE_ASSIGN(block.metadata_offset, append(text));
+    block.directory_offset = end_;
     block.directory_bytes = nodes_ * kEntryBytes;
     LUCARNE_ASSIGN(block.directory_checksum, write_directory());
-    block.file_bytes = block.directory_offset + block.directory_bytes;
+    end_ = block.file_bytes = block.directory_offset + block.directory_bytes;
+    return commit(block);
+}
+
+void CacheWriter::abandon() {
+    if (update_ && !switching_) (void)update_->truncate(begin_);  // what stays there does no harm
+}
+
+/// A fresh cache gets its name, and both superblocks; an update overwrites the older one when all that it
+/// speaks of is on the disk.
+Result<void> CacheWriter::commit(format::Superblock block) {
     const auto bytes = format::encode(block);
-    LUCARNE_TRY(output_.write_at(0, bytes));
-    LUCARNE_TRY(output_.write_at(format::kSuperblockBytes, bytes));
-    return output_.commit();
+    if (output_) {
+        LUCARNE_TRY(output_->write_at(0, bytes));
+        LUCARNE_TRY(output_->write_at(format::kSuperblockBytes, bytes));
+        return output_->commit();
+    }
+    LUCARNE_TRY(update_->sync());
+    switching_ = true;
+    LUCARNE_TRY(update_->write_at(next_block_ * format::kSuperblockBytes, bytes));
+    return update_->sync();
 }
 
 }  // namespace lucarne::octree

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "io/core/file.h"
+#include "io/core/update_file.h"
 #include "octree/cache_format.h"
 
 namespace lucarne::octree {
@@ -16,23 +18,37 @@ class CacheWriter {
  public:
     static Result<CacheWriter> create(const std::filesystem::path& path, bool overwrite,
                                       const std::filesystem::path& temp_folder);
+    /// Writes a new state behind that of an existing cache, whose superblock number `newest` is `before`;
+    /// what an interrupted update left there is cut off. Until `finish` switches, and whatever happens before
+    /// it, the file shows the old state.
+    static Result<CacheWriter> update(UpdateFile file, const format::Superblock& before, size_t newest,
+                                      const std::filesystem::path& temp_folder);
 
     /// Appends payload bytes and returns where they begin.
     Result<uint64_t> append(std::span<const std::byte> payload);
     Result<void> add(const format::Entry& entry);
     /// Writes directory, metadata and superblocks, syncs, and gives the file its name.
     Result<void> finish(const SourceHeader& header);
+    /// An update that failed: cuts off what it wrote, unless the switch may have happened.
+    void abandon();
 
     uint64_t nodes() const { return nodes_; }
-    uint64_t bytes() const { return output_.position(); }
+    uint64_t bytes() const { return end_; }
 
  private:
-    CacheWriter(OutputFile output, ScratchFile entries)
-        : output_(std::move(output)), entries_(std::move(entries)) {}
+    explicit CacheWriter(ScratchFile entries) : entries_(std::move(entries)) {}
+    Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
+    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
+    Result<void> commit(format::Superblock block);
     Result<void> flush_entries();
     Result<uint64_t> write_directory();
 
-    OutputFile output_;
+    std::optional<OutputFile> output_;  ///< a fresh cache...
+    std::optional<UpdateFile> update_;  ///< ...or one that grows
+    size_t next_block_ = 0;             ///< of the superblocks, the one to be written by an update
+    uint64_t generation_ = 1, begin_ = 0;
+    bool switching_ = false;
+    uint64_t end_ = 0;     ///< of what was appended
     ScratchFile entries_;  ///< the nodes as they came
     uint64_t nodes_ = 0, entries_written_ = 0;
     std::array<uint64_t, kMostLevel + 1> per_level_{};

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 
@@ -80,6 +82,15 @@ struct Place {
 struct Cube {
     glm::dvec3 min{0.0};
     double size = 1.0;
+    /// Appending may have doubled the cube, so many times, around a first one, which is now the cell
+    /// `first_cell` of that level. Places still count in the first one's lattice, so that rounding moves no
+    /// point out of the node it is in.
+    uint32_t doublings = 0;
+    glm::dvec3 first_min{0.0};
+    std::array<uint32_t, 3> first_cell{};
+
+    /// The edge of the cube before it was doubled: what areas are stored relative to.
+    double first_size() const { return size / static_cast<double>(uint64_t{1} << doublings); }
 
     Cube of(const NodeKey& node) const {
         const NodeKey key = node.cell();
@@ -88,11 +99,22 @@ struct Cube {
     }
     /// floor((p - min) * (2^32 / size)) in doubles, clamped to 32 bits (octree/FORMAT.md).
     Place place(const glm::dvec3& p) const {
+        if (doublings) return grown_place(p);
         const double scale = 0x1p32 / size;
         const auto axis = [scale](double v) {
             return static_cast<uint32_t>(std::clamp(v * scale, 0.0, 0x1.fffffffep31));
         };
         return {axis(p.x - min.x), axis(p.y - min.y), axis(p.z - min.z)};
+    }
+    Place grown_place(const glm::dvec3& p) const {
+        const double scale = 0x1p32 / first_size();
+        const auto axis = [&](double v, uint32_t cell) {
+            const auto q = static_cast<int64_t>(std::clamp(std::floor(v * scale), -0x1p60, 0x1p60));
+            return static_cast<uint32_t>(
+                std::clamp<int64_t>((q + (int64_t{cell} << 32)) >> doublings, 0, UINT32_MAX));
+        };
+        return {axis(p.x - first_min.x, first_cell[0]), axis(p.y - first_min.y, first_cell[1]),
+                axis(p.z - first_min.z, first_cell[2])};
     }
 };
 

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxNesting = 32;
+constexpr uint32_t kMostDoublings = 20;
 constexpr double kFarthest = 1e31;  // readers drop coordinates over 1e30: nothing overflows when squared
 
 /// Thrown and caught in this file only: nlohmann's accessors throw as well, so one handler serves both.
@@ -110,11 +111,43 @@ io::ScanInfo scan_of(const json& value) {
     scan.declared_points = value.at("declared_points").get<uint64_t>();
     scan.metres_per_unit = number(value.at("metres_per_unit"));
     scan.color_bits = value.value("color_bits", scan.color_bits);
-    require(scan.color_bits == 0 || scan.color_bits == 8 || scan.color_bits == 16, "colours of an unknown width");
+    require(scan.color_bits == 0 || scan.color_bits == 8 || scan.color_bits == 16,
+            "colours of an unknown width");
     for (const auto& s : value.at("stations"))
         scan.stations.push_back({s.at("id").get<uint32_t>(), vector_of(s.at("position"))});
     scan.details = value.at("details").get<std::string>();
     return scan;
+}
+
+json root_json(const Cube& root) {
+    json result{{"min", vector_json(root.min)}, {"size", root.size}};
+    if (root.doublings)
+        result["first"] = {
+            {"min", vector_json(root.first_min)}, {"doublings", root.doublings}, {"cell", root.first_cell}};
+    return result;
+}
+
+Cube root_of(const json& value) {
+    Cube root{vector_of(value.at("min")), number(value.at("size"))};
+    require(root.size > 0 && root.size <= kFarthest, "a root cube without or beyond any size");
+    if (!value.contains("first")) return root;
+    const json& first = value.at("first");
+    root.first_min = vector_of(first.at("min"));
+    const auto& doublings = first.at("doublings");
+    require(doublings.is_number_unsigned() && doublings >= 1 && doublings <= kMostDoublings,
+            "an impossible number of doublings");
+    root.doublings = doublings.get<uint32_t>();
+    const auto& cell = first.at("cell");
+    require(cell.is_array() && cell.size() == 3, "three numbers are expected");
+    for (size_t axis = 0; axis < 3; ++axis) {
+        require(cell[axis].is_number_unsigned() && cell[axis] < uint64_t{1} << root.doublings,
+                "a first cube outside the root cube");
+        root.first_cell[axis] = cell[axis].get<uint32_t>();
+        require(std::abs(root.first_min[static_cast<int>(axis)]) <= kFarthest,
+                "a first cube without a place");
+    }
+    require(root.first_size() > 0, "a root cube without or beyond any size");
+    return root;
 }
 
 }  // namespace
@@ -122,12 +155,15 @@ io::ScanInfo scan_of(const json& value) {
 std::string metadata_text(const SourceHeader& header) {
     json scans = json::array();
     for (const auto& scan : header.scans) scans.push_back(scan_json(scan));
-    const json root{{"schema", schema_json(header.schema)},
-                    {"root", {{"min", vector_json(header.root.min)}, {"size", header.root.size}}},
-                    {"bounds", {{"min", vector_json(header.min)}, {"max", vector_json(header.max)}}},
-                    {"points", header.points},
-                    {"metres_per_unit", header.metres_per_unit},
-                    {"scans", std::move(scans)}};
+    json layouts = json::array();
+    for (const auto& layout : header.layouts) layouts.push_back(schema_json(layout));
+    json root{{"schema", schema_json(header.schema)},
+              {"root", root_json(header.root)},
+              {"bounds", {{"min", vector_json(header.min)}, {"max", vector_json(header.max)}}},
+              {"points", header.points},
+              {"metres_per_unit", header.metres_per_unit},
+              {"scans", std::move(scans)}};
+    if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
     // File names are bytes, not always UTF-8: what is not becomes U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
 }
@@ -141,9 +177,10 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         const json root = json::parse(text.begin(), text.end(), shallow);
         SourceHeader header;
         header.schema = schema_of(root.at("schema"));
-        header.root = {vector_of(root.at("root").at("min")), number(root.at("root").at("size"))};
-        require(header.root.size > 0 && header.root.size <= kFarthest,
-                "a root cube without or beyond any size");
+        if (root.contains("layouts"))
+            for (const auto& layout : root.at("layouts")) header.layouts.push_back(schema_of(layout));
+        require(header.layouts.size() <= kMostLayouts, "more layouts than a node can name");
+        header.root = root_of(root.at("root"));
         header.min = vector_of(root.at("bounds").at("min"));
         header.max = vector_of(root.at("bounds").at("max"));
         for (int axis = 0; axis < 3; ++axis)

@@ -7,6 +7,8 @@
 
 namespace lucarne::octree {
 
+inline constexpr size_t kMostLayouts = 255;
+
 /// The cache's metadata as JSON (octree/FORMAT.md) and back. Doubles survive bit by bit.
 std::string metadata_text(const SourceHeader& header);
 /// Everything is checked: types, ranges, nesting, the schema's layout. `file` names the cache in errors.

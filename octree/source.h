@@ -45,6 +45,8 @@ struct NodeData {
 /// What a source is as a whole.
 struct SourceHeader {
     io::Schema schema;
+    /// Other schemas in which a cache's older nodes are stored; what is loaded is in `schema` all the same.
+    std::vector<io::Schema> layouts;
     Cube root;                      ///< the root node's cube
     glm::dvec3 min{0.0}, max{0.0};  ///< tight bounds of the points
     uint64_t points = 0;

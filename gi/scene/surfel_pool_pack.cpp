@@ -78,7 +78,7 @@ class Packer {
     uint32_t area(const std::byte* record) const {
         if (!area_ || area_->type != io::ScalarType::u16) return kUnknownArea;
         const double own =
-            octree::decode_area(static_cast<uint16_t>(scalar(area_, record)), header_.root.size);
+            octree::decode_area(static_cast<uint16_t>(scalar(area_, record)), header_.root.first_size());
         const double octaves = std::log2(cube_.size * cube_.size / own);
         if (!(own > 0) || !std::isfinite(octaves)) return kUnknownArea;
         return static_cast<uint32_t>(std::clamp(std::lround(octaves * 8), 0l, long{kUnknownArea} - 1));

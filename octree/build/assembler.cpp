@@ -26,7 +26,7 @@ Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const Node
       emitter_(loader),
       samples_(std::move(samples)) {}
 
-Result<void> Assembler::add(size_t index, Subtree&& tree) {
+Result<void> Assembler::add(Subtree&& tree, const NodeKey* next) {
     {
         const Subtree done = std::move(tree);  // gone before the sampling above it starts
         subtree_encode_seconds_ += done.encode_seconds;
@@ -37,10 +37,9 @@ Result<void> Assembler::add(size_t index, Subtree&& tree) {
         }
         LUCARNE_TRY(push(done.root, done.sample));
     }
-    const auto chunks = loader_.chunks();
     while (stack_.back().node.key.level > 0) {
         const NodeKey parent = stack_.back().node.key.parent();
-        if (index + 1 < chunks.size() && is_ancestor(parent, chunks[index + 1].key)) return {};
+        if (next && is_ancestor(parent, *next)) return {};
         size_t children = 1;
         while (children < stack_.size()) {
             const NodeKey& key = stack_[stack_.size() - children - 1].node.key;

@@ -15,8 +15,8 @@ class Assembler {
     static Result<Assembler> create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
                                     const std::filesystem::path& temp_folder);
 
-    /// Takes the subtree of chunk number `index`; call in order.
-    Result<void> add(size_t index, Subtree&& tree);
+    /// Takes the next subtree in Morton order; `next` is the root of the one after it, null at the end.
+    Result<void> add(Subtree&& tree, const NodeKey* next);
 
     /// CPU time spent on compressing, in the subtrees taken as well.
     double encode_seconds() const { return subtree_encode_seconds_ + emitter_.encode_seconds(); }

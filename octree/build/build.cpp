@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <tbb/parallel_pipeline.h>
 
 #include "io/core/log.h"
 #include "io/core/options.h"
@@ -14,6 +13,7 @@
 #include "io/core/progress.h"
 #include "octree/build/assembler.h"
 #include "octree/build/identity.h"
+#include "octree/build/in_order.h"
 #include "octree/build/scan_stage.h"
 
 namespace lucarne::octree {
@@ -111,53 +111,23 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
     return SurfaceStore::restore(store, std::move(file), record);
 }
 
-struct Built {
-    size_t chunk = 0;
-    Subtree tree;
-};
-
-/// Chunks are built side by side and put together in order; no more than `workers` are in memory.
-/// `keep`: a resumed build may want the chunks again, so their place is not given back.
+/// Chunks are built side by side and put together in order; no more than `workers` are in memory. `keep`: a
+/// resumed build may want the chunks again, so their place is not given back.
 Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
                           const MemoryPlan& memory, bool keep, Assembler& assembler) {
+    const auto chunks = store.chunks();
     uint64_t points = 0;
-    for (const auto& chunk : store.chunks()) points += chunk.count;
+    for (const auto& chunk : chunks) points += chunk.count;
     Progress progress("building", points, "points");
-    FirstError error;
-    size_t next = 0;
-    HandOver begun, built_chunks;
-    const auto source = [&](tbb::flow_control& control) -> size_t {
-        const HandOver::Piece handed(begun, begun);
-        if (next == store.chunks().size() || error.any()) control.stop();
-        return next++;
+    const auto build = [&](size_t chunk) { return build_subtree(loader, chunk, limits); };
+    const auto assemble = [&](size_t chunk, Subtree&& tree) -> Result<void> {
+        progress.add(chunks[chunk].count);
+        LUCARNE_TRY(
+            assembler.add(std::move(tree), chunk + 1 < chunks.size() ? &chunks[chunk + 1].key : nullptr));
+        if (!keep) store.discard(chunk);
+        return {};
     };
-    const auto build = [&](size_t chunk) {
-        const HandOver::Piece handed(begun, built_chunks);
-        auto built = std::make_shared<Built>(Built{chunk, {}});
-        if (error.any()) return built;
-        if (auto tree = build_subtree(loader, chunk, limits))
-            built->tree = std::move(*tree);
-        else
-            error.report(chunk, std::move(tree).error());
-        return built;
-    };
-    const auto assemble = [&](const std::shared_ptr<Built>& built) {
-        const HandOver::Piece handed(built_chunks, built_chunks);
-        if (error.any()) return;
-        progress.add(store.chunks()[built->chunk].count);
-        if (auto done = assembler.add(built->chunk, std::move(built->tree)); !done)
-            error.report(built->chunk, std::move(done).error());
-        if (!keep) store.discard(built->chunk);
-    };
-    begun.give();
-    tbb::parallel_pipeline(
-        memory.workers,
-        tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, source) &
-            tbb::make_filter<size_t, std::shared_ptr<Built>>(tbb::filter_mode::parallel, build) &
-            tbb::make_filter<std::shared_ptr<Built>, void>(tbb::filter_mode::serial_in_order, assemble));
-    begun.take();
-    built_chunks.take();
-    return error.result();
+    return in_order(chunks.size(), memory.workers, build, assemble);
 }
 
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
@@ -240,7 +210,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     report.dropped = facts.dropped;
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();
-    report.bytes = writer.bytes() + writer.nodes() * format::kEntryBytes;
+    report.bytes = writer.bytes();
     return report;
 }
 

@@ -110,6 +110,55 @@ Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPla
     return refine(std::move(coarse), memory);
 }
 
+Result<void> ChunkStore::fill(const Pass& pass, std::span<const NodeKey> cubes, bool split,
+                              const MemoryPlan& memory) {
+    const auto at_finest = [](const NodeKey& key, uint64_t code) {
+        return code << 3 * (kMaxLevel - key.level);
+    };
+    std::vector<uint64_t> begins, ends;
+    std::vector<Chunk> chunks;
+    for (const auto& key : cubes) {
+        begins.push_back(at_finest(key, key.code()));
+        ends.push_back(at_finest(key, key.code() + 1));
+        chunks.push_back({.key = key});
+    }
+    const auto find = [&](const std::byte* record) {
+        const uint64_t code = root_.place(io::position_of(schema_, record)).code();
+        const auto behind = std::upper_bound(begins.begin(), begins.end(), code) - begins.begin();
+        const auto chunk = static_cast<size_t>(behind) - 1;
+        return behind > 0 && code < ends[chunk] ? chunk : chunks.size();
+    };
+    const auto each = [&](std::span<const std::byte> records, const auto& use) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += schema_.stride)
+            if (const size_t chunk = find(&records[at]); chunk < chunks.size())
+                LUCARNE_TRY(use(chunk, &records[at]));
+        return {};
+    };
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
+        return each(records, [&](size_t chunk, const std::byte*) -> Result<void> {
+            ++chunks[chunk].count;
+            return {};
+        });
+    }));
+    for (auto& chunk : chunks) {
+        chunk.first = end_;
+        end_ += chunk.count;
+    }
+    if (chunks.empty()) return {};
+    Dealer dealer(file_, chunks, 0, schema_.stride, memory.buffer_bytes);
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
+        return each(records,
+                    [&](size_t chunk, const std::byte* record) { return dealer.deal(chunk, record); });
+    }));
+    LUCARNE_TRY(dealer.finish());
+    if (!split) {
+        chunks_ = std::move(chunks);
+        return {};
+    }
+    std::erase_if(chunks, [](const Chunk& chunk) { return chunk.count == 0; });
+    return refine(std::move(chunks), memory);
+}
+
 /// One level of distribution: the points of `cube` become chunks at the end of the scratch file.
 Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cube, uint64_t points,
                                              const MemoryPlan& memory) {

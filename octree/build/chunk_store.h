@@ -29,6 +29,11 @@ class ChunkStore {
     /// Reads `points` points twice: to count them and to deal them out.
     Result<void> fill(const Pass& pass, uint64_t points, const MemoryPlan& memory);
 
+    /// Deals points out to given chunks instead, disjoint cubes of kMaxLevel or above in Morton order, and,
+    /// if `split`, splits those that are too large and leaves out those without any points. Points outside
+    /// all of them are left out.
+    Result<void> fill(const Pass& pass, std::span<const NodeKey> cubes, bool split, const MemoryPlan& memory);
+
     /// In Morton order. More than MemoryPlan::chunk_points only where the Morton code is exhausted.
     std::span<const Chunk> chunks() const { return chunks_; }
     const io::Schema& schema() const { return schema_; }

@@ -6,9 +6,10 @@ namespace lucarne::octree {
 
 RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
     : chunks_(chunks), surface_(surface), schema_(chunks.schema()) {
-    if (!surface) return;
-    if (normals) schema_.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
-    schema_.add(std::string(io::names::area), io::ScalarType::u16);
+    if (surface && !schema_.find(io::names::area)) {
+        if (normals) schema_.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
+        schema_.add(std::string(io::names::area), io::ScalarType::u16);
+    }
     normal_ = schema_.find(io::names::normal_oct);
     area_ = schema_.find(io::names::area);
 }
@@ -18,19 +19,22 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
     if (!surface_) return input;
     LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, count));
     const uint32_t stride = chunks_.schema().stride;
+    const bool in_place = stride == schema_.stride;
     std::vector<std::byte> records(count * schema_.stride);
     for (size_t i = 0; i < count; ++i) {
         std::byte* record = &records[i * schema_.stride];
         std::memcpy(record, &input[i * stride], stride);
-        if (normal_) io::store(record + normal_->offset, encode_normal(found[i].normal));
-        io::store(record + area_->offset, encode_area(found[i].area, root().size));
+        if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
+            io::store(record + normal_->offset, encode_normal(found[i].normal));
+        if (!in_place || found[i].area > 0)
+            io::store(record + area_->offset, encode_area(found[i].area, root().first_size()));
     }
     return records;
 }
 
 float RecordLoader::area(const std::byte* record) const {
     if (!area_) return 0;
-    return static_cast<float>(decode_area(io::load<uint16_t>(record + area_->offset), root().size));
+    return static_cast<float>(decode_area(io::load<uint16_t>(record + area_->offset), root().first_size()));
 }
 
 }  // namespace lucarne::octree

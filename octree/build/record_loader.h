@@ -7,7 +7,8 @@
 namespace lucarne::octree {
 
 /// Hands out the records of chunks as the cache will hold them: the input's, with what was estimated behind
-/// them.
+/// them; in an update, whose chunks have the cache's whole schema, in place: areas anew, normals for points
+/// that have none yet.
 class RecordLoader {
  public:
     /// `surface` is null where neither normals nor areas were estimated; `normals`: whether its normals are

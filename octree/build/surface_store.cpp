@@ -112,6 +112,11 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     return store;
 }
 
+void SurfaceStore::turn(size_t chunk, uint32_t component) {
+    if (chunk < signs_.size() && component < signs_[chunk].size())
+        signs_[chunk][component] = static_cast<int8_t>(-signs_[chunk][component]);
+}
+
 void SurfaceStore::limit_strays() {
     uint64_t known = 0, below = 0;
     for (const auto& [bin, count] : areas_) known += count;

@@ -31,6 +31,8 @@ class SurfaceStore {
     static Result<SurfaceStore> restore(const ChunkStore& chunks, ScratchFile file,
                                         std::span<const std::byte> record);
     std::vector<std::byte> save() const;
+    /// Turns the normals of one orientation component of a chunk around.
+    void turn(size_t chunk, uint32_t component);
 
     /// Points [first, first + count) of a chunk, normals turned the way they shall point.
     Result<std::vector<Point>> load(size_t chunk, uint64_t first, uint64_t count) const;

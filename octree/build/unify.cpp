@@ -71,7 +71,8 @@ Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources) {
     if (unifier.schema_.stride > format::kMaxStride / 2)
         return rejected(unifier.sources_[0]->info().path,
                         fmt::format("{} bytes a point are more than 32 KiB", unifier.schema_.stride));
-    for (size_t i = 0; i < unifier.inputs(); ++i) unifier.plans_.push_back(unifier.plan_for(i));
+    for (const auto* source : unifier.sources_)
+        unifier.maps_.emplace_back(source->schema(), unifier.schema_, unified_name);
     return unifier;
 }
 
@@ -122,54 +123,14 @@ Result<void> Unifier::unify_attributes() {
     return {};
 }
 
-Unifier::Plan Unifier::plan_for(size_t input) const {
-    const auto& from = sources_[input]->schema();
-    Plan plan;
-    plan.convert_position = from.position != schema_.position;
-    if (!plan.convert_position)
-        plan.steps.push_back({.bytes = static_cast<uint32_t>(io::position_bytes(from.position))});
-    for (const auto& attribute : from.attributes) {
-        const auto* to = schema_.find(unified_name(attribute));
-        const auto bytes = static_cast<uint32_t>(attribute.bytes());
-        if (to->type == attribute.type) {
-            auto* last = plan.steps.empty() ? nullptr : &plan.steps.back();
-            if (last && last->components == 0 && last->from + last->bytes == attribute.offset &&
-                last->to + last->bytes == to->offset)
-                last->bytes += bytes;  // one copy for neighbours
-            else
-                plan.steps.push_back({.from = attribute.offset, .to = to->offset, .bytes = bytes});
-            continue;
-        }
-        const bool widened_colour = attribute.name == io::names::color && attribute.type == ScalarType::u8 &&
-                                    to->type == ScalarType::u16;
-        plan.steps.push_back({attribute.offset, to->offset, bytes, attribute.components, attribute.type,
-                              to->type, widened_colour ? 257.0 : 1.0});
-    }
-    plan.identical = inputs() == 1 && plan.steps.size() == 1 && plan.steps[0].bytes == from.stride;
-    return plan;
-}
-
 std::span<const std::byte> Unifier::convert(size_t input, const io::PointBatch& batch,
                                             std::vector<std::byte>& storage) const {
-    const Plan& plan = plans_[input];
-    const auto& from = sources_[input]->schema();
-    if (plan.identical) return std::span(batch.bytes).first(batch.count * from.stride);
-    storage.assign(batch.count * schema_.stride, std::byte{0});
-    const auto* scan = inputs() > 1 ? schema_.find(io::names::scan) : nullptr;
-    for (size_t i = 0; i < batch.count; ++i) {
-        const std::byte* in = &batch.bytes[i * from.stride];
-        std::byte* out = &storage[i * schema_.stride];
-        if (plan.convert_position) io::store(out, io::position_of(from, in));
-        for (const Step& step : plan.steps) {
-            if (step.components == 0) std::memcpy(out + step.to, in + step.from, step.bytes);
-            for (size_t c = 0; c < step.components; ++c)
-                io::store_scalar(
-                    step.to_type, out + step.to + c * io::scalar_bytes(step.to_type),
-                    step.factor *
-                        io::scalar_at(step.from_type, in + step.from + c * io::scalar_bytes(step.from_type)));
-        }
-        if (scan) io::store(out + scan->offset, static_cast<uint16_t>(input));
-    }
+    if (inputs() == 1 && maps_[input].identical())
+        return std::span(batch.bytes).first(batch.count * schema_.stride);
+    maps_[input].convert(batch.bytes.data(), batch.count, storage);
+    if (const auto* scan = inputs() > 1 ? schema_.find(io::names::scan) : nullptr)
+        for (size_t i = 0; i < batch.count; ++i)
+            io::store(&storage[i * schema_.stride + scan->offset], static_cast<uint16_t>(input));
     return storage;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/points.h"
+#include "octree/record_map.h"
 
 namespace lucarne::octree {
 
@@ -28,23 +28,12 @@ class Unifier {
                                        std::vector<std::byte>& storage) const;
 
  private:
-    struct Step {
-        uint32_t from = 0, to = 0, bytes = 0;  ///< copied as they are...
-        uint32_t components = 0;               ///< ...or, where not 0, converted one by one
-        io::ScalarType from_type{}, to_type{};
-        double factor = 1;
-    };
-    struct Plan {
-        bool identical = false, convert_position = false;
-        std::vector<Step> steps;
-    };
     Result<void> unify_attributes();
     void unify_positions();
-    Plan plan_for(size_t input) const;
 
     std::vector<const io::PointSource*> sources_;
     io::Schema schema_;
-    std::vector<Plan> plans_;
+    std::vector<RecordMap> maps_;
 };
 
 /// What is appended to the name of an input's attribute that is called `normal_oct`, `area` or `scan`; export

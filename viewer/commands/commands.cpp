@@ -4,8 +4,10 @@
 
 namespace lucarne::viewer {
 
+void add_compact(CLI::App& app, Command& chosen);
 void add_compare(CLI::App& app, Command& chosen);
 void add_convert(CLI::App& app, Command& chosen);
+void add_delete(CLI::App& app, Command& chosen);
 void add_export(CLI::App& app, Command& chosen);
 void add_fly(CLI::App& app, Command& chosen);
 void add_generate(CLI::App& app, Command& chosen);
@@ -15,9 +17,10 @@ void add_verify(CLI::App& app, Command& chosen);
 void add_view(CLI::App& app, Command& chosen);
 
 std::span<const AddCommand> commands() {
-    static constexpr std::array<AddCommand, 9> kAll = {add_view,   add_convert,  add_render,
-                                                       add_fly,    add_generate, add_info,
-                                                       add_verify, add_export,   add_compare};
+    static constexpr std::array<AddCommand, 11> kAll = {add_view,    add_convert,  add_render,
+                                                        add_fly,     add_generate, add_info,
+                                                        add_verify,  add_export,   add_compare,
+                                                        add_delete,  add_compact};
     return kAll;
 }
 

@@ -12,8 +12,10 @@
 #include "io/core/options.h"
 #include "io/formats/scan.h"
 #include "octree/build/build.h"
+#include "octree/edit/edit.h"
 #include "octree/normals/normals.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/edit_report.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -22,6 +24,7 @@ struct ConvertOptions {
     octree::BuildOptions build;
     std::vector<std::string> inputs;
     std::string memory = "2G", json;
+    bool append = false;
 };
 
 /// A scan that is open only while it is read, so that thousands of inputs do not need thousands of handles.
@@ -75,10 +78,22 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
     return file.commit();
 }
 
+Result<void> append(const ConvertOptions& options) {
+    const auto& build = options.build;
+    const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
+                                   build.neighbours};
+    LUCARNE_ASSIGN(const auto report, octree::append_to_cache(build.inputs, edit));
+    log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed",
+              build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
+              report.nodes);
+    if (options.json.empty()) return {};
+    return write_edit_report(options.json, build.overwrite, report);
+}
+
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
     LUCARNE_ASSIGN(build.memory, parse_bytes("--memory", options.memory));
-    LUCARNE_TRY(check_output(build.output, build.overwrite));
+    if (!options.append) LUCARNE_TRY(check_output(build.output, build.overwrite));
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
     std::vector<std::unique_ptr<io::PointSource>> sources;
     for (const auto& input : options.inputs) {
@@ -86,6 +101,7 @@ Result<void> convert(ConvertOptions options) {
         build.inputs.push_back(source.get());
         sources.push_back(std::move(source));
     }
+    if (options.append) return append(options);
     LUCARNE_ASSIGN(const auto report, octree::build_cache(build));
     double cpu = 0, wall = 0;
     for (const auto& stage : report.stages) {
@@ -151,6 +167,11 @@ void add_convert(CLI::App& app, Command& chosen) {
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
         "Go on from the last stage that an interrupted conversion finished");
     command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
+    auto* append_flag =
+        command->add_flag("--append", options->append,
+                          "Add the inputs to a cache that exists, in place; it keeps its kind of normals");
+    for (const char* other : {"--resume", "--overwrite", "--normals"})
+        append_flag->excludes(command->get_option(other));
     command->add_option("--json", options->json, "Write what was done and how long it took")
         ->type_name("FILE");
     command->callback([options, &chosen] { chosen = [options] { return convert(*options); }; });

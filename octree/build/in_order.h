@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include <tbb/parallel_pipeline.h>
+
+#include "io/core/parallel.h"
+
+namespace lucarne::octree {
+
+/// Makes `count` pieces side by side, at most `most` at a time, and hands them on in their order:
+/// make(i) gives a Result, take(i, its value) returns Result<void>. Stops at the first failure.
+template <class Make, class Take>
+Result<void> in_order(size_t count, unsigned most, const Make& make, const Take& take) {
+    using Piece = typename decltype(make(size_t{}))::value_type;
+    struct Made {
+        size_t index = 0;
+        Piece piece;
+    };
+    FirstError error;
+    size_t next = 0;
+    HandOver begun, made;
+    const auto source = [&](tbb::flow_control& control) -> size_t {
+        const HandOver::Piece handed(begun, begun);
+        if (next == count || error.any()) control.stop();
+        return next++;
+    };
+    const auto build = [&](size_t index) {
+        const HandOver::Piece handed(begun, made);
+        auto result = std::make_shared<Made>(Made{index, {}});
+        if (error.any()) return result;
+        if (auto piece = make(index))
+            result->piece = std::move(*piece);
+        else
+            error.report(index, std::move(piece).error());
+        return result;
+    };
+    const auto hand_on = [&](const std::shared_ptr<Made>& result) {
+        const HandOver::Piece handed(made, made);
+        if (error.any()) return;
+        if (auto done = take(result->index, std::move(result->piece)); !done)
+            error.report(result->index, std::move(done).error());
+    };
+    begun.give();
+    tbb::parallel_pipeline(
+        most, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, source) &
+                  tbb::make_filter<size_t, std::shared_ptr<Made>>(tbb::filter_mode::parallel, build) &
+                  tbb::make_filter<std::shared_ptr<Made>, void>(tbb::filter_mode::serial_in_order, hand_on));
+    begun.take();
+    made.take();
+    return error.result();
+}
+
+}  // namespace lucarne::octree

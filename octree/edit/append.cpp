@@ -1,0 +1,143 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "io/core/log.h"
+#include "octree/attributes.h"
+#include "octree/build/scan_stage.h"
+#include "octree/edit/edit_plan.h"
+#include "octree/edit/rewrite.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// The cache among the inputs whose schemas are unified: first, and without points, which stay where they
+/// are.
+class CacheSchema final : public io::PointSource {
+ public:
+    explicit CacheSchema(const CacheFile& cache) {
+        const auto& from = cache.header().schema;
+        schema_.position = from.position;
+        schema_.scale = from.scale;
+        schema_.offset = from.offset;
+        schema_.stride = static_cast<uint32_t>(io::position_bytes(from.position));
+        for (const auto& a : from.attributes)
+            if (a.name != io::names::scan && a.name != io::names::normal_oct && a.name != io::names::area)
+                schema_.add(a.name, a.type, a.components);
+        info_.path = cache.file().path().string();
+    }
+    const io::Schema& schema() const override { return schema_; }
+    const io::ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<io::PointReader>> open() const override { return std::make_unique<Nothing>(); }
+
+ private:
+    struct Nothing final : io::PointReader {
+        Result<size_t> read(io::PointBatch&, size_t) override { return size_t{0}; }
+        uint64_t dropped() const override { return 0; }
+    };
+    io::Schema schema_;
+    io::ScanInfo info_;
+};
+
+/// The unified schema with what the cache's build added.
+io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache) {
+    io::Schema schema = inputs.schema();
+    for (const auto name : {io::names::normal_oct, io::names::area})
+        if (const auto* added = cache.find(name)) schema.add(added->name, added->type, added->components);
+    return schema;
+}
+
+/// The new points as the cache will have them, with what is not estimated yet marked so.
+Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_before,
+                  uint64_t batch_bytes) {
+    const RecordMap map(inputs.schema(), schema);
+    return [&inputs, schema, map, scans_before, batch_bytes](const Visit& visit) -> Result<void> {
+        const auto* normal = schema.find(io::names::normal_oct);
+        const auto* area = schema.find(io::names::area);
+        const auto* scan = schema.find(io::names::scan);
+        std::vector<std::byte> records;
+        return pass_over_inputs(inputs, batch_bytes)([&](std::span<const std::byte> batch) -> Result<void> {
+            map.convert(batch.data(), batch.size() / inputs.schema().stride, records);
+            for (size_t at = 0; at < records.size(); at += schema.stride) {
+                std::byte* record = &records[at];
+                if (normal) io::store(record + normal->offset, kNoNormal);
+                if (area) io::store(record + area->offset, kNoArea);
+                // The unifier counts the cache as input 0.
+                const auto input = io::load<uint16_t>(record + scan->offset);
+                io::store(record + scan->offset, static_cast<uint16_t>(scans_before + input - 1));
+            }
+            return visit(records);
+        });
+    };
+}
+
+/// How many points come, by the deepest old node that they are in.
+Result<std::vector<uint64_t>> count_by_node(const CacheFile& cache, const SourceHeader& header,
+                                            const Pass& added) {
+    const auto nodes = cache.nodes();
+    const Shift shift(cache.header().root, header.root);
+    std::vector<uint64_t> counts(nodes.size(), 0);
+    LUCARNE_TRY(added([&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += header.schema.stride) {
+            const Place place = header.root.place(io::position_of(header.schema, &records[at]));
+            if (place.key(shift.levels()) != shift.root()) continue;  // outside the old root
+            uint32_t node = 0;
+            for (uint32_t level = shift.levels() + 1; level <= kMaxLevel; ++level) {
+                const uint32_t child = nodes[node].child(place.key(level).octant());
+                if (child == kNoNode) break;
+                node = child;
+            }
+            ++counts[node];
+        }
+        return {};
+    }));
+    return counts;
+}
+
+/// Header of the state with the new scans.
+Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, const ScanFacts& facts) {
+    const auto& before = cache.header();
+    SourceHeader header = before;
+    header.schema = whole_schema(inputs, before.schema);
+    if (header.schema != before.schema) header.layouts.push_back(before.schema);
+    if (header.layouts.size() > kMostLayouts || before.scans.size() + inputs.inputs() - 1 > UINT16_MAX)
+        return rejected(cache.file().path().string(), "was appended to too often",
+                        "convert all scans together");
+    LUCARNE_ASSIGN(header.root, grown_root(before.root, facts.min, facts.max));
+    header.min = glm::min(before.min, facts.min);
+    header.max = glm::max(before.max, facts.max);
+    header.points = before.points + facts.points;
+    for (size_t i = 1; i < inputs.inputs(); ++i) header.scans.push_back(inputs.source(i).info());
+    return header;
+}
+
+}  // namespace
+
+Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& scans,
+                                   const EditOptions& options) {
+    constexpr uint64_t kBatchBytes = 1 << 20;
+    LUCARNE_ASSIGN(OpenedCache opened, OpenedCache::open(options.cache));
+    const auto& before = opened.cache->header();
+    const CacheSchema cache(*opened.cache);
+    std::vector<const io::PointSource*> sources{&cache};
+    for (const auto* scan : scans) {
+        if (scan->info().metres_per_unit != before.metres_per_unit)
+            return rejected(scan->info().path, "is in another unit than the cache", "convert it on its own");
+        sources.push_back(scan);
+    }
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
+    LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
+    if (facts.dropped)
+        log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
+    Change change;
+    LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
+    change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);
+    LUCARNE_ASSIGN(change.changed, count_by_node(*opened.cache, change.header, change.added));
+    LUCARNE_ASSIGN(EditReport report, rewrite(std::move(opened), change, options));
+    report.added = facts.points;
+    report.dropped = facts.dropped;
+    return report;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,52 @@
+#include "octree/cache_writer.h"
+#include "octree/edit/rewrite.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// Copies nodes as they are stored, in the order of a build: the children of a node after all that is below
+/// them.
+class Copier {
+ public:
+    Copier(const CacheFile& cache, CacheWriter& writer) : cache_(cache), writer_(writer) {}
+
+    Result<void> below(uint32_t node) {
+        const auto nodes = cache_.nodes();
+        for (uint32_t octant = 0; octant < 8; ++octant)
+            if (const uint32_t child = nodes[node].child(octant); child != kNoNode) LUCARNE_TRY(below(child));
+        for (uint32_t octant = 0; octant < 8; ++octant)
+            if (const uint32_t child = nodes[node].child(octant); child != kNoNode) LUCARNE_TRY(copy(child));
+        return {};
+    }
+    Result<void> copy(uint32_t node) {
+        auto entry = cache_.entry(node);
+        payload_.resize(entry.payload_bytes);
+        LUCARNE_TRY(cache_.file().read_at(entry.payload_offset, payload_));
+        if (format::checksum(payload_) != entry.checksum)
+            return rejected(cache_.file().path().string(),
+                            "node " + std::to_string(node) + " does not match its checksum",
+                            "convert the scan again");
+        LUCARNE_ASSIGN(entry.payload_offset, writer_.append(payload_));
+        return writer_.add(entry);
+    }
+
+ private:
+    const CacheFile& cache_;
+    CacheWriter& writer_;
+    std::vector<std::byte> payload_;
+};
+
+}  // namespace
+
+Result<CompactReport> compact_cache(const std::filesystem::path& path,
+                                    const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(OpenedCache opened, OpenedCache::open(path));  // keeps the lock
+    LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(path, true, scratch_folder(path, temp_folder)));
+    Copier copier(*opened.cache, writer);
+    LUCARNE_TRY(copier.below(0));
+    LUCARNE_TRY(copier.copy(0));
+    LUCARNE_TRY(writer.finish(opened.cache->header()));
+    return CompactReport{opened.cache->file().size(), writer.bytes()};
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "octree/build/chunk_plan.h"
+#include "octree/source.h"
+
+namespace lucarne::octree {
+
+/// The cube that holds `root` and the box: doubled toward it as often as it takes. Errors: too far away.
+Result<Cube> grown_root(const Cube& root, const glm::dvec3& min, const glm::dvec3& max);
+
+/// Where an older tree's nodes are in one whose root cube has grown.
+class Shift {
+ public:
+    Shift(const Cube& before, const Cube& after);
+    uint32_t levels() const { return levels_; }
+    /// The old root.
+    NodeKey root() const { return {levels_, cell_[0], cell_[1], cell_[2]}; }
+    NodeKey operator()(const NodeKey& key) const {
+        return {key.level + levels_, cell_[0] << key.level | key.x, cell_[1] << key.level | key.y,
+                cell_[2] << key.level | key.z};
+    }
+
+ private:
+    uint32_t levels_;
+    std::array<uint32_t, 3> cell_{};
+};
+
+/// What an update does with a tree: a few cubes are built again, what lies beside them stays in the file, and
+/// only the nodes above both are made anew.
+struct EditPlan {
+    struct Item {
+        NodeKey key;              ///< in the new tree
+        uint32_t node = kNoNode;  ///< the old node there
+    };
+    std::vector<Item> rebuilt;  ///< cubes whose points all are built again; in Morton order
+    std::vector<Item> kept;     ///< nodes with nothing changed below them; in Morton order
+    std::vector<uint32_t> top;  ///< old nodes above both
+};
+
+struct EditLimits {
+    uint64_t chunk_points = 0;  ///< of a cube that is built at once
+    size_t leaf = 0;            ///< a cube of so few points is one node
+    size_t most = 0;            ///< cubes
+};
+
+/// `changed`: how many points come or go, by the deepest old node they are in. Rebuilt cubes are as small as
+/// `limits.most` allows. Errors: too many even so.
+Result<EditPlan> plan_edit(std::span<const NodeInfo> nodes, const Shift& shift,
+                           std::span<const uint64_t> changed, uint64_t points, const EditLimits& limits);
+
+}  // namespace lucarne::octree

@@ -1,0 +1,78 @@
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "io/core/file.h"
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "octree/edit/edit.h"
+#include "viewer/commands/commands.h"
+#include "viewer/commands/edit_report.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct DeleteOptions {
+    octree::EditOptions edit;
+    std::vector<double> box;
+    std::vector<uint16_t> scan;  ///< none or one
+    std::string memory = "2G", json;
+};
+
+Result<octree::Selection> selection_of(const DeleteOptions& options) {
+    octree::Selection selection;
+    if (!options.scan.empty()) selection.scan = options.scan[0];
+    if (options.box.empty()) return selection;
+    const auto& b = options.box;
+    selection.box = octree::Box{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (!(b[axis] <= b[axis + 3]))
+            return bad_arguments("--box", "its lower corner lies above its upper one",
+                                 "give x0,y0,z0,x1,y1,z1");
+    return selection;
+}
+
+Result<void> erase(const DeleteOptions& given) {
+    auto options = given;
+    LUCARNE_ASSIGN(options.edit.memory, parse_bytes("--memory", options.memory));
+    if (options.box.empty() && options.scan.empty())
+        return bad_arguments("delete", "nothing says which points", "give --box, --scan or both");
+    if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, false));
+    LUCARNE_ASSIGN(const auto selection, selection_of(options));
+    LUCARNE_ASSIGN(const auto report, octree::delete_from_cache(selection, options.edit));
+    log::info("{}: {} points deleted, {} left; lucarne compact gives their space back",
+              options.edit.cache.string(), report.removed, report.points);
+    if (options.json.empty()) return {};
+    return write_edit_report(options.json, false, report);
+}
+
+}  // namespace
+
+void add_delete(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<DeleteOptions>();
+    auto* command = app.add_subcommand("delete", "Delete points from a cache");
+    command->add_option("cache", options->edit.cache, "The cache to change")->required()->type_name("CACHE");
+    command->add_option("--box", options->box, "Those in a box, in the file's unit; its faces belong to it")
+        ->delimiter(',')
+        ->expected(6)
+        ->type_name("x0,y0,z0,x1,y1,z1");
+    command->add_option("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
+        ->expected(1)
+        ->type_name("N");
+    command->add_option("--memory", options->memory, "Cap on memory, besides the cache's directory")
+        ->capture_default_str()
+        ->type_name("BYTES");
+    command->add_option("--threads", options->edit.threads, "0: all cores")
+        ->capture_default_str()
+        ->type_name("N");
+    command
+        ->add_option("--temp", options->edit.temp_folder, "Folder for temporary files (default: the cache's)")
+        ->type_name("DIR");
+    command->add_option("--json", options->json, "Write what was done")->type_name("FILE");
+    command->callback([options, &chosen] { chosen = [options] { return erase(*options); }; });
+}
+
+}  // namespace lucarne::viewer
