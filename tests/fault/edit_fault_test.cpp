@@ -66,7 +66,9 @@ class Updates : public testing::Test {
     void expect_repairable(const Update& update, const std::string& when) {
         write_bytes(folder_ / "now.luc", read_bytes(cache_));
         const bool old = points() == old_points_;
-        if (old) ASSERT_EQ(lucarne(update.arguments).code, 0) << when;
+        if (old) {
+            ASSERT_EQ(lucarne(update.arguments).code, 0) << when;
+        }
         ASSERT_TRUE(points() == new_points_) << when;
         // Both superblocks are sound again when one more update is through.
         ASSERT_EQ(lucarne("compact " + quoted(cache_)).code, 0) << when;
