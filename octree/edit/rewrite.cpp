@@ -146,7 +146,10 @@ Result<void> Rewrite::find_surface() {
     if (!schema().find(io::names::area) || rebuilt_->chunks().empty()) return {};
     const bool normals = schema().find(io::names::normal_oct) != nullptr;
     LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder_));
-    const SurfaceStore::Settings settings{normals, options_.neighbours, threads_, options_.memory};
+    const SurfaceStore::Settings settings{.normals = normals,
+                                          .neighbours = options_.neighbours,
+                                          .threads = threads_,
+                                          .memory = options_.memory};
     LUCARNE_ASSIGN(surface_,
                    SurfaceStore::estimate(*rebuilt_, change_.header.scans, std::move(file), settings));
     return normals ? align_normals() : Result<void>{};
