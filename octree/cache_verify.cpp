@@ -14,10 +14,14 @@ namespace {
 Result<void> check_superblocks(const CacheFile& cache) {
     const auto& file = cache.file();
     LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
-    for (size_t i = 0; i < blocks.size(); ++i)
-        if (!blocks[i])
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        format::SuperblockBytes stored;
+        LUCARNE_TRY(file.read_at(i * format::kSuperblockBytes, stored));
+        // What its own checksum leaves out is zeros.
+        if (!blocks[i] || stored != format::encode(*blocks[i]))
             return rejected(file.path().string(), fmt::format("superblock {} is damaged", i),
                             "lucarne compact writes both anew, if an interrupted update did it");
+    }
     if (const uint64_t end = cache.superblock().file_bytes; file.size() != end)
         return rejected(file.path().string(), fmt::format("{} bytes stand behind its end", file.size() - end),
                         "lucarne compact removes them, if an interrupted update left them");

@@ -41,7 +41,7 @@ inline Outcome lucarne_with_fault(const std::string& fault, const std::string& a
 }
 
 inline std::string quoted(const std::filesystem::path& path) {
-    return "'" + path.string() + "'";
+    return std::string(1, '\'') + path.string() + '\'';
 }
 
 }  // namespace lucarne::test
