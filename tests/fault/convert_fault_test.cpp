@@ -80,7 +80,7 @@ TEST(ConvertFaults, SayThatTheDiskIsFull) {
     const TempFolder folder;
     const auto disk = folder / "disk";
     std::filesystem::create_directory(disk);
-    if (::mount("lucarne-test", disk.c_str(), "tmpfs", 0, "size=2m") != 0)
+    if (::mount("lucarne-test", disk.c_str(), "tmpfs", 0, "size=512k") != 0)
         GTEST_SKIP() << "may not mount a small disk here";
     ASSERT_EQ(lucarne("generate cornell --even --points 200k -o " + quoted(folder / "a.las")).code, 0);
     const auto output_full = lucarne("convert --normals none --temp " + quoted(folder.path()) + " " +
