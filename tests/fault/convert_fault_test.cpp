@@ -59,8 +59,8 @@ TEST(ConvertFaults, LeaveNothingBehindWhereverWritingFails) {
     const auto source = scan_of(100'000);
     ASSERT_TRUE(source);
     const uint64_t whole = 100'000 * source->schema().stride;
-    // In the scratch file, in the payloads, and in the directory behind them.
-    for (const uint64_t limit : {uint64_t{0}, whole / 3, whole, whole + 8192, whole + 9000}) {
+    // In the scratch file: the cache is smaller. resume_test.cpp has every other place.
+    for (const uint64_t limit : {uint64_t{0}, whole / 3, whole - 1}) {
         const TempFolder folder;
         octree::BuildOptions options{
             .inputs = {source.get()}, .output = folder / "a.luc", .normals = octree::NormalsMode::none};
