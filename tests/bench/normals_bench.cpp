@@ -1,0 +1,119 @@
+// Normals: PCL's own estimator with its usual search and with ours in turn, the whole stage, and how many
+// points of virtual scans are oriented right. Prints figures beside their targets; takes the number of
+// points, a million unless told.
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "io/core/options.h"
+#include "octree/normals/pcl_normals.h"
+#include "tests/octree/virtual_scans.h"
+
+namespace lucarne::octree {
+namespace {
+
+using namespace testing;
+
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+void row(const std::string& what, double value, const char* unit, const char* target, bool kept) {
+    fmt::print("{:<64} {:>9.3f} {:<12} target {:>9}  {}\n", what, value, unit, target,
+               kept ? "kept" : "MISSED");
+    std::fflush(stdout);
+}
+
+/// The share of normals that are the same lines within a degree.
+double agreeing(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    const float degree = std::cos(std::numbers::pi_v<float> / 180);
+    size_t same = 0;
+    for (size_t i = 0; i < a.size(); ++i) same += std::abs(glm::dot(a[i], b[i])) >= degree;
+    return static_cast<double>(same) / static_cast<double>(a.size());
+}
+
+void compare_with_pcl(const Scan& scan) {
+    std::vector<glm::vec3> points;
+    for (const auto& p : scan.cloud.points) points.emplace_back(p);
+    const double millions = 1e-6 * static_cast<double>(points.size());
+    std::vector<double> usual, ours, ratios;
+    std::vector<glm::vec3> by_flann, by_leaf;
+    for (int round = 0; round < 3; ++round) {
+        const double start = cpu_seconds();
+        by_flann = pcl_normals(points, 16, NeighbourSearch::flann);
+        const double middle = cpu_seconds();
+        by_leaf = pcl_normals(points, 16, NeighbourSearch::leaf);
+        usual.push_back((middle - start) / millions);
+        ours.push_back((cpu_seconds() - middle) / millions);
+        ratios.push_back(usual.back() / ours.back());
+    }
+    row("pcl::NormalEstimationOMP, k = 16, PCL's search", median(usual), "CPU-s/M", "-", true);
+    row("the same, our search plugged in", median(ours), "CPU-s/M", "1.1", median(ours) <= 1.1);
+    row("throughput over PCL's", median(ratios), "times", ">= 4", median(ratios) >= 4);
+    const double same = agreeing(by_flann, by_leaf);
+    row("normals within a degree of PCL's", 100 * same, "%", ">= 99", same >= 0.99);
+}
+
+void whole_stage(const std::string& scene, const Scan& scan) {
+    NormalOptions options;
+    options.stations = scan.stations;
+    const double millions = 1e-6 * static_cast<double>(scan.cloud.points.size());
+    std::vector<double> with, without;
+    for (int round = 0; round < 3; ++round)
+        for (const bool known : {true, false}) {
+            options.stations = known ? scan.stations : std::vector<glm::dvec3>();
+            const double start = cpu_seconds();
+            estimate(scan.cloud, options, 2);
+            (known ? with : without).push_back((cpu_seconds() - start) / millions);
+        }
+    row(scene + ": neighbours, normals, areas, orientation, stations known", median(with), "CPU-s/M", "1.0",
+        median(with) <= 1.0);
+    row(scene + ": the same, no stations", median(without), "CPU-s/M", "1.0", median(without) <= 1.0);
+}
+
+void orientation(const std::string& scene, const Scan& scan, double known, double unknown) {
+    for (const bool stations : {true, false}) {
+        NormalOptions options;
+        if (stations) options.stations = scan.stations;
+        const double target = stations ? known : unknown;
+        double least = 1;
+        for (const uint32_t parts : {1u, 3u})
+            least = std::min(least, score(scan.cloud, estimate(scan.cloud, options, parts)).oriented);
+        row(fmt::format("{}: oriented right, {}", scene, stations ? "stations known" : "no stations"),
+            100 * least, "%", fmt::format(">= {}", 100 * target).c_str(), least >= target);
+    }
+}
+
+void bench(uint64_t points) {
+    fmt::print("{:.1f}M points a scan, as scanned from the scenes' stations, 2 mm noise\n",
+               1e-6 * static_cast<double>(points));
+    const Scan nave = scan_of("nave", points);
+    compare_with_pcl(nave);
+    whole_stage("nave", nave);
+    orientation("nave", nave, 0.995, 0.97);
+    orientation("two-rooms", scan_of("two-rooms", points), 0.995, 0.97);
+    orientation("statue", scan_of("statue", points), 0.99, 0.99);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
+
+int main(int argc, char** argv) {
+    const auto points = lucarne::parse_count("points", argc > 1 ? argv[1] : "1M");
+    if (!points) {
+        std::fprintf(stderr, "%s\n", points.error().line().c_str());
+        return 2;
+    }
+    lucarne::octree::bench(*points);
+    return 0;
+}
