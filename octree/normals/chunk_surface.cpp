@@ -46,7 +46,7 @@ class SiteEstimator {
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
         const Patch* patch = &nearest;  // that of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
-        const bool on_line = fit.roundness < kLine;
+        const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
             if (take_window(nearest, around, reach))
@@ -60,7 +60,7 @@ class SiteEstimator {
                 patch = improve(fit, fitter_.fit(further_, spacing), further_, *patch);
             }
         }
-        connect(site, nearest, on_line && patch != &nearest ? patch : nullptr, fit.normal);
+        connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
             // A blob has no disc, and a stray point must not get that of the empty space around it.
             surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
@@ -74,6 +74,7 @@ class SiteEstimator {
             around.within(std::min(cell.widest_search(), cell.widest_cut()), window_);
             cell.cut_open(window_);
             if (apart && !cell.closed()) return leave_out(site);
+            connect_rim(site, cell, reach2);
             surface_.areas[site] = cell.area_at_rim();
         } else {
             surface_.areas[site] = cell.area();
@@ -131,10 +132,28 @@ class SiteEstimator {
             ++border;
         }
     }
+    /// From the rim of a patch to what goes on beyond it: a patch much denser than the surface around it has
+    /// no other edges to that.
+    void connect_rim(uint32_t site, const ShareCell& cell, float reach2) {
+        size_t nearest = window_.count;
+        float best = std::numeric_limits<float>::max();
+        for (size_t i = 0; i < window_.count; ++i)
+            if (window_.distance2[i] > reach2 && window_.distance2[i] < best && cell.goes_on(window_, i)) {
+                best = window_.distance2[i];
+                nearest = i;
+            }
+        if (nearest == window_.count) return;
+        const uint32_t other = window_.index[nearest];
+        if (neighbours_.is_halo(other))
+            border_.push_back({site, neighbours_.halo_point(other), window_.offset(nearest)});
+        else
+            surface_.edges[site].back() = other;
+    }
     void set_edge(uint32_t& edge, uint32_t other) const {
         if (!neighbours_.is_halo(other)) edge = other;
     }
-    /// From one scan line to the next: to the nearest in each quarter.
+    /// From one scan line to the next, and out of what noise has made a blob: to the nearest in each quarter
+    /// that is low over the plane.
     void connect_across(SiteEdges& edges, const Patch& wide, const glm::vec3& normal) const {
         const ShareCell axes(normal, 1, 1);
         std::array<float, kSiteEdges - kNearEdges> best;
@@ -143,7 +162,7 @@ class SiteEstimator {
             const glm::vec3 offset = wide.offset(i);
             const float x = glm::dot(offset, axes.x_axis()), y = glm::dot(offset, axes.y_axis());
             const size_t quarter = (x > 0 ? 1 : 0) + (y > 0 ? 2 : 0);
-            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter]) {
+            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter] && axes.goes_on(wide, i)) {
                 best[quarter] = wide.distance2[i];
                 set_edge(edges[kNearEdges + quarter], wide.index[i]);
             }

@@ -108,6 +108,11 @@ void ShareCell::cut_open(const Patch& around) {
         if (nearness_[d] < known) nearness_[d] = further[d];
 }
 
+bool ShareCell::goes_on(const Patch& around, size_t i) const {
+    const float height = glm::dot(around.offset(i), normal_);
+    return height * height <= kSlope * kSlope * (around.distance2[i] - height * height);
+}
+
 float ShareCell::least() const {
     return *std::min_element(nearness_.begin(), nearness_.end());
 }

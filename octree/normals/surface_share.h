@@ -26,6 +26,8 @@ class ShareCell {
     void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer);
     /// Cuts, where the cell is open, what is nearer to anything that goes on with the surface.
     void cut_open(const Patch& around);
+    /// Whether a point is low enough over the tangent plane to go on with the surface.
+    bool goes_on(const Patch& around, size_t i) const;
     /// Whether neighbours beyond the reach may still cut off much: then the known ones say nothing of one
     /// side.
     bool open() const;

@@ -147,10 +147,9 @@ void Patch::take_nearest(Patch& from, size_t most) {
     }
     std::array<int32_t, 2 * kMostRanked + kLanes> ranks;
     LUCARNE_CALL(rank, from.distance2.data(), candidates, ranks.data());
-    make_room(candidates);
+    make_room(most);
     for (size_t i = 0; i < candidates; ++i) {
-        const auto at = static_cast<size_t>(ranks[i]);
-        if (at >= most) continue;
+        const size_t at = std::min(static_cast<size_t>(ranks[i]), most);  // the others all go behind the last
         x[at] = from.x[i];
         y[at] = from.y[i];
         z[at] = from.z[i];
