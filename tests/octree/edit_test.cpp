@@ -133,7 +133,7 @@ TEST(Append, OutsideGrowsTheRootAndLosesNoPoint) {
         EXPECT_GT(report->kept_nodes, 0u);
     }
     expect_points_of(folder / "a.luc", folder / "fresh.luc");
-    const auto& root = opened(folder / "a.luc")->header().root;
+    const Cube root = opened(folder / "a.luc")->header().root;
     EXPECT_GE(root.doublings, 5u);
     EXPECT_EQ(opened(folder / "a.luc")->superblock().generation, 3u);
 }
