@@ -73,4 +73,8 @@ void store_scalar(ScalarType type, std::byte* at, double value) {
     }
 }
 
+Result<void> PointSource::pick(std::span<const uint64_t>, PointBatch&) const {
+    return failed(info().path, "its points can only be read one after the other");
+}
+
 }  // namespace lucarne::io

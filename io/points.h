@@ -127,6 +127,8 @@ struct ScanInfo {
     std::string path;
     std::string format;                 ///< "LAS 1.2, point format 3"
     uint64_t declared_points = 0;       ///< what the header says; the truth is what read() gives
+    uint64_t file_bytes = 0;            ///< with `modified`: which state of the file this is; 0: no file
+    int64_t modified = 0;               ///< of the file, ns since 1970
     double metres_per_unit = 1.0;
     /// How many bits of a component of `color` are in use: 8 or 16 (many 16-bit fields hold 0-255; the
     /// attribute stays as the file had it), 0 for floats from 0 to 1. Also in `details` as "color_bits".
@@ -156,6 +158,11 @@ class PointSource {
     virtual const Schema& schema() const = 0;
     virtual const ScanInfo& info() const = 0;
     virtual Result<std::unique_ptr<PointReader>> open() const = 0;
+    /// Whether pick() reaches any point without reading those before it.
+    virtual bool seekable() const { return false; }
+    /// Replaces `batch` by the points of these indices, ascending and below info().declared_points; those with a
+    /// non-finite coordinate are left out. Thread-safe. Errors: unreadable; not seekable.
+    virtual Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const;
 };
 
 /// Takes batches in the schema it was made for.

@@ -167,30 +167,31 @@ Result<void> CacheFile::check_payloads() {
     return {};
 }
 
-Result<NodeData> CacheFile::load(uint32_t node) const {
-    const NodeInfo& info = nodes_[node];
-    const Payload& payload = payloads_[node];
+Result<NodeData> load_payload(const InputFile& file, uint32_t node, const NodeInfo& info,
+                              const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride) {
     const bool raw = payload.codec == format::kCodecRaw;
-    LUCARNE_ASSIGN(auto bytes, read_checked(file_, payload.offset, info.payload_bytes, payload.checksum,
+    LUCARNE_ASSIGN(auto bytes, read_checked(file, payload.offset, info.payload_bytes, payload.checksum,
                                             fmt::format("node {}", node), raw ? 0 : codec::kReadAhead));
-    const Layout& layout = layouts_[payload.layout];
-    NodeData data{info.count, {}};
-    if (raw) {
-        data.records = std::move(bytes);
-    } else {
-        data.records.resize(size_t{info.count} * layout.stride);
-        if (!layout.decoders->decode(std::span(bytes).first(info.payload_bytes), data.records))
-            return damaged(file_, fmt::format("the points of node {} do not decode", node));
-    }
+    if (raw) return NodeData{info.count, std::move(bytes)};
+    NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * stride)};
+    if (!decoders.decode(std::span(bytes).first(info.payload_bytes), data.records))
+        return damaged(file, fmt::format("the points of node {} do not decode", node));
+    return data;
+}
+
+Result<NodeData> CacheFile::load(uint32_t node) const {
+    const Layout& layout = layouts_[payloads_[node].layout];
+    LUCARNE_ASSIGN(NodeData data,
+                   load_payload(file_, node, nodes_[node], payloads_[node], *layout.decoders, layout.stride));
     if (!layout.to_schema) return data;
-    NodeData converted{info.count, {}};
+    NodeData converted{data.count, {}};
     layout.to_schema->convert(data.records.data(), data.count, converted.records);
     return converted;
 }
 
 Entry CacheFile::entry(uint32_t node) const {
     const NodeInfo& info = nodes_[node];
-    const Payload& payload = payloads_[node];
+    const StoredPayload& payload = payloads_[node];
     return {.key = info.key,
             .child_mask = info.child_mask,
             .codec = payload.codec,

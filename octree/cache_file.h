@@ -18,6 +18,15 @@ namespace lucarne::octree {
 /// Both superblocks of a file; empty where damaged.
 Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const InputFile& file);
 
+/// Where a node's points are, and how.
+struct StoredPayload {
+    uint64_t offset = 0, checksum = 0;
+    uint8_t codec = format::kCodecRaw, layout = 0;
+};
+/// Reads, checks and decodes a node's points, in the layout that they are stored in. Its sizes were checked against the file before.
+Result<NodeData> load_payload(const InputFile& file, uint32_t node, const NodeInfo& info,
+                              const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
+
 /// A cache on disk: directory in memory, points by pread.
 class CacheFile final : public NodeSource {
  public:
@@ -34,11 +43,6 @@ class CacheFile final : public NodeSource {
     const format::Superblock& superblock() const { return block_; }
 
  private:
-    struct Payload {
-        uint64_t offset = 0, checksum = 0;
-        uint8_t codec = format::kCodecRaw, layout = 0;
-    };
-
     CacheFile(InputFile file, const format::Superblock& block) : file_(std::move(file)), block_(block) {}
     Result<void> read_directory();
     Result<void> check_structure();
@@ -48,7 +52,7 @@ class CacheFile final : public NodeSource {
     format::Superblock block_;
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
-    std::vector<Payload> payloads_;
+    std::vector<StoredPayload> payloads_;
     /// A schema in which payloads are stored.
     struct Layout {
         uint32_t stride = 0;

@@ -32,6 +32,9 @@ class CacheWriter {
     /// An update that failed: cuts off what it wrote, unless the switch may have happened.
     void abandon();
 
+    /// What is appended so far.
+    Result<InputFile> reader() const { return output_.reader(); }
+
     uint64_t nodes() const { return nodes_; }
     uint64_t bytes() const { return end_; }
 

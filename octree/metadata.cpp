@@ -98,6 +98,8 @@ json scan_json(const io::ScanInfo& scan) {
     return {{"path", scan.path},
             {"format", scan.format},
             {"declared_points", scan.declared_points},
+            {"file_bytes", scan.file_bytes},
+            {"modified", scan.modified},
             {"metres_per_unit", scan.metres_per_unit},
             {"color_bits", scan.color_bits},
             {"stations", std::move(stations)},
@@ -109,6 +111,8 @@ io::ScanInfo scan_of(const json& value) {
     scan.path = value.at("path").get<std::string>();
     scan.format = value.at("format").get<std::string>();
     scan.declared_points = value.at("declared_points").get<uint64_t>();
+    scan.file_bytes = value.value("file_bytes", uint64_t{0});
+    scan.modified = value.value("modified", int64_t{0});
     scan.metres_per_unit = number(value.at("metres_per_unit"));
     scan.color_bits = value.value("color_bits", scan.color_bits);
     require(scan.color_bits == 0 || scan.color_bits == 8 || scan.color_bits == 16,

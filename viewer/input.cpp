@@ -1,65 +1,130 @@
 #include "viewer/input.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <string>
 #include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/core/log.h"
 #include "io/formats/scan.h"
-#include "octree/build/build.h"
 #include "octree/cache.h"
+#include "viewer/inputs.h"
+#include "viewer/kept_cache.h"
 
 namespace lucarne::viewer {
 namespace {
 
-/// A folder of our own that is removed with all that is in it.
-class TemporaryFolder {
- public:
-    static Result<TemporaryFolder> create() {
-        std::error_code code;
-        const auto base = std::filesystem::temp_directory_path(code);
-        if (code)
-            return failed("temporary folder", code.message(), "set TMPDIR to a folder that can be written");
-        std::string name = (base / "lucarne-XXXXXX").string();
-        if (!mkdtemp(name.data()))
-            return failed(base.string(), std::strerror(errno), "set TMPDIR to a folder that can be written");
-        return TemporaryFolder(name);
-    }
-    TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::move(other.path_)) { other.path_.clear(); }
-    TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-    ~TemporaryFolder() {
-        std::error_code code;
-        if (!path_.empty()) std::filesystem::remove_all(path_, code);
-    }
-    const std::filesystem::path& path() const { return path_; }
+using octree::GrowingBuild;
 
- private:
-    explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
-    std::filesystem::path path_;
+constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< of a build beside which pictures are drawn
+using Source = std::shared_ptr<const octree::NodeSource>;
+
+/// The scans, and where their cache goes; or the cache, if it is there.
+struct Scans {
+    Source cache;
+    GrowingBuild::Inputs inputs;
+    octree::BuildOptions build;
+    std::optional<TemporaryFolder> folder;
 };
+
+Result<Scans> open_scans(const InputOptions& options) {
+    Scans scans;
+    std::vector<io::ScanInfo> infos;
+    for (const auto& path : options.paths) {
+        LUCARNE_ASSIGN(auto scan, io::open_scan(path));
+        infos.push_back(scan->info());
+        scans.inputs.push_back(std::move(scan));
+    }
+    const KeptCache kept(infos);
+    if (!options.no_cache) {
+        scans.cache = kept.find();
+        if (scans.cache) return scans;
+        if (const auto place = kept.place()) {
+            scans.build.output = *place;
+            scans.build.overwrite = true;  // an older state of the same
+            log::info("{}: {}; converting, the cache is kept as {}", options.paths[0], infos[0].format,
+                      place->string());
+        } else {
+            log::warn("{}: there is no place to keep its cache; it is converted again the next time",
+                      options.paths[0]);
+        }
+    }
+    if (scans.build.output.empty()) {
+        LUCARNE_ASSIGN(scans.folder, TemporaryFolder::create());
+        scans.build.output = scans.folder->path() / "scan.luc";
+    }
+    return scans;
+}
+
+bool has_cache(const std::vector<std::string>& paths) {
+    return std::ranges::any_of(paths, [](const auto& path) { return octree::is_cache(path); });
+}
 
 }  // namespace
 
-Result<std::shared_ptr<const octree::NodeSource>> open_input(const std::filesystem::path& path) {
+Result<TemporaryFolder> TemporaryFolder::create() {
+    std::error_code code;
+    const auto base = std::filesystem::temp_directory_path(code);
+    if (code) return failed("temporary folder", code.message(), "set TMPDIR to a folder that can be written");
+    std::string name = (base / "lucarne-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+        return failed(base.string(), std::strerror(errno), "set TMPDIR to a folder that can be written");
+    return TemporaryFolder(name);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code code;
+    if (!path_.empty()) std::filesystem::remove_all(path_, code);
+}
+
+void add_input_options(CLI::App& command, InputOptions& options) {
+    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")
+        ->required();
+    command.add_flag(
+        "--no-cache", options.no_cache,
+        "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
+        "the user's cache folder, and found the next time)");
+}
+
+Result<OpenInput> open_growing(const InputOptions& options) {
+    OpenInput open;
+    if (has_cache(options.paths)) {
+        LUCARNE_ASSIGN(open.source, open_inputs(options.paths));
+        return open;
+    }
+    LUCARNE_ASSIGN(Scans scans, open_scans(options));
+    open.source = scans.cache;
+    if (open.source) return open;
+    open.folder = std::move(scans.folder);
+    octree::GrowingOptions growing;
+    growing.build = std::move(scans.build);
+    growing.build.memory = kMemoryBeside;
+    LUCARNE_ASSIGN(open.build, GrowingBuild::open(std::move(scans.inputs), std::move(growing)));
+    open.source = open.build->source();
+    return open;
+}
+
+Result<Source> open_input(const InputOptions& options) {
+    if (has_cache(options.paths)) return open_inputs(options.paths);
+    LUCARNE_ASSIGN(Scans scans, open_scans(options));
+    if (scans.cache) return scans.cache;
+    for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
+    LUCARNE_TRY(octree::build_cache(scans.build));
+    // The open file lives on after its name is gone with the folder.
+    LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
+    return Source(std::move(cache));
+}
+
+Result<Source> open_input(const std::filesystem::path& path) {
     if (octree::is_cache(path)) {
         LUCARNE_ASSIGN(auto cache, octree::open_cache(path));
-        return std::shared_ptr<const octree::NodeSource>(std::move(cache));
+        return Source(std::move(cache));
     }
-    LUCARNE_ASSIGN(const auto scan, io::open_scan(path));
-    log::info("{}: {}; converting it into a temporary cache (lucarne convert keeps one)", path.string(),
-              scan->info().format);
-    LUCARNE_ASSIGN(const TemporaryFolder folder, TemporaryFolder::create());
-    octree::BuildOptions build;
-    build.inputs = {scan.get()};
-    build.output = folder.path() / "scan.luc";
-    LUCARNE_TRY(octree::build_cache(build));
-    // The open file lives on after its name is gone with the folder.
-    LUCARNE_ASSIGN(auto cache, octree::open_cache(build.output));
-    return std::shared_ptr<const octree::NodeSource>(std::move(cache));
+    return open_input(InputOptions{{path.string()}, false});
 }
 
 }  // namespace lucarne::viewer

@@ -2,15 +2,60 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "io/core/error.h"
+#include "octree/quick/growing_build.h"
 #include "octree/source.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lucarne::viewer {
 
-/// An octree of whatever the user names: a cache as it is, any scan file through a temporary cache in the
-/// system's folder for temporary files, which is gone once it is closed (however the program ends).
-/// Errors: those of the readers and the builder.
+/// Caches and scans, drawn together. Where all are scans they become one cache.
+struct InputOptions {
+    std::vector<std::string> paths;
+    bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
+};
+
+/// Declares INPUT... and --no-cache. `options` outlives the command.
+void add_input_options(CLI::App& command, InputOptions& options);
+
+/// A folder of our own that is removed with all that is in it.
+class TemporaryFolder {
+ public:
+    static Result<TemporaryFolder> create();
+    TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::move(other.path_)) { other.path_.clear(); }
+    TemporaryFolder& operator=(TemporaryFolder&& other) noexcept {
+        std::swap(path_, other.path_);
+        return *this;
+    }
+    ~TemporaryFolder();
+    const std::filesystem::path& path() const { return path_; }
+
+ private:
+    explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
+    std::filesystem::path path_;
+};
+
+/// What can be drawn of the input at once.
+struct OpenInput {
+    std::shared_ptr<const octree::NodeSource> source;
+    std::optional<TemporaryFolder> folder;        ///< of a cache that is not kept; goes after the build
+    std::unique_ptr<octree::GrowingBuild> build;  ///< of scans without a cache yet; not begun
+};
+
+/// Caches as they are, or the one kept of these scans, or a sample of them and their build. Errors: those of the
+/// readers.
+Result<OpenInput> open_growing(const InputOptions& options);
+
+/// The same, waiting for a cache that is not there yet. Errors: those of the builder as well.
+Result<std::shared_ptr<const octree::NodeSource>> open_input(const InputOptions& options);
+/// Of one input.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const std::filesystem::path& path);
 
 }  // namespace lucarne::viewer

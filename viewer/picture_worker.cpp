@@ -19,6 +19,7 @@ struct PictureWorker::State {
     std::condition_variable changed;
     PictureRequest wanted;
     uint64_t wanted_number = 0;
+    std::shared_ptr<const octree::NodeSource> next_source;  ///< to be drawn from instead
     std::shared_ptr<const Picture> latest;
     Result<void> error;
     gi::DeviceInfo device;
@@ -28,7 +29,7 @@ struct PictureWorker::State {
 
     void work(const WorkerDevice& device_of, const std::shared_ptr<const octree::NodeSource>& source,
               const PipelineOptions& options, std::promise<Result<void>> started);
-    void make_pictures(gi::Device& gl, Pipeline& pipeline);
+    void make_pictures(gi::Device& gl, Pipeline& pipeline, std::shared_ptr<const octree::NodeSource> first);
     void publish(Result<std::shared_ptr<Picture>> made, uint64_t request);
 };
 
@@ -115,23 +116,30 @@ void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64
     published();
 }
 
-void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline) {
+void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline,
+                                         std::shared_ptr<const octree::NodeSource> first) {
     Told told;
     uint64_t made_of = 0, number = 0;
     bool again = false;
+    std::shared_ptr<const octree::NodeSource> shown = std::move(first);
     for (;;) {
         PictureRequest request;
         uint64_t request_number = 0;
+        std::shared_ptr<const octree::NodeSource> other;
         {
             std::unique_lock lock(mutex);
-            changed.wait(lock, [&] { return stop || again || wanted_number != made_of; });
+            changed.wait(lock, [&] {
+                return stop || again || wanted_number != made_of || (next_source && wanted_number != 0);
+            });
             if (stop) return;
+            other = std::exchange(next_source, nullptr);
             request = wanted;
             request_number = wanted_number;
         }
         made_of = request_number;
         Result<std::shared_ptr<Picture>> made = [&]() -> Result<std::shared_ptr<Picture>> {
             try {
+                if (other) LUCARNE_TRY(pipeline.set_source(shown = other));
                 LUCARNE_TRY(tell(pipeline, request, request_number, told));
                 return make_picture(gl, pipeline, request);
             } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
@@ -142,6 +150,7 @@ void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline) {
         if (made) {
             (*made)->number = ++number;
             (*made)->request = request_number;
+            (*made)->source = shown;
         }
         publish(std::move(made), request_number);
     }
@@ -159,7 +168,7 @@ void PictureWorker::State::work(const WorkerDevice& device_of,
         } else {
             device = (*gl)->info();
             started.set_value({});
-            make_pictures(**gl, **pipeline);
+            make_pictures(**gl, **pipeline, source);
         }
     }
     device_of.release();
@@ -203,6 +212,14 @@ uint64_t PictureWorker::request(PictureRequest request) {
     }
     state_->changed.notify_all();
     return number;
+}
+
+void PictureWorker::set_source(std::shared_ptr<const octree::NodeSource> source) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->next_source = std::move(source);
+    }
+    state_->changed.notify_all();
 }
 
 std::shared_ptr<const Picture> PictureWorker::latest() const {

@@ -28,6 +28,7 @@ struct PictureRequest {
 struct Picture {
     uint64_t number = 0;   ///< 1 for the first that the worker made
     uint64_t request = 0;  ///< the request it is of
+    std::shared_ptr<const octree::NodeSource> source;
     bool moving = false;
     ImageSize size;
     std::vector<std::byte> rgba;  ///< row 0 on top
@@ -65,6 +66,8 @@ class PictureWorker {
 
     /// Replaces the request before; returns its number.
     uint64_t request(PictureRequest request);
+    /// Pictures are of this source from the next one on.
+    void set_source(std::shared_ptr<const octree::NodeSource> source);
     std::shared_ptr<const Picture> latest() const;  ///< null before the first
     /// The newest request's error, if making its picture failed; it is not tried again.
     Result<void> error() const;

@@ -54,9 +54,10 @@ bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector
 }  // namespace
 
 struct Pipeline::State {
-    State(gi::Device& on, std::shared_ptr<const octree::NodeSource> from, const PipelineOptions& how)
-        : device(on), source(std::move(from)), options(how), times(on) {}
+    State(gi::Device& on, const PipelineOptions& how) : device(on), options(how), times(on) {}
 
+    Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
+    void empty_pool();
     void start_stream();
     void choose_cuts(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
@@ -96,6 +97,7 @@ struct Pipeline::State {
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
+    bool fresh = false;  // the source has taken another's place, and nothing of it has been drawn yet
     bool changed =
         true;  // scene, settings, budgets or engine: cuts are chosen anew, the average starts again
 
@@ -126,12 +128,35 @@ uint64_t Pipeline::State::least_stride() const {
     return least;
 }
 
+void Pipeline::State::empty_pool() {
+    residency.reset();
+    if (!source) return;
+    for (uint32_t node = 0; node < source->nodes().size(); ++node)
+        if (pool.holds(node)) pool.evict(node);
+}
+
+Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSource> from) {
+    if (const uint64_t bytes = from->directory_bytes(); options.memory < bytes + kLeastTransit)
+        return bad_arguments("--memory",
+                             fmt::format("{} are too little: the directory of the octree alone takes {}",
+                                         bytes_text(options.memory), bytes_text(bytes)),
+                             "allow more");
+    empty_pool();
+    source = std::move(from);
+    const uint64_t capacity = pool_surfels();
+    if (capacity > pool.capacity()) {
+        pool = {};
+        LUCARNE_ASSIGN(pool, gi::SurfelPool::create(device, static_cast<uint32_t>(capacity)));
+    }
+    start_stream();
+    changed = fresh = true;
+    return {};
+}
+
 /// Begins with nothing resident. What fits the stream's cap fits the pool, because a node costs its pages in
 /// both. A node on its way is held as records and, at most all that were polled, packed.
 void Pipeline::State::start_stream() {
-    if (residency) residency.reset();
-    for (uint32_t node = 0; node < source->nodes().size(); ++node)
-        if (pool.holds(node)) pool.evict(node);
+    empty_pool();
     octree::ResidencyOptions how;
     how.memory = pool_bytes(pool.capacity());
     const uint64_t stride = least_stride(), left = options.memory - source->directory_bytes();
@@ -281,7 +306,7 @@ Result<void> Pipeline::State::finish(const FrameRequest& request) {
 
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
-    LUCARNE_TRY(stream(request.wait));
+    LUCARNE_TRY(stream(request.wait || fresh));
     times.end();
     if (cuts_stale) {
         times.begin("upload of cuts");
@@ -338,25 +363,22 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
                                                  std::shared_ptr<const octree::NodeSource> source,
                                                  const PipelineOptions& options) {
     std::unique_ptr<Pipeline> pipeline(new Pipeline);
-    pipeline->state_ = std::make_unique<State>(device, std::move(source), options);
+    pipeline->state_ = std::make_unique<State>(device, options);
     State& state = *pipeline->state_;
-    if (options.memory < state.source->directory_bytes() + kLeastTransit)
-        return bad_arguments("--memory",
-                             fmt::format("{} are too little: the directory of the octree alone takes {}",
-                                         bytes_text(options.memory), bytes_text(state.source->directory_bytes())),
-                             "allow more");
     device.set_memory_cap(options.device_memory);
-    const uint64_t capacity = state.pool_surfels();
-    LUCARNE_ASSIGN(state.pool, gi::SurfelPool::create(device, static_cast<uint32_t>(capacity)));
+    LUCARNE_TRY(state.take_source(std::move(source)));
+    state.fresh = false;  // there is no picture yet that half of one would spoil
     const auto& header = state.source->header();
     state.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
     state.budgets = preset.budgets;
-    state.start_stream();
     return pipeline;
 }
 
+Result<void> Pipeline::set_source(std::shared_ptr<const octree::NodeSource> source) {
+    return state_->take_source(std::move(source));
+}
 const octree::NodeSource& Pipeline::source() const {
     return *state_->source;
 }
@@ -439,7 +461,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         state.choose_cuts(request);
     }
     state.last = request;
-    state.changed = false;
+    state.changed = state.fresh = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return state.stats(state.last_seconds);
 }

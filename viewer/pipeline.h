@@ -71,6 +71,10 @@ class Pipeline {
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
 
+    /// Draws from another source from now on: a build that has grown. The next picture waits for all its nodes, so
+    /// that none shows parts of both. Errors: a directory that is larger than the cap; no device memory.
+    Result<void> set_source(std::shared_ptr<const octree::NodeSource> source);
+
     const octree::NodeSource& source() const;
     const PipelineOptions& options() const;
 

@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "io/core/log.h"
+#include "io/core/process.h"
 #include "viewer/actions.h"
 #include "viewer/panels/panels.h"
 #include "viewer/rgba.h"
@@ -67,8 +68,46 @@ void ViewSession::take_picture() {
         budget_.observe(latest->stats, latest->size);
     }
     model_.scale = quality_.scale();
-    if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0)
+    const bool last_source = !input_.build || (input_.build->finished() && latest->source == input_.source);
+    if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source)
         ++whole_pictures_;
+}
+
+/// Light and camera as they would be had the whole been known at once, unless the user has changed them.
+void ViewSession::take_bounds(const octree::SourceHeader& before, const octree::SourceHeader& now) {
+    if ((before.min == now.min && before.max == now.max) || model_.scene_version != 1) return;
+    auto start = input_.start(now);
+    if (!start) return;
+    const auto camera = model_.rig.camera();
+    const bool at_home = CameraRig(model_.home).camera().position == camera.position &&
+                         CameraRig(model_.home).camera().target == camera.target;
+    model_.scene = std::move(start->scene);
+    model_.home = start->camera;
+    if (at_home) model_.rig = CameraRig(model_.home);
+    model_.scene_changed();
+}
+
+/// The build begins once there is something to see, and what it has finished is drawn from then on.
+void ViewSession::follow_build() {
+    if (!input_.build) return;
+    if (!begun_) {
+        if (!model_.picture || model_.picture->stats.nodes_pending > 0) return;
+        begun_ = true;
+        log::info("first picture after {:.2f} s: {} points", seconds_since_start(),
+                  model_.picture->stats.view_points);
+        input_.build->begin(&Window::wake);
+    }
+    if (auto source = input_.build->source(); source != input_.source) {
+        take_bounds(input_.source->header(), source->header());
+        input_.source = source;
+        worker_.set_source(std::move(source));
+    }
+    const octree::BuildProgress progress = input_.build->progress();
+    const auto error = input_.build->error();
+    if (!error) model_.message = "the cache was not finished: " + error.error().line();
+    window_.set_title(progress.stage.empty()
+                          ? input_.title
+                          : fmt::format("{} - {} {:.0f} %", input_.title, progress.stage, 100 * progress.share));
 }
 
 /// Shift and the mouse are the light's.
@@ -178,6 +217,7 @@ Result<void> ViewSession::run() {
         take_picture();
         window_.begin_frame();
         if (model_.picture) window_.show(*model_.picture);
+        follow_build();
         take_input();
         draw_panels();
         window_.draw();

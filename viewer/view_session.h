@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
+#include "octree/quick/growing_build.h"
 #include "viewer/cost_model.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
@@ -20,14 +22,31 @@ struct ScriptedShot {
     bool overwrite = false;
 };
 
+/// Where the view begins, and in what light.
+struct StartingView {
+    gi::Scene scene;
+    gi::SceneCamera camera;
+};
+
+/// What is looked at.
+struct ViewedInput {
+    std::string title;                                 ///< of the window
+    std::shared_ptr<const octree::NodeSource> source;  ///< that the worker was started with
+    octree::GrowingBuild* build = nullptr;             ///< begun with the first picture; none: the source is whole
+    /// For a cloud of known bounds: a sample's are not quite those of the whole.
+    std::function<Result<StartingView>(const octree::SourceHeader&)> start;
+};
+
 /// The loop of the window: input into the model, the model into requests, pictures onto the screen.
 class ViewSession {
  public:
-    ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot)
+    ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
+                ViewedInput input)
         : window_(window),
           worker_(worker),
           model_(model),
           shot_(std::move(shot)),
+          input_(std::move(input)),
           quality_(model.frame_time),
           budget_(model.frame_time) {}
 
@@ -38,6 +57,8 @@ class ViewSession {
     using Clock = std::chrono::steady_clock;
 
     void take_picture();
+    void follow_build();
+    void take_bounds(const octree::SourceHeader& before, const octree::SourceHeader& now);
     void take_input();
     void take_light_gesture();
     bool take_navigation();
@@ -50,6 +71,8 @@ class ViewSession {
     PictureWorker& worker_;
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
+    ViewedInput input_;
+    bool begun_ = false;
     MovingQuality quality_;
     FrameBudget budget_;
     PictureRequest sent_;

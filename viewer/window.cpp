@@ -97,6 +97,12 @@ void Window::hide() {
     glfwPollEvents();
 }
 
+void Window::set_title(const std::string& title) {
+    if (title == title_) return;
+    title_ = title;
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
 bool Window::closing() const {
     return glfwWindowShouldClose(window_);
 }

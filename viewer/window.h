@@ -30,6 +30,7 @@ class Window {
     /// Ends wait() early; any thread.
     static void wake();
 
+    void set_title(const std::string& title);
     bool closing() const;
     /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
     void wait(double seconds);
@@ -55,6 +56,7 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     GLFWwindow* hidden_ = nullptr;
+    std::string title_;
     bool initialised_ = false, imgui_ = false;
     unsigned texture_ = 0;
     ImageSize texture_size_;

@@ -52,6 +52,8 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared
     } else {
         file.own_ = std::move(handle);
     }
+    constexpr int64_t kSecond = 1'000'000'000;
+    file.modified_ = status.st_mtim.tv_sec * kSecond + status.st_mtim.tv_nsec;
     return file;
 }
 
@@ -64,6 +66,7 @@ InputFile& InputFile::operator=(InputFile&& other) noexcept {
     std::swap(number_, other.number_);
     std::swap(identity_, other.identity_);
     std::swap(size_, other.size_);
+    std::swap(modified_, other.modified_);
     std::swap(path_, other.path_);
     return *this;
 }
@@ -152,6 +155,16 @@ Result<void> OutputFile::write_at(uint64_t offset, std::span<const std::byte> da
 }
 Result<void> OutputFile::read_at(uint64_t offset, std::span<std::byte> out) const {
     return read_exactly(fd_, offset, out, path_);
+}
+
+Result<InputFile> OutputFile::reader() const {
+    const int fd = ::fcntl(fd_, F_DUPFD_CLOEXEC, 0);
+    if (fd < 0) return failed(path_.string(), fmt::format("cannot be read ({})", reason(errno)));
+    InputFile file;
+    file.own_ = std::make_shared<const Handle>(fd);
+    file.size_ = position_;
+    file.path_ = path_;
+    return file;
 }
 
 Result<void> OutputFile::commit() {

@@ -24,6 +24,7 @@ class InputFile {
     ~InputFile();
 
     uint64_t size() const { return size_; }
+    int64_t modified() const { return modified_; }  ///< when it was opened, ns since 1970
     const std::filesystem::path& path() const { return path_; }
     /// Reads exactly `out.size()` bytes at `offset`; fewer is an error that says so (a truncated file).
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
@@ -31,6 +32,7 @@ class InputFile {
     Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const;
 
  private:
+    friend class OutputFile;
     InputFile() = default;
     Result<std::shared_ptr<const Handle>> handle() const;
 
@@ -39,6 +41,7 @@ class InputFile {
     uint64_t number_ = 0;  ///< in the pool
     FileIdentity identity_;
     uint64_t size_ = 0;
+    int64_t modified_ = 0;
     std::filesystem::path path_;
 };
 
@@ -59,6 +62,8 @@ class OutputFile {
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
     uint64_t position() const { return position_; }  ///< the end of what `append` wrote
+    /// What is written so far, to be read while more is appended; it outlives this object.
+    Result<InputFile> reader() const;
     Result<void> commit();
 
  private:

@@ -1,6 +1,10 @@
 #include "io/core/process.h"
 
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include <unistd.h>
 
@@ -11,6 +15,21 @@ uint64_t resident_memory() {
     uint64_t all = 0, resident = 0;
     if (!(statm >> all >> resident)) return 0;
     return resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+double seconds_since_start() {
+    std::ifstream stat("/proc/self/stat");  // pid (name) state ...: the 22nd is the start, ticks since boot (proc(5))
+    std::string text;
+    std::getline(stat, text);
+    const size_t name_end = text.rfind(')');
+    if (name_end == std::string::npos) return 0;
+    std::istringstream fields(text.substr(name_end + 1));
+    std::string field;
+    for (int i = 3; i <= 22; ++i) fields >> field;
+    timespec now{};
+    if (!fields || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
+    const double started = std::strtod(field.c_str(), nullptr) / static_cast<double>(sysconf(_SC_CLK_TCK));
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started;
 }
 
 }  // namespace lucarne

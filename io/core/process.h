@@ -7,4 +7,7 @@ namespace lucarne {
 /// Memory of this process that is resident, bytes, as the kernel counts it; 0 where it does not say.
 uint64_t resident_memory();
 
+/// Since this process was started, before main: to a hundredth of a second; 0 where the kernel does not say.
+double seconds_since_start();
+
 }  // namespace lucarne

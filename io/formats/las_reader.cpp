@@ -10,6 +10,7 @@
 #include "io/formats/las_layout.h"
 #include "io/formats/las_writer.h"
 #include "io/formats/laz/reader.h"
+#include "io/formats/pick.h"
 #include "io/formats/stations.h"
 
 namespace lucarne::io {
@@ -62,6 +63,8 @@ class LasSource final : public PointSource {
         info_.format = fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
                                    header_.point_format);
         info_.declared_points = header_.points;
+        info_.file_bytes = file_->size();
+        info_.modified = file_->modified();
         info_.metres_per_unit = las::metres_per_unit(name, header_);
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
@@ -80,6 +83,15 @@ class LasSource final : public PointSource {
     Result<std::unique_ptr<PointReader>> open() const override {
         if (compressed_) return laz::open_points(*compressed_, schema_);
         return std::make_unique<LasReader>(file_, header_, schema_);
+    }
+    bool seekable() const override { return !compressed_; }
+    Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
+        if (compressed_) return PointSource::pick(indices, batch);
+        batch.bytes.resize(indices.size() * schema_.stride);
+        batch.count = 0;
+        return for_picked(*file_, header_.points_offset, header_.record_length, indices, [&](const std::byte* at) {
+            las::decode(header_, at, 1, &batch.bytes[batch.count++ * schema_.stride], schema_.stride);
+        });
     }
 
  private:

@@ -10,6 +10,7 @@
 #include "io/formats/format.h"
 #include "io/formats/ply_layout.h"
 #include "io/formats/ply_writer.h"
+#include "io/formats/pick.h"
 #include "io/formats/text.h"
 
 namespace lucarne::io {
@@ -208,6 +209,8 @@ class PlySource final : public PointSource {
         info_.path = name;
         info_.format = fmt::format("PLY, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
         info_.declared_points = header_.vertices().count;
+        info_.file_bytes = file_->size();
+        info_.modified = file_->modified();
         LUCARNE_ASSIGN(auto remarks, ply::remarks_of(name, header_));
         info_.stations = std::move(remarks.stations);
         info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
@@ -223,6 +226,16 @@ class PlySource final : public PointSource {
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override {
         return std::make_unique<PlyReader>(file_, header_, layout_, vertices_offset_);
+    }
+    bool seekable() const override { return fixed(); }
+    Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
+        if (!fixed()) return PointSource::pick(indices, batch);
+        const size_t stride = layout_.schema.stride;
+        batch.bytes.resize(indices.size() * stride);
+        batch.count = 0;
+        return for_picked(*file_, vertices_offset_, layout_.packed_bytes, indices, [&](const std::byte* at) {
+            batch.count += layout_.unpack(at, &batch.bytes[batch.count * stride]);
+        });
     }
 
  private:

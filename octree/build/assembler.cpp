@@ -12,29 +12,32 @@ bool is_ancestor(const NodeKey& above, const NodeKey& key) {
 }  // namespace
 
 Result<Assembler> Assembler::create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
-                                    const std::filesystem::path& temp_folder) {
+                                    const std::filesystem::path& temp_folder,
+                                    BuildListener* listener) {
     LUCARNE_ASSIGN(ScratchFile samples, ScratchFile::create(temp_folder));
-    return Assembler(writer, loader, limits, std::move(samples));
+    return Assembler(writer, loader, limits, std::move(samples), listener);
 }
 
 Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
-                     ScratchFile samples)
+                     ScratchFile samples, BuildListener* listener)
     : writer_(writer),
       loader_(loader),
       stride_(loader.schema().stride),
       sampler_(limits),
       emitter_(loader),
-      samples_(std::move(samples)) {}
+      samples_(std::move(samples)),
+      listener_(listener) {}
 
 Result<void> Assembler::add(Subtree&& tree, const NodeKey* next) {
     {
-        const Subtree done = std::move(tree);  // gone before the sampling above it starts
+        Subtree done = std::move(tree);  // gone before the sampling above it starts
         subtree_encode_seconds_ += done.encode_seconds;
         LUCARNE_ASSIGN(const uint64_t base, writer_.append(done.payload));
-        for (auto entry : done.entries) {
+        for (auto& entry : done.entries) {
             entry.payload_offset += base;
             LUCARNE_TRY(writer_.add(entry));
         }
+        if (listener_) listener_->settled(done.entries);
         LUCARNE_TRY(push(done.root, done.sample));
     }
     while (stack_.back().node.key.level > 0) {
@@ -56,6 +59,7 @@ Result<void> Assembler::push(Pending node, std::span<const std::byte> sample) {
     const auto count = static_cast<uint32_t>(sample.size() / stride_);
     stack_.push_back({node, end_, count});
     end_ += count;
+    if (listener_) listener_->pending(node, sample, writer_);
     return {};
 }
 
@@ -111,6 +115,7 @@ Result<void> Assembler::emit(size_t child, const std::vector<std::byte>& sample)
         entry.payload_offset = base;
         LUCARNE_TRY(writer_.add(entry));
     }
+    if (listener_) listener_->settled(entries);
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "octree/build/build_listener.h"
 #include "octree/build/subtree.h"
 #include "octree/cache_writer.h"
 
@@ -13,7 +14,8 @@ namespace lucarne::octree {
 class Assembler {
  public:
     static Result<Assembler> create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
-                                    const std::filesystem::path& temp_folder);
+                                    const std::filesystem::path& temp_folder,
+                                    BuildListener* listener = nullptr);
 
     /// Takes the next subtree in Morton order; `next` is the root of the one after it, null at the end.
     Result<void> add(Subtree&& tree, const NodeKey* next);
@@ -27,7 +29,8 @@ class Assembler {
         uint64_t first = 0;  ///< its sample's first record in the scratch file
         uint32_t count = 0;
     };
-    Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits, ScratchFile samples);
+    Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits, ScratchFile samples,
+              BuildListener* listener);
     Result<void> push(Pending node, std::span<const std::byte> sample);
     Result<void> join(size_t children);
     Result<void> finish_root();
@@ -41,6 +44,7 @@ class Assembler {
     Emitter emitter_;
     double subtree_encode_seconds_ = 0;
     ScratchFile samples_;
+    BuildListener* listener_;
     std::vector<Waiting> stack_;
     uint64_t end_ = 0;  ///< records in the scratch file; those behind the top of the stack are free again
     std::vector<uint32_t> order_;

@@ -1,5 +1,6 @@
 #include "octree/build/build.h"
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -12,6 +13,8 @@
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
 #include "octree/build/assembler.h"
+#include "octree/build/build_inputs.h"
+#include "octree/build/build_listener.h"
 #include "octree/build/identity.h"
 #include "octree/build/in_order.h"
 #include "octree/build/scan_stage.h"
@@ -53,44 +56,45 @@ auto resumable(Workspace& work, const char* stage, const Restore& restore, const
     return outcome;
 }
 
-/// Which normals to estimate: empty for no estimation at all, else whether normals are wanted besides areas.
-Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs) {
-    size_t without = inputs.inputs();
-    for (size_t i = inputs.inputs(); i-- > 0;)
-        if (!inputs.has_normals(i)) without = i;
-    const bool all = without == inputs.inputs();
-    switch (mode) {
-        case NormalsMode::none:
-            return std::optional<bool>();
-        case NormalsMode::automatic:
-            return std::optional(!all);
-        case NormalsMode::estimate:
-            return std::optional(true);
-        case NormalsMode::keep:
-            break;
-    }
-    if (!all)
-        return bad_arguments(inputs.source(without).info().path, "has no normals to keep",
-                             "use --normals estimate");
-    return std::optional(false);
-}
+/// How far a stage is, for the terminal and for the listener.
+class Steps {
+ public:
+    Steps(BuildListener* listener, std::string stage, uint64_t points)
+        : listener_(listener), stage_(std::move(stage)), points_(points), progress_(stage_, points, "points") {}
 
-Pass with_progress(const Pass& pass, Progress& progress, uint32_t stride) {
-    return [&pass, &progress, stride](const Visit& visit) {
+    /// Error: the build is to stop.
+    Result<void> add(uint64_t points) {
+        progress_.add(points);
+        if (!listener_) return {};
+        listener_->advanced(stage_, done_ += points, points_);
+        if (listener_->stopped()) return failed("the build", "was stopped");
+        return {};
+    }
+
+ private:
+    BuildListener* listener_;
+    std::string stage_;
+    uint64_t points_;
+    std::atomic<uint64_t> done_{0};
+    Progress progress_;
+};
+
+Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
+    return [&pass, &steps, stride](const Visit& visit) {
         return pass([&](std::span<const std::byte> records) -> Result<void> {
-            progress.add(records.size() / stride);
+            LUCARNE_TRY(steps.add(records.size() / stride));
             return visit(records);
         });
     };
 }
 
 Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
-                               const MemoryPlan& memory) {
+                               const MemoryPlan& memory, BuildListener* listener) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
     ChunkStore store(std::move(file), inputs.schema(), facts.root);
-    Progress progress("sorting into chunks", 2 * facts.points, "points");
+    Steps steps(listener, "sorting into chunks", 2 * facts.points);
     const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
-    LUCARNE_TRY(store.fill(with_progress(pass, progress, inputs.schema().stride), facts.points, memory));
+    LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory));
     return store;
 }
 Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
@@ -114,36 +118,17 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
 /// Chunks are built side by side and put together in order; no more than `workers` are in memory. `keep`: a
 /// resumed build may want the chunks again, so their place is not given back.
 Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
-                          const MemoryPlan& memory, bool keep, Assembler& assembler) {
+                          const MemoryPlan& memory, bool keep, Assembler& assembler, Steps& steps) {
     const auto chunks = store.chunks();
-    uint64_t points = 0;
-    for (const auto& chunk : chunks) points += chunk.count;
-    Progress progress("building", points, "points");
     const auto build = [&](size_t chunk) { return build_subtree(loader, chunk, limits); };
     const auto assemble = [&](size_t chunk, Subtree&& tree) -> Result<void> {
-        progress.add(chunks[chunk].count);
+        LUCARNE_TRY(steps.add(chunks[chunk].count));
         LUCARNE_TRY(
             assembler.add(std::move(tree), chunk + 1 < chunks.size() ? &chunks[chunk + 1].key : nullptr));
         if (!keep) store.discard(chunk);
         return {};
     };
     return in_order(chunks.size(), memory.workers, build, assemble);
-}
-
-SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
-    SourceHeader header{
-        .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
-    header.metres_per_unit = inputs.source(0).info().metres_per_unit;
-    for (size_t i = 0; i < inputs.inputs(); ++i) header.scans.push_back(inputs.source(i).info());
-    return header;
-}
-
-Result<void> check_units(const Unifier& inputs) {
-    for (size_t i = 1; i < inputs.inputs(); ++i)
-        if (inputs.source(i).info().metres_per_unit != inputs.source(0).info().metres_per_unit)
-            return rejected(inputs.source(i).info().path, "is in another unit than the first input",
-                            "convert it on its own");
-    return {};
 }
 
 }  // namespace
@@ -174,17 +159,20 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     if (facts.dropped)
         log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
 
+    const SourceHeader bare = header_of(inputs, facts, inputs.schema());
+    if (options.listener) options.listener->scanned(bare);
     LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
                        return resumable(
                            work, "chunk",
                            [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
-                           [&] { return fill_chunks(work, inputs, facts, memory); });
+                           [&] { return fill_chunks(work, inputs, facts, memory, options.listener); });
                    }));
-    const SourceHeader bare = header_of(inputs, facts, inputs.schema());
     std::optional<SurfaceStore> surface;
     if (normals) {
-        const SurfaceStore::Settings settings{*normals, options.neighbours, options.neighbour_search,
-                                              threads, options.memory};
+        Steps steps(options.listener, "normals", facts.points);
+        const SurfaceStore::Settings settings{
+            *normals, options.neighbours, options.neighbour_search,
+            threads,  options.memory,     [&](uint64_t points) { return steps.add(points); }};
         LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
                            return resumable(
                                work, "normals",
@@ -196,8 +184,11 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
     double encoding = 0;
     LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
-        LUCARNE_ASSIGN(Assembler assembler, Assembler::create(writer, loader, limits, folder));
-        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler);
+        Steps steps(options.listener, "building", facts.points);
+        if (options.listener) options.listener->building(loader.schema());
+        LUCARNE_ASSIGN(Assembler assembler,
+                       Assembler::create(writer, loader, limits, folder, options.listener));
+        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler, steps);
         encoding = assembler.encode_seconds();
         return built;
     }));

@@ -18,6 +18,8 @@ enum class NormalsMode {
     none  ///< neither normals nor areas
 };
 
+class BuildListener;
+
 struct BuildOptions {
     std::vector<const io::PointSource*> inputs;
     std::filesystem::path output;
@@ -29,6 +31,7 @@ struct BuildOptions {
     Resume resume = Resume::never;
     uint32_t neighbours = 16;  ///< for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
+    BuildListener* listener = nullptr;  ///< told how it goes on (build_listener.h); outlives the build
 };
 
 struct StageTime {

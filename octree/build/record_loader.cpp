@@ -4,12 +4,15 @@
 
 namespace lucarne::octree {
 
+io::Schema with_estimates(io::Schema schema, bool normals) {
+    if (normals) schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
+    schema.add(std::string(io::names::area), io::ScalarType::u16);
+    return schema;
+}
+
 RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
     : chunks_(chunks), surface_(surface), schema_(chunks.schema()) {
-    if (surface && !schema_.find(io::names::area)) {
-        if (normals) schema_.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
-        schema_.add(std::string(io::names::area), io::ScalarType::u16);
-    }
+    if (surface && !schema_.find(io::names::area)) schema_ = with_estimates(std::move(schema_), normals);
     normal_ = schema_.find(io::names::normal_oct);
     area_ = schema_.find(io::names::area);
 }

@@ -6,6 +6,9 @@
 
 namespace lucarne::octree {
 
+/// The input's schema with what is estimated: areas and, if `normals`, normals.
+io::Schema with_estimates(io::Schema schema, bool normals);
+
 /// Hands out the records of chunks as the cache will hold them: the input's, with what was estimated behind
 /// them; in an update, whose chunks have the cache's whole schema, in place: areas anew, normals for points
 /// that have none yet.

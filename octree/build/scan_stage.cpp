@@ -24,6 +24,8 @@ Result<uint64_t> read_input(const Unifier& inputs, size_t input, uint64_t batch_
     }
 }
 
+}  // namespace
+
 Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
     const glm::dvec3 extent = max - min;
     double size = std::max({extent.x, extent.y, extent.z});
@@ -33,8 +35,6 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
     // A hair wider, so that the farthest point is inside and not on the border.
     return Cube{min, size * (1 + 1e-9)};
 }
-
-}  // namespace
 
 std::vector<std::byte> ScanFacts::save() const {
     ByteWriter writer;

@@ -15,6 +15,9 @@ struct ScanFacts {
     static Result<ScanFacts> restore(std::span<const std::byte> record);
 };
 
+/// The smallest cube at `min` that holds a box. Errors: coordinates too far apart for any cube.
+Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max);
+
 /// A pass over the points of all inputs, in the unified schema, input after input.
 Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
 

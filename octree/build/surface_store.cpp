@@ -103,9 +103,11 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     options.threads = settings.threads;
     options.normals = settings.normals;
     std::mutex mutex;
-    const auto keep = [&](size_t chunk, ChunkNormals&& found) {
+    const auto keep = [&](size_t chunk, ChunkNormals&& found) -> Result<void> {
         const std::lock_guard lock(mutex);
-        return store.keep(chunk, chunks.chunks()[chunk].count, found);
+        const uint64_t count = chunks.chunks()[chunk].count;
+        LUCARNE_TRY(store.keep(chunk, count, found));
+        return settings.step ? settings.step(count) : Result<void>();
     };
     LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
     if (settings.normals) store.limit_strays();

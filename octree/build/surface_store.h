@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 
 #include "octree/build/chunk_store.h"
@@ -21,6 +22,7 @@ class SurfaceStore {
         NeighbourSearch search = NeighbourSearch::leaf;
         unsigned threads = 0;
         uint64_t memory = 0;
+        std::function<Result<void>(uint64_t points)> step;  ///< told of points done; an error of its ends it
     };
 
     /// Runs the estimator over all chunks. `scans` has the stations, one entry an input.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "octree/cache.h"
+#include "tests/bench/first_picture.h"
 #include "tests/bench/rows.h"
 
 namespace lucarne {
@@ -63,6 +64,7 @@ inline Result<void> bench_conversion(const std::filesystem::path& folder, uint64
     const auto scan = folder / "survey.las";
     LUCARNE_TRY(run_lucarne(
         {"generate", "survey", "-o", scan.string(), "--points", std::to_string(points), "--overwrite"}));
+    LUCARNE_TRY(bench_first_picture(scan));
     for (const auto& targets : {ConversionTargets{"without normals", "none", 13, 6.5},
                                 ConversionTargets{"with normals", "estimate", 33, 8.5}})
         LUCARNE_TRY(bench_conversion_of(scan, static_cast<double>(points), targets));

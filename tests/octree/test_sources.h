@@ -30,6 +30,14 @@ class ComputedSource final : public io::PointSource {
     Result<std::unique_ptr<io::PointReader>> open() const override { return std::make_unique<Reader>(*this); }
     /// Never hands out more than this in a batch, whatever is asked for.
     void limit_batches(size_t most) { most_ = most; }
+    void make_seekable() { seekable_ = true; }
+    bool seekable() const override { return seekable_; }
+    Result<void> pick(std::span<const uint64_t> indices, io::PointBatch& batch) const override {
+        batch.count = indices.size();
+        batch.bytes.assign(batch.count * schema_.stride, std::byte{0});
+        for (size_t i = 0; i < indices.size(); ++i) fill_(indices[i], &batch.bytes[i * schema_.stride]);
+        return {};
+    }
 
  private:
     class Reader final : public io::PointReader {
@@ -54,6 +62,7 @@ class ComputedSource final : public io::PointSource {
     io::ScanInfo info_;
     uint64_t points_;
     size_t most_ = SIZE_MAX;
+    bool seekable_ = false;
     Fill fill_;
 };
 

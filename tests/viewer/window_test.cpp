@@ -198,6 +198,35 @@ TEST_F(ViewerWindow, SavesItselfForScripts) {
     EXPECT_TRUE(lit(*window));
 }
 
+TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
+    start();
+    const auto of_cache = picture(lit);
+    ASSERT_TRUE(of_cache);
+    viewer_.reset();
+    cache_ = folder_ / "cornell.las";
+    start();
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(cache_ + ".luc"); })) << "no cache is kept";
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *of_cache) < 0.05; }))
+        << "the picture stays another than the cache's";
+}
+
+TEST_F(ViewerWindow, ClosedWhileItConvertsItEndsWellAndLeavesNoHalfOfACache) {
+    cache_ = folder_ / "large.las";
+    ASSERT_EQ(test::lucarne("generate nave --points 400k -o " + cache_).code, 0);
+    start();
+    ASSERT_TRUE(picture(lit));
+    xdo("key Escape");
+    ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
+    EXPECT_EQ(viewer_->code(), 0);
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+        const std::string name = entry.path().filename();
+        EXPECT_EQ(name.find(".part"), std::string::npos) << name;
+        if (name == "large.las.luc") {
+            EXPECT_EQ(test::lucarne("verify " + entry.path().string()).code, 0);
+        }
+    }
+}
+
 TEST(Viewer, WithoutADisplayItSaysSoInOneLine) {
     const TemporaryFolder folder;
     const std::string cache = make_cornell(folder, "2k");

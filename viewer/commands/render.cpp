@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,22 +16,24 @@
 #include "gi/registry.h"
 #include "io/core/file.h"
 #include "io/core/log.h"
+#include "io/core/process.h"
 #include "io/core/progress.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
 #include "viewer/inputs.h"
 
 namespace lucarne::viewer {
 namespace {
 
 struct RenderOptions {
-    std::vector<std::string> inputs;
+    InputOptions input;
     std::string output, camera, json, gbuffer;
     DrawingOptions drawing;
     uint32_t frames = 1;
     double seconds = 0;
-    bool layers = false, overwrite = false;
+    bool first = false, layers = false, overwrite = false;
 };
 
 enum class PictureKind { png, exr };
@@ -151,6 +154,13 @@ std::string fit_text(const FrameStats& stats) {
     return share < 1 ? fmt::format("; {:.0f} % of the cuts' points fit the caps", 100 * share) : "";
 }
 
+/// With --first what can be drawn at once.
+Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOptions& options) {
+    if (!options.first) return open_input(options.input);
+    LUCARNE_ASSIGN(const auto open, open_growing(options.input));
+    return open.source;
+}
+
 Result<void> render(const RenderOptions& options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
@@ -159,8 +169,9 @@ Result<void> render(const RenderOptions& options) {
         if (!also.empty()) LUCARNE_TRY(check_output(also, options.overwrite));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));
-    LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
+    auto opening = std::async(std::launch::async, [&] { return open_source(options); });
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is looked at
+    LUCARNE_ASSIGN(const auto source, opening.get());
     LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
     FrameRequest request;
     LUCARNE_ASSIGN(request.camera, find_camera(scene, options.camera));
@@ -189,6 +200,7 @@ Result<void> render(const RenderOptions& options) {
               drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,
               rendered.frames == 1 ? "" : "s", rendered.seconds,
               memory_text(drawing.caps, rendered.last.memory), fit_text(rendered.last));
+    if (options.first) log::info("first picture after {:.2f} s", seconds_since_start());
     return {};
 }
 
@@ -197,9 +209,10 @@ Result<void> render(const RenderOptions& options) {
 void add_render(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<RenderOptions>();
     auto* command = app.add_subcommand("render", "Render one picture without a window");
-    command->add_option("input", options->inputs, "Caches or scan files, drawn together")
-        ->required()
-        ->type_name("INPUT...");
+    add_input_options(*command, options->input);
+    command->add_flag("--first", options->first,
+                      "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
+                      "nothing is converted or kept");
     command->add_option("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
         ->required()
         ->type_name("FILE");

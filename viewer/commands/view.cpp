@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "io/core/file.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/input.h"
 #include "viewer/inputs.h"
 #include "viewer/view_session.h"
 
@@ -16,7 +18,7 @@ namespace lucarne::viewer {
 namespace {
 
 struct ViewOptions {
-    std::vector<std::string> inputs;
+    InputOptions input;
     std::string camera, screenshot;
     DrawingOptions drawing;
     uint32_t frames = 1;
@@ -24,11 +26,19 @@ struct ViewOptions {
     bool overwrite = false;
 };
 
+Result<StartingView> starting_view(const ViewOptions& options, const octree::SourceHeader& header) {
+    StartingView start;
+    LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, header));
+    LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
+    return start;
+}
+
 Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing,
                               const octree::SourceHeader& header) {
     ViewModel model(std::max(glm::distance(header.min, header.max), 1e-6));
-    LUCARNE_ASSIGN(model.scene, load_scene_for(options.drawing, header));
-    LUCARNE_ASSIGN(model.home, find_camera(model.scene, options.camera));
+    LUCARNE_ASSIGN(StartingView start, starting_view(options, header));
+    model.scene = std::move(start.scene);
+    model.home = start.camera;
     model.rig = CameraRig(model.home);
     model.engine = options.drawing.engine;
     model.preset = drawing.preset.name;
@@ -46,13 +56,16 @@ Result<void> view(const ViewOptions& options) {
         LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
-    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
-    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, source->header()));
-    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne - " + inputs_text(options.inputs)));
+    const std::string title = "Lucarne - " + inputs_text(options.input.paths);
+    auto opening = std::async(std::launch::async, [&] { return open_growing(options.input); });
+    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, title));  // starts while the input is looked at
+    LUCARNE_ASSIGN(const OpenInput input, opening.get());
+    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, input.source->header()));
     LUCARNE_ASSIGN(const auto worker,
-                   PictureWorker::start(window->worker_device(), source, drawing.caps, &Window::wake));
+                   PictureWorker::start(window->worker_device(), input.source, drawing.caps, &Window::wake));
     model.device = worker->device();
-    return ViewSession(*window, *worker, model, shot).run();
+    const auto start = [&](const octree::SourceHeader& header) { return starting_view(options, header); };
+    return ViewSession(*window, *worker, model, shot, {title, input.source, input.build.get(), start}).run();
 }
 
 }  // namespace
@@ -60,7 +73,7 @@ Result<void> view(const ViewOptions& options) {
 void add_view(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<ViewOptions>();
     auto* command = app.add_subcommand("view", "Look around in a cache or a scan, lit by its own surfaces");
-    command->add_option("INPUT", options->inputs, "Caches or scan files, shown together")->required();
+    add_input_options(*command, options->input);
     add_drawing_options(*command, options->drawing);
     command->add_option("--camera", options->camera, "Start with this camera of the scene");
     command->add_option("--frame-time", options->frame_time_ms,

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "io/core/file.h"
+
+namespace lucarne::io {
+
+/// Calls `take` with the bytes of some of the records, `length` bytes each, that stand from `begin` on in a
+/// file. `indices` ascend. Records near each other are read at once, up to 256 KiB; those further apart each
+/// on its own, so that a file of any size costs no more than its picked points do.
+template <class Take>
+Result<void> for_picked(const InputFile& file, uint64_t begin, size_t length,
+                        std::span<const uint64_t> indices, const Take& take) {
+    constexpr uint64_t kNear = 8192, kMost = uint64_t{256} << 10;  // bytes
+    std::vector<std::byte> bytes;
+    for (size_t first = 0; first < indices.size();) {
+        const uint64_t from = indices[first] * length;
+        size_t last = first + 1;
+        while (last < indices.size() && (indices[last] - indices[last - 1]) * length <= kNear &&
+               (indices[last] + 1) * length - from <= kMost)
+            ++last;
+        bytes.resize(static_cast<size_t>((indices[last - 1] + 1) * length - from));
+        LUCARNE_TRY(file.read_at(begin + from, bytes));
+        for (; first < last; ++first) take(&bytes[static_cast<size_t>(indices[first] * length - from)]);
+    }
+    return {};
+}
+
+}  // namespace lucarne::io

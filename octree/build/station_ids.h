@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "io/points.h"
+
+namespace lucarne::octree {
+
+/// Which of the inputs' stations saw a point: by its point_source_id; the only station of an input saw all of
+/// its points.
+class StationIds {
+ public:
+    /// `schema` is that of the records and outlives this.
+    StationIds(const std::vector<io::ScanInfo>& scans, const io::Schema& schema) : by_id_(scans.size()) {
+        for (size_t scan = 0; scan < scans.size(); ++scan)
+            for (const auto& station : scans[scan].stations) {
+                by_id_[scan].try_emplace(station.id, static_cast<int32_t>(stations_.size()));
+                stations_.push_back(station.position);
+            }
+        if (by_id_.size() > 1) scan_ = schema.find(io::names::scan);
+        source_ = schema.find(io::names::point_source_id);
+    }
+
+    const std::vector<glm::dvec3>& stations() const { return stations_; }
+    /// The index into stations(), -1 where unknown.
+    int32_t of(const std::byte* record) const {
+        const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
+        if (scan >= by_id_.size()) return -1;
+        const auto& ids = by_id_[scan];
+        if (ids.size() == 1) return ids.begin()->second;
+        if (ids.size() < 2 || !source_) return -1;
+        const auto found =
+            ids.find(static_cast<uint32_t>(io::scalar_at(source_->type, record + source_->offset)));
+        return found == ids.end() ? -1 : found->second;
+    }
+
+ private:
+    std::vector<std::map<uint32_t, int32_t>> by_id_;  ///< of each scan: station id to index
+    std::vector<glm::dvec3> stations_;
+    const io::Attribute *scan_ = nullptr, *source_ = nullptr;
+};
+
+}  // namespace lucarne::octree

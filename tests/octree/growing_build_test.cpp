@@ -1,0 +1,243 @@
+#include "octree/quick/growing_build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "octree/attributes.h"
+#include "octree/cache.h"
+#include "octree/footprint.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+using test::ComputedSource;
+using test::TempFolder;
+
+constexpr double kSide = 20, kRadius = 3;  // m
+constexpr double kSurface = kSide * kSide + 4 * std::numbers::pi * kRadius * kRadius;
+
+/// A square and a sphere over it, line after line as a scanner would; each point has a number of its own.
+std::unique_ptr<ComputedSource> scene(uint64_t points) {
+    io::Schema schema;
+    schema.position = io::PositionType::f64;
+    schema.stride = 24;
+    schema.add("number", io::ScalarType::u64);
+    return std::make_unique<ComputedSource>(schema, points, [points](uint64_t index, std::byte* record) {
+        Random random(7, index);
+        const auto on_square = static_cast<uint64_t>(static_cast<double>(points) * kSide * kSide / kSurface);
+        glm::dvec3 p;
+        if (index < on_square) {
+            const double row = static_cast<double>(index) / static_cast<double>(on_square);
+            p = {kSide * random.uniform(), kSide * row, 0};
+        } else {
+            const double z =
+                2 * static_cast<double>(index - on_square) / static_cast<double>(points - on_square) - 1;
+            const double angle = 2 * std::numbers::pi * random.uniform(),
+                         r = std::sqrt(std::max(0.0, 1 - z * z));
+            p = glm::dvec3(10, 10, 8) + kRadius * glm::dvec3(r * std::cos(angle), r * std::sin(angle), z);
+        }
+        for (int axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, p[axis]);
+        io::store(record + 24, index);
+    });
+}
+
+GrowingBuild::Inputs inputs_of(uint64_t points, bool seekable = true) {
+    auto source = scene(points);
+    if (seekable) source->make_seekable();
+    GrowingBuild::Inputs inputs;
+    inputs.push_back(std::move(source));
+    return inputs;
+}
+
+GrowingOptions options_for(const std::filesystem::path& output, NormalsMode normals = NormalsMode::none) {
+    GrowingOptions options;
+    options.build.output = output;
+    options.build.normals = normals;
+    options.build.memory = uint64_t{32} << 20;  // many chunks
+    options.sample_points = 20'000;
+    options.seconds_between = 0;
+    return options;
+}
+
+/// All sources of a build, the first and the cache among them.
+std::vector<std::shared_ptr<const NodeSource>> all_sources(GrowingBuild& build) {
+    std::vector<std::shared_ptr<const NodeSource>> sources = {build.source()};
+    build.begin([&] {
+        if (auto source = build.source(); source != sources.back()) sources.push_back(std::move(source));
+    });
+    build.wait();
+    return sources;
+}
+
+std::vector<uint64_t> numbers_in(const NodeSource& source) {
+    std::vector<uint64_t> numbers;
+    const size_t stride = source.header().schema.stride;
+    for (uint32_t node = 0; node < source.nodes().size(); ++node) {
+        const auto data = source.load(node);
+        if (!data || data->count != source.nodes()[node].count) return {};
+        for (size_t i = 0; i < data->count; ++i)
+            numbers.push_back(io::load<uint64_t>(&data->records[i * stride + 24]));
+    }
+    return numbers;
+}
+
+/// Whether the directory is one: parents before children, children in octant order, counts that add up.
+::testing::AssertionResult is_directory(std::span<const NodeInfo> nodes) {
+    size_t next = 1;
+    std::vector<uint64_t> below(nodes.size(), 0);
+    if (nodes.empty() || nodes[0].key != NodeKey{}) return ::testing::AssertionFailure() << "no root";
+    for (size_t i = 0; i < nodes.size(); ++i)
+        for (uint32_t octant = 0; octant < 8; ++octant) {
+            if (!(nodes[i].child_mask >> octant & 1)) continue;
+            if (next >= nodes.size() || nodes[i].child(octant) != next || nodes[next].parent != i ||
+                nodes[next].key != nodes[i].key.child(octant))
+                return ::testing::AssertionFailure() << "node " << i << " lacks its child " << octant;
+            ++next;
+        }
+    if (next != nodes.size()) return ::testing::AssertionFailure() << "nodes without parents";
+    for (size_t i = nodes.size(); i-- > 0;) {
+        if (nodes[i].subtree_count != nodes[i].count + below[i])
+            return ::testing::AssertionFailure() << "the counts of node " << i;
+        if (i > 0) below[nodes[i].parent] += nodes[i].subtree_count;
+    }
+    return ::testing::AssertionSuccess();
+}
+
+TEST(GrowingBuild, ItsFirstSourceCoversTheWholeExtent) {
+    const TempFolder folder;
+    for (const bool seekable : {true, false}) {
+        const auto build = GrowingBuild::open(inputs_of(500'000, seekable), options_for(folder / "a.luc"));
+        ASSERT_TRUE(build) << build.error().line();
+        const auto source = (*build)->source();
+        ASSERT_TRUE(is_directory(source->nodes()));
+        const auto numbers = numbers_in(*source);
+        EXPECT_GT(numbers.size(), 15'000u);
+        EXPECT_LT(numbers.size(), 45'000u);
+        // As many from each hundredth of the file, within what chance allows.
+        std::array<size_t, 100> parts{};
+        for (const uint64_t number : numbers) ++parts[number / 5000];
+        const size_t even = numbers.size() / parts.size();
+        EXPECT_GE(*std::ranges::min_element(parts), even / 2);
+        EXPECT_LE(*std::ranges::max_element(parts), even * 2);
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is converted before it is begun";
+}
+
+TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
+    const TempFolder folder;
+    const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto sources = all_sources(**build);
+    ASSERT_TRUE((*build)->error()) << (*build)->error().error().line();
+    EXPECT_GT(sources.size(), 5u) << "pieces come one by one";
+    size_t last = 0;
+    for (const auto& source : sources) {
+        ASSERT_TRUE(is_directory(source->nodes()));
+        auto numbers = numbers_in(*source);
+        ASSERT_FALSE(numbers.empty());
+        EXPECT_GE(numbers.size(), last);
+        last = numbers.size();
+        std::ranges::sort(numbers);
+        EXPECT_EQ(std::ranges::adjacent_find(numbers), numbers.end()) << "a point is drawn twice";
+    }
+    EXPECT_EQ(last, 500'000u);
+}
+
+TEST(GrowingBuild, EndsWithTheCacheThatABuildAloneMakes) {
+    const TempFolder folder;
+    const auto build = GrowingBuild::open(inputs_of(200'000), options_for(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto last = all_sources(**build).back();
+    EXPECT_TRUE((*build)->finished());
+    BuildOptions alone = options_for(folder / "b.luc").build;
+    const auto inputs = inputs_of(200'000);
+    alone.inputs = {inputs[0].get()};
+    ASSERT_TRUE(build_cache(alone));
+    EXPECT_EQ(io::testing::read_bytes(folder / "a.luc"), io::testing::read_bytes(folder / "b.luc"));
+    const auto cache = open_cache(folder / "a.luc");
+    ASSERT_TRUE(cache);
+    EXPECT_EQ(last->nodes().size(), (*cache)->nodes().size());
+}
+
+/// The sum of the areas of what a cut down to `level` shows, as gi/scene reckons it.
+double surface_at(const NodeSource& source, uint32_t level) {
+    const auto& schema = source.header().schema;
+    const auto* area = schema.find(io::names::area);
+    const auto nodes = source.nodes();
+    double sum = 0;
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].key.level > level) continue;
+        const auto data = source.load(i);
+        if (!data) return 0;
+        for (size_t p = 0; p < data->count; ++p) {
+            const std::byte* record = &data->records[p * schema.stride];
+            const auto own = static_cast<float>(
+                decode_area(io::load<uint16_t>(record + area->offset), source.header().root.size));
+            const Place place = source.header().root.place(io::position_of(schema, record));
+            uint32_t node = i;
+            bool whole = false;  // all there is: its own share holds
+            while (nodes[node].key.level < level || nodes[node].child_mask == 0) {
+                const uint32_t octant = place.key(nodes[node].key.level + 1).octant();
+                if (whole = !(nodes[node].child_mask >> octant & 1); whole) break;
+                node = nodes[node].child(octant);
+            }
+            sum += surfel_area(own, whole ? 0.0f : nodes[node].area_floor[0]);
+        }
+    }
+    return sum;
+}
+
+TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
+    const TempFolder folder;
+    const auto build =
+        GrowingBuild::open(inputs_of(150'000), options_for(folder / "a.luc", NormalsMode::estimate));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto sources = all_sources(**build);
+    ASSERT_TRUE((*build)->error()) << (*build)->error().error().line();
+    EXPECT_GT(sources.size(), 3u);
+    for (size_t i = 0; i < sources.size(); ++i)
+        for (uint32_t level = 0; level < 5; ++level)
+            EXPECT_NEAR(surface_at(*sources[i], level) / kSurface, 1.0, 0.1)
+                << "source " << i << ", level " << level;
+}
+
+TEST(GrowingBuild, StoppedInTheMiddleItLeavesNothing) {
+    const TempFolder folder;
+    {
+        const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
+        ASSERT_TRUE(build) << build.error().line();
+        std::mutex first;
+        first.lock();
+        bool told = false;
+        (*build)->begin([&] {
+            if (!std::exchange(told, true)) first.unlock();
+        });
+        first.lock();  // the build runs
+        first.unlock();
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(GrowingBuild, AFailedBuildSaysWhyAndItsLastSourceStays) {
+    const TempFolder folder;
+    auto build = GrowingBuild::open(inputs_of(50'000), options_for(folder / "none" / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto first = (*build)->source();
+    (*build)->begin([] {});
+    (*build)->wait();
+    EXPECT_FALSE((*build)->finished());
+    ASSERT_FALSE((*build)->error());
+    EXPECT_NE((*build)->error().error().line().find("does not exist"), std::string::npos);
+    EXPECT_EQ((*build)->source(), first);
+    EXPECT_FALSE(numbers_in(*first).empty());
+}
+
+}  // namespace
+}  // namespace lucarne::octree

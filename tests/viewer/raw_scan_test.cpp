@@ -1,0 +1,186 @@
+// Scans that are opened as they are: what is drawn at once, what is kept, and when it is found again.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "gi/device/device.h"
+#include "tests/viewer/program.h"
+#include "viewer/input.h"
+#include "viewer/kept_cache.h"
+#include "viewer/pipeline.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using test::bytes_of;
+using test::lucarne;
+using test::Outcome;
+using test::shell;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kSmall = " --engine direct --size 96x72 --overwrite ";
+
+class RawScan : public testing::Test {
+ protected:
+    void SetUp() override { generate(scan_, 1); }
+    void generate(const std::string& file, int seed) {
+        const Outcome made = lucarne("generate cornell --points 60k --overwrite --seed " +
+                                     std::to_string(seed) + " -o " + file);
+        ASSERT_EQ(made.code, 0) << made.output;
+    }
+    Outcome render(const std::string& more) { return lucarne("render " + scan_ + kSmall + more); }
+    size_t files() const {
+        return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(folder_.path()), {}));
+    }
+
+    test::TemporaryFolder folder_;
+    std::string scan_ = folder_ / "a.las", picture_ = folder_ / "p.png";
+};
+
+TEST_F(RawScan, ItsCacheIsKeptBesideItAndFoundAgain) {
+    const Outcome first = render("-o " + picture_);
+    ASSERT_EQ(first.code, 0) << first.output;
+    EXPECT_THAT(first.output, HasSubstr("a.las.luc"));
+    ASSERT_TRUE(std::filesystem::exists(scan_ + ".luc"));
+    const Outcome second = render("-o " + (folder_ / "q.png"));
+    EXPECT_EQ(second.code, 0) << second.output;
+    EXPECT_THAT(second.output, Not(HasSubstr("converting")));
+    EXPECT_EQ(bytes_of(picture_), bytes_of(folder_ / "q.png"));
+    const Outcome cache = lucarne("render " + scan_ + ".luc" + kSmall + "-o " + (folder_ / "r.png"));
+    EXPECT_EQ(cache.code, 0) << cache.output;
+    EXPECT_EQ(bytes_of(picture_), bytes_of(folder_ / "r.png"));
+}
+
+TEST_F(RawScan, ACacheOfAnotherStateOfItIsMadeAnew) {
+    ASSERT_EQ(render("-o " + picture_).code, 0);
+    const std::string before = bytes_of(picture_), cache = bytes_of(scan_ + ".luc");
+    generate(scan_, 2);
+    const Outcome again = render("-o " + picture_);
+    EXPECT_EQ(again.code, 0) << again.output;
+    EXPECT_THAT(again.output, HasSubstr("converting"));
+    EXPECT_NE(bytes_of(scan_ + ".luc"), cache);
+    EXPECT_NE(bytes_of(picture_), before);
+}
+
+TEST_F(RawScan, WhatHasItsCachesNameAndIsNoneIsLeftAlone) {
+    const std::string name = scan_ + ".luc", text = "notes of mine";
+    std::ofstream(name) << text;
+    const Outcome outcome = shell("XDG_CACHE_HOME=" + (folder_ / "cache") + " " LUCARNE_BINARY " render " +
+                                  scan_ + kSmall + "-o " + picture_);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_EQ(bytes_of(name), text);
+    EXPECT_FALSE(std::filesystem::is_empty(folder_ / "cache/lucarne"));
+}
+
+TEST_F(RawScan, WithoutCacheNothingIsLeft) {
+    const size_t before = files();
+    const Outcome outcome = render("--no-cache -o " + picture_);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_EQ(files(), before + 1);
+}
+
+TEST_F(RawScan, TheFirstPictureConvertsNothing) {
+    const size_t before = files();
+    const Outcome outcome = render("--first -o " + picture_);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("first picture after"));
+    EXPECT_EQ(files(), before + 1);
+}
+
+TEST_F(RawScan, InAFolderThatCannotBeWrittenItsCacheGoesToTheUsersOwn) {
+    const std::string read_only = folder_ / "scans", cache = folder_ / "cache", out = folder_ / "out";
+    for (const std::string& made : {read_only, cache, out}) std::filesystem::create_directory(made);
+    std::filesystem::rename(scan_, read_only + "/a.las");
+    // For root nothing is read-only: the program runs as nobody then.
+    const bool root = geteuid() == 0;
+    const std::string as = root ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+    if (root) {
+        for (const std::string& given : {cache, out}) ASSERT_EQ(chown(given.c_str(), 65534, 65534), 0);
+        std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
+        if (shell(as + LUCARNE_BINARY " --help").code != 0)
+            GTEST_SKIP() << "the program cannot be run as another user";
+    }
+    ASSERT_EQ(chmod(read_only.c_str(), 0555), 0);
+    const std::string run = as + "env XDG_CACHE_HOME=" + cache + " " LUCARNE_BINARY " render " + read_only +
+                            "/a.las" + kSmall + "-o " + out + "/p.png";
+    const Outcome first = shell(run);
+    EXPECT_EQ(first.code, 0) << first.output;
+    EXPECT_THAT(first.output, HasSubstr(cache + "/lucarne/a.las-"));
+    const Outcome second = shell(run);
+    EXPECT_EQ(second.code, 0) << second.output;
+    EXPECT_THAT(second.output, Not(HasSubstr("converting")));
+    chmod(read_only.c_str(), 0755);
+}
+
+TEST_F(RawScan, SeveralAreOnePicture) {
+    const std::string other = folder_ / "b.las";
+    generate(other, 3);
+    const std::string both = "render " + scan_ + " " + other + kSmall + "-o " + picture_;
+    const Outcome first = lucarne(both);
+    EXPECT_EQ(first.code, 0) << first.output;
+    const std::string together = bytes_of(picture_);
+    EXPECT_THAT(lucarne(both).output, Not(HasSubstr("converting")));
+    EXPECT_EQ(bytes_of(picture_), together);
+    EXPECT_EQ(render("-o " + picture_).code, 0);
+    EXPECT_NE(bytes_of(picture_), together);
+}
+
+/// Draws every source of a growing build; the last picture, and how many there were.
+TEST_F(RawScan, ThePicturesOfABuildEndWithThatOfItsCache) {
+    const auto device = gi::Device::headless();
+    if (!device) GTEST_SKIP() << device.error().line();
+    auto open = open_growing({{scan_}, false});
+    ASSERT_TRUE(open) << open.error().line();
+    ASSERT_TRUE(open->build);
+    const gi::Scene scene = gi::default_scene(open->source->header().min, open->source->header().max);
+    FrameRequest request;
+    request.camera = scene.cameras.front();
+    request.size = {96, 72};
+    const auto open_pipeline = [&](std::shared_ptr<const octree::NodeSource> source) {
+        auto pipeline = Pipeline::open(**device, std::move(source), {});
+        EXPECT_TRUE(pipeline) << pipeline.error().line();
+        EXPECT_TRUE((*pipeline)->set_engine("vpl"));
+        (*pipeline)->set_scene(scene);
+        return std::move(*pipeline);
+    };
+    const auto picture = [&](Pipeline& pipeline) {
+        const auto stats = pipeline.render(request);
+        EXPECT_TRUE(stats) << stats.error().line();
+        EXPECT_EQ(stats->nodes_pending, 0u) << "half of a source is drawn";
+        return pipeline.picture().download_all<uint32_t>(96 * 72);
+    };
+    const auto pipeline = open_pipeline(open->source);
+    request.wait = true;
+    const auto first = picture(*pipeline);
+    request.wait = false;  // a new source is drawn whole all the same
+    std::vector<std::shared_ptr<const octree::NodeSource>> sources;
+    open->build->begin([&] { sources.push_back(open->build->source()); });
+    open->build->wait();
+    ASSERT_TRUE(open->build->finished());
+    std::vector<uint32_t> last;
+    for (const auto& source : sources) {
+        ASSERT_TRUE(pipeline->set_source(source));
+        last = picture(*pipeline);
+    }
+    EXPECT_NE(last, first) << "the sample is as good as the whole";
+    const auto cache = open_input(scan_ + ".luc");
+    ASSERT_TRUE(cache) << cache.error().line();
+    request.wait = true;
+    EXPECT_EQ(last, picture(*open_pipeline(*cache)));
+}
+
+TEST(KeptCache, TwoScansOfOneNameInTwoFoldersHaveTwoPlaces) {
+    const test::TemporaryFolder folder;
+    io::ScanInfo a, b;
+    a.path = folder / "none/a.las";
+    b.path = folder / "nor/a.las";
+    setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+    const auto place_a = KeptCache({a}).place(), place_b = KeptCache({b}).place();
+    unsetenv("XDG_CACHE_HOME");
+    ASSERT_TRUE(place_a && place_b);
+    EXPECT_NE(*place_a, *place_b);
+    EXPECT_EQ(place_a->parent_path(), folder.path() / "lucarne");
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

@@ -1,0 +1,98 @@
+#include "viewer/kept_cache.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "io/core/file.h"
+#include "io/core/log.h"
+#include "io/core/random.h"
+#include "octree/cache.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using std::filesystem::path;
+
+/// XDG Base Directory Specification 0.8: relative paths do not count.
+path cache_folder() {
+    const auto folder = [](const char* variable) {
+        const char* value = std::getenv(variable);
+        return value && *value == '/' ? path(value) : path();
+    };
+    if (const path given = folder("XDG_CACHE_HOME"); !given.empty()) return given / "lucarne";
+    if (const path home = folder("HOME"); !home.empty()) return home / ".cache" / "lucarne";
+    return {};
+}
+
+path absolute(const std::string& name) {
+    std::error_code unknown;
+    const path whole = std::filesystem::absolute(name, unknown);
+    return unknown ? path(name) : whole.lexically_normal();
+}
+
+uint64_t hash_of(const KeptCache::Scans& scans) {
+    uint64_t hash = 0;
+    for (const auto& scan : scans) {
+        for (const char c : absolute(scan.path).string()) hash = mix64(hash, static_cast<unsigned char>(c));
+        hash = mix64(hash, 0x100);  // no byte: where a path ends
+    }
+    return hash;
+}
+
+bool same_file_name(const std::string& a, const std::string& b) {
+    return path(a).filename() == path(b).filename();
+}
+
+}  // namespace
+
+KeptCache::KeptCache(const Scans& scans) : scans_(scans) {
+    const path first = absolute(scans_.front().path);
+    const uint64_t hash = hash_of(scans_);
+    const std::string name = first.filename().string();
+    beside_ = first.parent_path() /
+              (scans_.size() == 1
+                   ? name + ".luc"
+                   : fmt::format("{}+{}-{:08x}.luc", name, scans_.size() - 1, static_cast<uint32_t>(hash)));
+    if (const path folder = cache_folder(); !folder.empty())
+        in_folder_ = folder / fmt::format("{}-{:016x}.luc", name.substr(0, 100), hash);
+}
+
+bool KeptCache::made_of(const octree::NodeSource& cache, bool same_state) const {
+    const auto& made = cache.header().scans;
+    return std::equal(
+        made.begin(), made.end(), scans_.begin(), scans_.end(), [&](const auto& was, const auto& is) {
+            return same_file_name(was.path, is.path) &&
+                   (!same_state ||
+                    (was.file_bytes == is.file_bytes && was.modified == is.modified && is.file_bytes > 0));
+        });
+}
+
+std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
+    for (const path& file : {beside_, in_folder_}) {
+        if (file.empty() || !octree::is_cache(file)) continue;
+        auto cache = octree::open_cache(file);
+        if (cache && made_of(**cache, true)) return std::move(*cache);
+        log::info("{}: {}; it is not used", file.string(),
+                  cache ? "was made from another state of the scan" : cache.error().why);
+    }
+    return nullptr;
+}
+
+std::optional<path> KeptCache::place() const {
+    for (const path& file : {beside_, in_folder_}) {
+        if (file.empty()) continue;
+        std::error_code ignored;
+        if (file == in_folder_) std::filesystem::create_directories(file.parent_path(), ignored);
+        if (!check_output(file, true)) continue;
+        if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) return file;
+        const auto cache = octree::open_cache(file);
+        if (cache && made_of(**cache, false)) return file;
+    }
+    return std::nullopt;
+}
+
+}  // namespace lucarne::viewer
