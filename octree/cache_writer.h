@@ -32,8 +32,8 @@ class CacheWriter {
     /// An update that failed: cuts off what it wrote, unless the switch may have happened.
     void abandon();
 
-    /// What is appended so far.
-    Result<InputFile> reader() const { return output_.reader(); }
+    /// What is appended so far to a fresh cache.
+    Result<InputFile> reader() const { return output_->reader(end_); }
 
     uint64_t nodes() const { return nodes_; }
     uint64_t bytes() const { return end_; }

@@ -157,12 +157,12 @@ Result<void> OutputFile::read_at(uint64_t offset, std::span<std::byte> out) cons
     return read_exactly(fd_, offset, out, path_);
 }
 
-Result<InputFile> OutputFile::reader() const {
+Result<InputFile> OutputFile::reader(uint64_t bytes) const {
     const int fd = ::fcntl(fd_, F_DUPFD_CLOEXEC, 0);
     if (fd < 0) return failed(path_.string(), fmt::format("cannot be read ({})", reason(errno)));
     InputFile file;
     file.own_ = std::make_shared<const Handle>(fd);
-    file.size_ = position_;
+    file.size_ = bytes;
     file.path_ = path_;
     return file;
 }

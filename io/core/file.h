@@ -62,8 +62,8 @@ class OutputFile {
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
     uint64_t position() const { return position_; }  ///< the end of what `append` wrote
-    /// What is written so far, to be read while more is appended; it outlives this object.
-    Result<InputFile> reader() const;
+    /// The first `bytes`, which are written, to be read while more is appended; it outlives this object.
+    Result<InputFile> reader(uint64_t bytes) const;
     Result<void> commit();
 
  private:
