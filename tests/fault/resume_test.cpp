@@ -168,7 +168,10 @@ TEST_F(Conversion, StartsAgainWhereOptionsOrInputsAreOthers) {
     const auto changed = lucarne(convert("--resume"));
     ASSERT_EQ(changed.code, 0) << changed.text;
     EXPECT_NE(changed.text.find("starting from the beginning"), std::string::npos) << changed.text;
-    EXPECT_TRUE(read_bytes(cache_) == reference_);
+    const std::string resumed = read_bytes(cache_);  // not the reference: it tells when its scan was written
+    fs::remove(cache_);
+    ASSERT_EQ(lucarne(convert("")).code, 0);
+    EXPECT_TRUE(read_bytes(cache_) == resumed);
 }
 
 TEST_F(Conversion, ResumedFromDamagedScratchFilesGivesTheSameBytes) {
