@@ -35,7 +35,7 @@ Result<Scans> open_scans(const InputOptions& options) {
     Scans scans;
     std::vector<io::ScanInfo> infos;
     for (const auto& path : options.paths) {
-        LUCARNE_ASSIGN(auto scan, io::open_scan(path));
+        LUCARNE_ASSIGN(auto scan, io::open_scan(path, options.read));
         infos.push_back(scan->info());
         scans.inputs.push_back(std::move(scan));
     }
@@ -81,6 +81,14 @@ TemporaryFolder::~TemporaryFolder() {
     if (!path_.empty()) std::filesystem::remove_all(path_, code);
 }
 
+void add_read_options(CLI::App& command, io::ReadOptions& options) {
+    command
+        .add_option("--columns", options.columns,
+                    "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
+                    "else they are guessed, and the guess is printed")
+        ->type_name("NAMES");
+}
+
 void add_input_options(CLI::App& command, InputOptions& options) {
     command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")
         ->required();
@@ -88,6 +96,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
         "--no-cache", options.no_cache,
         "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
         "the user's cache folder, and found the next time)");
+    add_read_options(command, options.read);
 }
 
 Result<OpenInput> open_growing(const InputOptions& options) {
@@ -124,7 +133,7 @@ Result<Source> open_input(const std::filesystem::path& path) {
         LUCARNE_ASSIGN(auto cache, octree::open_cache(path));
         return Source(std::move(cache));
     }
-    return open_input(InputOptions{{path.string()}, false});
+    return open_input(InputOptions{{path.string()}, false, {}});
 }
 
 }  // namespace lucarne::viewer

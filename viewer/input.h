@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/core/error.h"
+#include "io/formats/scan.h"
 #include "octree/quick/growing_build.h"
 #include "octree/source.h"
 
@@ -20,9 +21,12 @@ namespace lucarne::viewer {
 struct InputOptions {
     std::vector<std::string> paths;
     bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
+    io::ReadOptions read;
 };
 
-/// Declares INPUT... and --no-cache. `options` outlives the command.
+/// Declares what a user may know better than a scan file. `options` outlives the command.
+void add_read_options(CLI::App& command, io::ReadOptions& options);
+/// Declares INPUT..., --no-cache and the above. `options` outlives the command.
 void add_input_options(CLI::App& command, InputOptions& options);
 
 /// A folder of our own that is removed with all that is in it.

@@ -14,8 +14,9 @@ namespace lucarne::io {
 struct Format {
     std::string_view name;                      ///< "LAS"
     std::string_view extension;                 ///< ".las", lower case: what `create` is chosen by
-    bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 64)
-    Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file);
+    bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 4096)
+    Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file,
+                                                 const ReadOptions& options);
     Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,
                                                    const ScanInfo& info, const WriteOptions& options);
 };

@@ -143,7 +143,7 @@ class LasSource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file) {
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions&) {
     LUCARNE_ASSIGN(auto header, las::read_header(*file));
     auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
     LUCARNE_TRY(source->describe());

@@ -296,7 +296,7 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file) {
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions&) {
     LUCARNE_ASSIGN(auto header, ply::read_header(file));
     auto source = std::make_unique<PlySource>(std::move(file), std::move(header));
     LUCARNE_TRY(source->describe());

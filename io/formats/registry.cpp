@@ -13,7 +13,7 @@ std::array<const Format*, 3> formats() {
     return {&las_format(), &laz_format(), &ply_format()};
 }
 
-constexpr size_t kHeadBytes = 64;
+constexpr size_t kHeadBytes = 4096;
 
 /// What a file is that we do not read, for a better message than "unknown".
 std::string_view foreign_format(std::string_view head) {
@@ -26,7 +26,8 @@ std::string_view foreign_format(std::string_view head) {
 
 }  // namespace
 
-Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path) {
+Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
+                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto opened, InputFile::open(path));
     const auto file = std::make_shared<const InputFile>(std::move(opened));
     if (file->size() == 0) return rejected(path.string(), "is empty");
@@ -34,7 +35,7 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), got);
     for (const Format* format : formats())
-        if (format->recognises(head)) return format->open(file);
+        if (format->recognises(head)) return format->open(file, options);
     const auto foreign = foreign_format(head);
     return rejected(path.string(),
                     foreign.empty() ? "is in no format that can be read"

@@ -11,9 +11,18 @@
 
 namespace lucarne::io {
 
-/// Opens a scan file; its format is told by its content, never by its name. Reads the header only.
+/// What a user knows better than the file.
+struct ReadOptions {
+    /// Of a text file: what its columns are, "x,y,z,-,intensity:f32,r,g,b"; empty: they are guessed.
+    std::string columns;
+    bool quiet = false;  ///< guesses are not said again: the file was open before
+};
+
+/// Opens a scan file; its format is told by its content, by its name only among text files whose rows look the
+/// same. Reads the header only, and a sample of a text file.
 /// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
-Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path);
+Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
+                                               const ReadOptions& options = {});
 
 struct WriteOptions {
     bool overwrite = false;

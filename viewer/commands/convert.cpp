@@ -16,6 +16,7 @@
 #include "octree/normals/normals.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
+#include "viewer/input.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -23,6 +24,7 @@ namespace {
 struct ConvertOptions {
     octree::BuildOptions build;
     std::vector<std::string> inputs;
+    io::ReadOptions read;
     std::string memory = "2G", json;
     bool append = false;
 };
@@ -30,14 +32,16 @@ struct ConvertOptions {
 /// A scan that is open only while it is read, so that thousands of inputs do not need thousands of handles.
 class ClosedScan final : public io::PointSource {
  public:
-    static Result<std::unique_ptr<io::PointSource>> create(const std::string& path) {
-        LUCARNE_ASSIGN(const auto scan, io::open_scan(path));
-        return std::unique_ptr<io::PointSource>(new ClosedScan(path, scan->schema(), scan->info()));
+    static Result<std::unique_ptr<io::PointSource>> create(const std::string& path,
+                                                           const io::ReadOptions& options) {
+        LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options));
+        return std::unique_ptr<io::PointSource>(
+            new ClosedScan(path, options, scan->schema(), scan->info()));
     }
     const io::Schema& schema() const override { return schema_; }
     const io::ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<io::PointReader>> open() const override {
-        LUCARNE_ASSIGN(auto scan, io::open_scan(path_));
+        LUCARNE_ASSIGN(auto scan, io::open_scan(path_, options_));
         if (scan->schema() != schema_) return rejected(path_, "changed while it was read");
         LUCARNE_ASSIGN(auto reader, scan->open());
         return std::make_unique<Reader>(std::move(scan), std::move(reader));
@@ -57,10 +61,16 @@ class ClosedScan final : public io::PointSource {
         std::unique_ptr<io::PointSource> scan_;
         std::unique_ptr<io::PointReader> reader_;
     };
-    ClosedScan(std::string path, io::Schema schema, io::ScanInfo info)
-        : path_(std::move(path)), schema_(std::move(schema)), info_(std::move(info)) {}
+    ClosedScan(std::string path, io::ReadOptions options, io::Schema schema, io::ScanInfo info)
+        : path_(std::move(path)),
+          options_(std::move(options)),
+          schema_(std::move(schema)),
+          info_(std::move(info)) {
+        options_.quiet = true;
+    }
 
     std::string path_;
+    io::ReadOptions options_;
     io::Schema schema_;
     io::ScanInfo info_;
 };
@@ -97,7 +107,7 @@ Result<void> convert(ConvertOptions options) {
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
     std::vector<std::unique_ptr<io::PointSource>> sources;
     for (const auto& input : options.inputs) {
-        LUCARNE_ASSIGN(auto source, ClosedScan::create(input));
+        LUCARNE_ASSIGN(auto source, ClosedScan::create(input, options.read));
         build.inputs.push_back(source.get());
         sources.push_back(std::move(source));
     }
@@ -132,6 +142,7 @@ void add_convert(CLI::App& app, Command& chosen) {
     command->add_option("inputs", options->inputs, "Scan files; several become one cache")
         ->required()
         ->type_name("INPUT");
+    add_read_options(*command, options->read);
     command->add_option("-o,--output", options->build.output, "The cache to write")
         ->required()
         ->type_name("CACHE.luc");

@@ -11,6 +11,7 @@
 #include "io/formats/scan.h"
 #include "octree/cache.h"
 #include "viewer/commands/commands.h"
+#include "viewer/input.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -19,6 +20,7 @@ using json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path input;
+    io::ReadOptions read;
     std::string json_file;
     bool overwrite = false;
 };
@@ -81,7 +83,7 @@ Result<void> info(const Options& options) {
         LUCARNE_ASSIGN(const auto cache, octree::open_cache(options.input));
         described = describe_cache(*cache);
     } else {
-        LUCARNE_ASSIGN(const auto scan, io::open_scan(options.input));
+        LUCARNE_ASSIGN(const auto scan, io::open_scan(options.input, options.read));
         described = describe_scan(*scan);
     }
     for (const auto& [name, value] : described.items()) {
@@ -104,6 +106,7 @@ void add_info(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
     auto* command = app.add_subcommand("info", "Say what a cache or a scan holds");
     command->add_option("input", options->input, "A cache or any scan file")->required()->type_name("INPUT");
+    add_read_options(*command, options->read);
     command->add_option("--json", options->json_file, "Write it there as well, for machines")
         ->type_name("FILE");
     command->add_flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
