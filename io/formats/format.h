@@ -17,6 +17,7 @@ struct Format {
     bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 4096)
     Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file,
                                                  const ReadOptions& options);
+    /// Null for a format that is only read.
     Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,
                                                    const ScanInfo& info, const WriteOptions& options);
 };
@@ -24,6 +25,7 @@ struct Format {
 const Format& las_format();
 const Format& laz_format();
 const Format& ply_format();
+const Format& e57_format();
 
 /// A batch holds at most this many bytes of records, however wide they are.
 inline constexpr size_t kLargestBatch = size_t{64} << 20;

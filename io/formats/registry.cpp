@@ -9,15 +9,14 @@
 namespace lucarne::io {
 namespace {
 
-std::array<const Format*, 3> formats() {
-    return {&las_format(), &laz_format(), &ply_format()};
+std::array<const Format*, 4> formats() {
+    return {&las_format(), &laz_format(), &ply_format(), &e57_format()};
 }
 
 constexpr size_t kHeadBytes = 4096;
 
 /// What a file is that we do not read, for a better message than "unknown".
 std::string_view foreign_format(std::string_view head) {
-    if (head.starts_with("ASTM-E57")) return "an E57 file";
     if (head.starts_with("# .PCD") || head.starts_with("VERSION")) return "a PCD file";
     if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
     if (head.starts_with("PK\x03\x04") || head.starts_with("\x1f\x8b")) return "a compressed archive";
@@ -49,7 +48,8 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     for (const Format* format : formats())
-        if (format->extension == extension) return format->create(path, schema, info, options);
+        if (format->create && format->extension == extension)
+            return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
                          "end the name in .las, .laz or .ply");

@@ -1,0 +1,169 @@
+#include "io/formats/e57/packets.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "io/points.h"
+
+namespace lucarne::io::e57 {
+namespace {
+
+constexpr size_t kSectionHeaderBytes = 32;
+constexpr uint8_t kVectorSection = 1;
+constexpr size_t kSlack = 16;  ///< that unpack_bits may touch behind the last byte
+enum PacketType : uint8_t { kIndexPacket = 0, kDataPacket = 1, kEmptyPacket = 2 };
+constexpr size_t kPacketHeaderBytes = 4, kDataHeaderBytes = 6;
+
+uint64_t record_bits(const Scan& scan) {
+    return std::accumulate(
+        scan.fields.begin(), scan.fields.end(), uint64_t{0},
+        [](uint64_t sum, const Field& f) { return sum + (f.kind == Field::Kind::text ? 0 : f.bits); });
+}
+
+}  // namespace
+
+Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
+                             const Scan& scan) {
+    const std::string name = file->path().string();
+    const auto wrong = [&](const std::string& why) {
+        return rejected(name, fmt::format("has a section of points at {} that {}", scan.section, why));
+    };
+    Section section;
+    LUCARNE_ASSIGN(section.begin, logical_offset(name, header, scan.section, "a section of points"));
+    if (header.bytes - section.begin < kSectionHeaderBytes) return wrong("reaches beyond its end");
+    PageInput input(file, section.begin, section.begin + kSectionHeaderBytes);
+    LUCARNE_ASSIGN(const auto raw, input.peek(kSectionHeaderBytes));
+    if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is none");
+    const auto bytes = load<uint64_t>(&raw[8]), data = load<uint64_t>(&raw[16]);
+    if (bytes < kSectionHeaderBytes || bytes > header.bytes - section.begin)
+        return wrong("reaches beyond its end");
+    section.end = section.begin + bytes;
+    LUCARNE_ASSIGN(section.data, logical_offset(name, header, data, "a section's packets"));
+    if (section.data < section.begin + kSectionHeaderBytes || section.data > section.end)
+        return wrong("has its packets elsewhere");
+    const uint64_t bits = record_bits(scan), there = 8 * (section.end - section.data);
+    const uint64_t most = bits == 0 ? kMostConstant : there / bits;
+    if (scan.records > most)
+        return wrong(fmt::format("promises {} points, at most {} are there", scan.records, most));
+    return section;
+}
+
+void unpack_bits(const std::byte* bytes, uint64_t first, unsigned bits, size_t count, uint64_t* values) {
+    if (bits == 0) {
+        std::fill_n(values, count, uint64_t{0});
+        return;
+    }
+    const uint64_t mask = ~uint64_t{0} >> (64 - bits);
+    if (bits <= 56) {
+        for (size_t i = 0; i < count; ++i, first += bits)
+            values[i] = load<uint64_t>(bytes + first / 8) >> first % 8 & mask;
+        return;
+    }
+    for (size_t i = 0; i < count; ++i, first += bits) {
+        const std::byte* at = bytes + first / 8;
+        const auto shift = static_cast<unsigned>(first % 8);
+        uint64_t value = load<uint64_t>(at) >> shift;
+        if (shift != 0) value |= static_cast<uint64_t>(at[8]) << (64 - shift);
+        values[i] = value & mask;
+    }
+}
+
+RecordReader::RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section,
+                           const Scan& scan)
+    : input_(file, section.data, section.end),
+      left_(scan.records),
+      streams_(scan.fields.size()),
+      columns_(scan.fields.size() * kBlockRecords) {
+    for (size_t i = 0; i < streams_.size(); ++i) {
+        streams_[i].wanted = scan.fields[i].kind != Field::Kind::text && scan.fields[i].bits > 0;
+        streams_[i].bits = streams_[i].wanted ? scan.fields[i].bits : 0;
+    }
+}
+
+uint64_t RecordReader::Stream::values() const {
+    return (8 * uint64_t{held} - next_bit) / bits;
+}
+
+/// How many records, up to `most`, every stream has values for.
+uint64_t RecordReader::complete(uint64_t most) const {
+    for (const Stream& stream : streams_)
+        if (stream.wanted) most = std::min(most, stream.values());
+    return most;
+}
+
+size_t RecordReader::held() const {
+    return std::accumulate(streams_.begin(), streams_.end(), size_t{0},
+                           [](size_t sum, const Stream& stream) { return sum + stream.held; });
+}
+
+Result<size_t> RecordReader::read(size_t most) {
+    const uint64_t wanted = std::min<uint64_t>({most, kBlockRecords, left_});
+    uint64_t count = complete(wanted);
+    while (count < wanted && input_.left() >= kPacketHeaderBytes) {
+        LUCARNE_TRY(next_data_packet());
+        count = complete(wanted);
+    }
+    if (count == 0 && wanted > 0)
+        return rejected(input_.path(), fmt::format("ends early: {} points of a scan are missing", left_));
+    for (size_t i = 0; i < streams_.size(); ++i) {
+        Stream& stream = streams_[i];
+        if (!stream.wanted) continue;  // zeros from the beginning
+        unpack_bits(stream.bytes.data(), stream.next_bit, stream.bits, count, &columns_[i * kBlockRecords]);
+        stream.next_bit += count * stream.bits;
+    }
+    left_ -= count;
+    return count;
+}
+
+/// Takes the next packet with points; passes over others, and stops at the end of the section.
+Result<void> RecordReader::next_data_packet() {
+    while (input_.left() >= kPacketHeaderBytes) {
+        LUCARNE_ASSIGN(const auto head, input_.peek(kPacketHeaderBytes));
+        const auto type = static_cast<uint8_t>(head[0]);
+        const size_t bytes = size_t{load<uint16_t>(&head[2])} + 1;
+        if (bytes < kPacketHeaderBytes || type > kEmptyPacket)
+            return rejected(input_.path(), "has a damaged packet of points");
+        LUCARNE_ASSIGN(const auto packet, input_.peek(bytes));
+        if (type == kDataPacket) LUCARNE_TRY(take_data_packet(packet.first(bytes)));
+        input_.skip(bytes);
+        if (type == kDataPacket) break;
+    }
+    return {};
+}
+
+Result<void> RecordReader::take_data_packet(std::span<const std::byte> packet) {
+    const size_t count = packet.size() < kDataHeaderBytes ? 0 : load<uint16_t>(&packet[4]);
+    if (count != streams_.size() || packet.size() < kDataHeaderBytes + 2 * count)
+        return rejected(input_.path(), fmt::format("has a packet of {} streams where points have {} fields",
+                                                   count, streams_.size()));
+    size_t at = kDataHeaderBytes + 2 * count;
+    for (size_t i = 0; i < count; ++i) {
+        const size_t bytes = load<uint16_t>(&packet[kDataHeaderBytes + 2 * i]);
+        if (bytes > packet.size() - at)
+            return rejected(input_.path(), "has a packet of points whose streams are longer than itself");
+        if (streams_[i].wanted) append(streams_[i], packet.subspan(at, bytes));
+        at += bytes;
+    }
+    if (held() > kMostAhead)
+        return rejected(input_.path(),
+                        fmt::format("has fields whose values lie over {} MiB apart", kMostAhead >> 20));
+    return {};
+}
+
+void RecordReader::append(Stream& stream, std::span<const std::byte> bytes) {
+    const auto done = static_cast<size_t>(stream.next_bit / 8);
+    if (done > stream.held / 2) {  // moved no more often than read, however far the stream is ahead
+        std::memmove(stream.bytes.data(), stream.bytes.data() + done, stream.held - done);
+        stream.held -= done;
+        stream.next_bit -= 8 * uint64_t{done};
+    }
+    if (stream.bytes.size() < stream.held + bytes.size() + kSlack)
+        stream.bytes.resize(std::max(stream.held + bytes.size() + kSlack, 2 * stream.bytes.size()));
+    std::memcpy(stream.bytes.data() + stream.held, bytes.data(), bytes.size());
+    stream.held += bytes.size();
+}
+
+}  // namespace lucarne::io::e57

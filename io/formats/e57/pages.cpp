@@ -1,0 +1,108 @@
+#include "io/formats/e57/pages.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/formats/e57/crc32c.h"
+#include "io/points.h"
+
+namespace lucarne::io::e57 {
+namespace {
+
+constexpr uint64_t kPagesAtOnce = 256;
+
+}  // namespace
+
+Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file) {
+    const std::string name = file->path().string();
+    std::array<std::byte, kHeaderBytes> raw{};
+    LUCARNE_TRY(file->read_at(0, raw));
+    const auto major = load<uint32_t>(&raw[8]), minor = load<uint32_t>(&raw[12]);
+    const auto physical_bytes = load<uint64_t>(&raw[16]);
+    const auto xml_offset = load<uint64_t>(&raw[24]), xml_bytes = load<uint64_t>(&raw[32]);
+    const auto page_bytes = load<uint64_t>(&raw[40]);
+    if (major != 1) return rejected(name, fmt::format("is E57 {}.{}; only 1.x is known", major, minor));
+    if (page_bytes != kPageBytes)
+        return rejected(name, fmt::format("has pages of {} bytes instead of {}", page_bytes, kPageBytes));
+    if (physical_bytes > file->size())
+        return rejected(name, fmt::format("is truncated: its header promises {} bytes, {} are there",
+                                          physical_bytes, file->size()));
+    if (physical_bytes == 0 || physical_bytes % kPageBytes != 0)
+        return rejected(name,
+                        fmt::format("has a length of {} bytes, which are no whole pages", physical_bytes));
+    FileHeader header;
+    header.bytes = physical_bytes / kPageBytes * kPageContent;
+    PageInput first_page(file, 0, kHeaderBytes);
+    LUCARNE_TRY(first_page.peek(kHeaderBytes));
+    LUCARNE_ASSIGN(header.xml_begin, logical_offset(name, header, xml_offset, "the XML section"));
+    if (xml_bytes > header.bytes - header.xml_begin)
+        return rejected(name,
+                        fmt::format("has an XML section of {} bytes that reaches beyond its end", xml_bytes));
+    header.xml_end = header.xml_begin + xml_bytes;
+    return header;
+}
+
+Result<uint64_t> logical_offset(const std::string& file, const FileHeader& header, uint64_t physical,
+                                const std::string& what) {
+    const uint64_t page = physical / kPageBytes, within = physical % kPageBytes;
+    if (page >= header.bytes / kPageContent)
+        return rejected(file, fmt::format("has {} at {}, beyond its end", what, physical));
+    if (within >= kPageContent || physical < kHeaderBytes)
+        return rejected(file, fmt::format("has {} at {}, inside {}", what, physical,
+                                          physical < kHeaderBytes ? "its header" : "a checksum"));
+    return page * kPageContent + within;
+}
+
+PageInput::PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end)
+    : file_(std::move(file)),
+      next_page_(begin / kPageContent),
+      end_(end),
+      skip_first_(static_cast<size_t>(begin % kPageContent)) {
+    if (end <= begin) return;
+    const uint64_t pages = (end + kPageContent - 1) / kPageContent - next_page_;
+    // Behind what is left over from before there is room for as many pages as are read at once.
+    buffer_.resize(static_cast<size_t>(std::min(pages, kPagesAtOnce) * kPageBytes) +
+                   (pages > kPagesAtOnce ? kLargestPeek : 0));
+}
+
+Result<std::span<const std::byte>> PageInput::peek(size_t bytes) {
+    while (last_ - first_ < bytes) {
+        if (next_page_ * kPageContent >= end_) break;
+        LUCARNE_TRY(fill());
+    }
+    const uint64_t past_end = next_page_ * kPageContent > end_ ? next_page_ * kPageContent - end_ : 0;
+    const size_t buffered = last_ - first_;
+    const size_t usable_bytes = past_end < buffered ? buffered - static_cast<size_t>(past_end) : 0;
+    if (usable_bytes < bytes) return rejected(path(), "has a section that ends early");
+    return std::span<const std::byte>(buffer_).subspan(first_, usable_bytes);
+}
+
+/// Reads as many pages as fit behind what is left, verifies them and closes the gaps of their checksums.
+Result<void> PageInput::fill() {
+    std::memmove(buffer_.data(), buffer_.data() + first_, last_ - first_);
+    last_ -= first_;
+    first_ = 0;
+    const uint64_t wanted = (end_ + kPageContent - 1) / kPageContent - next_page_;
+    const uint64_t pages = std::min<uint64_t>(wanted, (buffer_.size() - last_) / kPageBytes);
+    const auto read = std::span(buffer_).subspan(last_, static_cast<size_t>(pages * kPageBytes));
+    LUCARNE_TRY(file_->read_at(next_page_ * kPageBytes, read));
+    for (uint64_t page = 0; page < pages; ++page) {
+        const auto content = read.subspan(static_cast<size_t>(page * kPageBytes), kPageContent);
+        const auto stored = load<uint32_t>(content.data() + kPageContent);
+        const uint32_t checksum = crc32c(content);
+        if (stored != __builtin_bswap32(checksum))
+            return rejected(path(), fmt::format("is damaged: the checksum of the page at byte {} is wrong",
+                                                (next_page_ + page) * kPageBytes));
+        std::memmove(buffer_.data() + last_, content.data(), kPageContent);
+        last_ += kPageContent;
+    }
+    next_page_ += pages;
+    first_ += std::exchange(skip_first_, 0);
+    return {};
+}
+
+}  // namespace lucarne::io::e57

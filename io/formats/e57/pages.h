@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/core/file.h"
+
+// The lowest layer of E57 (ASTM E2807-11, 6.2-6.3): pages of 1024 bytes, of which the last four are the
+// CRC-32C of the others, highest byte first. Physical offsets count all bytes, logical ones those without
+// checksums.
+namespace lucarne::io::e57 {
+
+inline constexpr uint64_t kPageBytes = 1024, kPageContent = 1020;
+inline constexpr size_t kHeaderBytes = 48;
+
+struct FileHeader {
+    uint64_t bytes = 0;                   ///< logical length of the whole file
+    uint64_t xml_begin = 0, xml_end = 0;  ///< logical
+};
+
+/// Errors: versions and page sizes other than the standard's, a file shorter than its header says or than its
+/// XML.
+Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file);
+
+/// The logical offset of `physical`, which names `what` in errors: inside the file, not inside a checksum.
+Result<uint64_t> logical_offset(const std::string& file, const FileHeader& header, uint64_t physical,
+                                const std::string& what);
+
+/// Sequential reading of the logical range [begin, end), every page's checksum verified. Nothing else than
+/// one buffer is held, no larger than the range needs.
+class PageInput {
+ public:
+    PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end);
+
+    /// At least `bytes` (at most kLargestPeek); fewer left in the range is an error. Valid until the next
+    /// call.
+    Result<std::span<const std::byte>> peek(size_t bytes);
+    void skip(size_t bytes) { first_ += bytes; }  ///< of what `peek` returned
+    uint64_t position() const { return next_page_ * kPageContent + skip_first_ - (last_ - first_); }
+    uint64_t left() const { return position() < end_ ? end_ - position() : 0; }
+    std::string path() const { return file_->path().string(); }
+
+    static constexpr size_t kLargestPeek = size_t{1} << 16;
+
+ private:
+    Result<void> fill();
+
+    std::shared_ptr<const InputFile> file_;
+    uint64_t next_page_, end_;
+    size_t skip_first_;  ///< bytes of the first page that lie before the range
+    std::vector<std::byte> buffer_;
+    size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed
+};
+
+}  // namespace lucarne::io::e57

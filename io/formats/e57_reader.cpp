@@ -1,0 +1,153 @@
+// E57 (ASTM E2807-11), read only: several scans become one stream of points. See e57/*.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/e57/layout.h"
+#include "io/formats/format.h"
+
+namespace lucarne::io {
+namespace {
+
+/// Everything that is read of a file but its points.
+struct E57 {
+    std::shared_ptr<const InputFile> file;
+    e57::Document document;
+    std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
+    e57::Layout layout;
+};
+
+class E57Reader final : public PointReader {
+ public:
+    explicit E57Reader(const E57& e57) : e57_(e57) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const Schema& schema = e57_.layout.schema;
+        const size_t wanted = batch_limit(schema, most);
+        batch.bytes.clear();
+        batch.count = 0;
+        while (batch.count < wanted) {
+            if (!records_ && !open_next()) break;
+            const size_t block = std::min(wanted - batch.count, e57::kBlockRecords);
+            LUCARNE_ASSIGN(const size_t count, records_->read(block));
+            if (count == 0) {
+                records_.reset();
+                continue;
+            }
+            batch.bytes.resize((batch.count + count) * schema.stride);
+            const size_t kept =
+                e57::convert_block(schema, e57_.document.scans[scan_], e57_.layout.scans[scan_], *records_,
+                                   count, batch.bytes.data() + batch.count * schema.stride);
+            batch.count += kept;
+            dropped_ += count - kept;
+        }
+        batch.bytes.resize(batch.count * schema.stride);
+        return batch.count;
+    }
+    uint64_t dropped() const override { return dropped_; }
+
+ private:
+    bool open_next() {
+        const auto& scans = e57_.document.scans;
+        while (next_ < scans.size() && scans[next_].records == 0) ++next_;
+        if (next_ == scans.size()) return false;
+        scan_ = next_++;
+        records_.emplace(e57_.file, e57_.sections[scan_], scans[scan_]);
+        return true;
+    }
+
+    const E57& e57_;
+    std::optional<e57::RecordReader> records_;
+    size_t scan_ = 0, next_ = 0;
+    uint64_t dropped_ = 0;
+};
+
+class E57Source final : public PointSource {
+ public:
+    explicit E57Source(E57 e57) : e57_(std::move(e57)) {
+        const auto& document = e57_.document;
+        info_.path = e57_.file->path().string();
+        info_.format = fmt::format("E57 1.0, {} scan{}, {} image{}", document.scans.size(),
+                                   document.scans.size() == 1 ? "" : "s", document.images.size(),
+                                   document.images.size() == 1 ? "" : "s");
+        info_.color_bits = e57_.layout.color_bits;
+        for (size_t i = 0; i < document.scans.size(); ++i) {
+            const e57::Scan& scan = document.scans[i];
+            info_.declared_points += scan.records;
+            // Spherical coordinates count from the scanner; others without a pose may count from anywhere.
+            if (scan.records > 0 && (scan.pose || e57_.layout.scans[i].spherical))
+                info_.stations.push_back(
+                    {e57_.layout.scans[i].station, scan.pose ? scan.pose->translation : glm::dvec3(0.0)});
+        }
+        nlohmann::json details = e57::to_details(document);
+        details["color_bits"] = info_.color_bits;
+        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    }
+
+    const Schema& schema() const override { return e57_.layout.schema; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override { return std::make_unique<E57Reader>(e57_); }
+
+ private:
+    E57 e57_;
+    ScanInfo info_;
+};
+
+Result<std::string> read_xml(const std::shared_ptr<const InputFile>& file, const e57::FileHeader& header) {
+    if (header.xml_end - header.xml_begin > e57::kMostXmlBytes)
+        return rejected(file->path().string(),
+                        fmt::format("has an XML section of more than {} MiB", e57::kMostXmlBytes >> 20));
+    std::string xml;
+    e57::PageInput input(file, header.xml_begin, header.xml_end);
+    while (input.left() > 0) {
+        LUCARNE_ASSIGN(const auto bytes, input.peek(1));
+        xml.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        input.skip(bytes.size());
+    }
+    return xml;
+}
+
+/// No two scans share bytes, nor do they with the XML section.
+Result<void> check_apart(const std::string& name, const e57::FileHeader& header, const E57& e57) {
+    std::vector<std::pair<uint64_t, uint64_t>> ranges = {{header.xml_begin, header.xml_end}};
+    for (size_t i = 0; i < e57.sections.size(); ++i)
+        if (e57.document.scans[i].records > 0)
+            ranges.emplace_back(e57.sections[i].begin, e57.sections[i].end);
+    std::sort(ranges.begin(), ranges.end());
+    for (size_t i = 1; i < ranges.size(); ++i)
+        if (ranges[i].first < ranges[i - 1].second) return rejected(name, "has sections that overlap");
+    return {};
+}
+
+Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+    const std::string name = file->path().string();
+    LUCARNE_ASSIGN(const auto header, e57::read_file_header(file));
+    LUCARNE_ASSIGN(std::string xml, read_xml(file, header));
+    E57 e57;
+    LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
+    for (const e57::Scan& scan : e57.document.scans) {
+        e57::Section section;
+        if (scan.records > 0) {
+            LUCARNE_ASSIGN(section, e57::read_section(file, header, scan));
+        }
+        e57.sections.push_back(section);
+    }
+    LUCARNE_TRY(check_apart(name, header, e57));
+    LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
+    if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
+        log::warn("{}: there are more bytes than its header promises, they are left out", name);
+    e57.file = std::move(file);
+    return std::make_unique<E57Source>(std::move(e57));
+}
+
+}  // namespace
+
+const Format& e57_format() {
+    static constexpr Format kFormat{
+        "E57", ".e57", [](std::string_view head) { return head.starts_with("ASTM-E57"); }, open_e57, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io
