@@ -11,6 +11,7 @@
 #include "gi/registry.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
+#include "octree/bulk.h"
 #include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
 #include "viewer/cut_choice.h"
@@ -368,8 +369,8 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     device.set_memory_cap(options.device_memory);
     LUCARNE_TRY(state.take_source(std::move(source)));
     state.fresh = false;  // there is no picture yet that half of one would spoil
-    const auto& header = state.source->header();
-    state.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
+    const auto [low, high] = octree::bulk_of(*state.source);
+    state.scene = gi::default_scene(low, high, state.source->header().metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
     state.budgets = preset.budgets;

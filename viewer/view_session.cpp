@@ -74,10 +74,11 @@ void ViewSession::take_picture() {
 }
 
 /// Light and camera as they would be had the whole been known at once, unless the user has changed them.
-void ViewSession::take_bounds(const octree::SourceHeader& before, const octree::SourceHeader& now) {
-    if ((before.min == now.min && before.max == now.max) || model_.scene_version != 1) return;
-    auto start = input_.start(now);
+void ViewSession::take_extent() {
+    if (model_.scene_version != own_scene_) return;
+    auto start = input_.start(*input_.source);
     if (!start) return;
+    if (start->camera.position == model_.home.position && start->camera.target == model_.home.target) return;
     const auto camera = model_.rig.camera();
     const bool at_home = CameraRig(model_.home).camera().position == camera.position &&
                          CameraRig(model_.home).camera().target == camera.target;
@@ -85,6 +86,7 @@ void ViewSession::take_bounds(const octree::SourceHeader& before, const octree::
     model_.home = start->camera;
     if (at_home) model_.rig = CameraRig(model_.home);
     model_.scene_changed();
+    own_scene_ = model_.scene_version;
 }
 
 /// The build begins once there is something to see, and what it has finished is drawn from then on.
@@ -98,16 +100,16 @@ void ViewSession::follow_build() {
         input_.build->begin(&Window::wake);
     }
     if (auto source = input_.build->source(); source != input_.source) {
-        take_bounds(input_.source->header(), source->header());
         input_.source = source;
+        take_extent();
         worker_.set_source(std::move(source));
     }
     const octree::BuildProgress progress = input_.build->progress();
     const auto error = input_.build->error();
     if (!error) model_.message = "the cache was not finished: " + error.error().line();
-    window_.set_title(progress.stage.empty()
-                          ? input_.title
-                          : fmt::format("{} - {} {:.0f} %", input_.title, progress.stage, 100 * progress.share));
+    window_.set_title(progress.stage.empty() ? input_.title
+                                             : fmt::format("{} - {} {:.0f} %", input_.title, progress.stage,
+                                                           100 * progress.share));
 }
 
 /// Shift and the mouse are the light's.

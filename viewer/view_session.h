@@ -33,8 +33,8 @@ struct ViewedInput {
     std::string title;                                 ///< of the window
     std::shared_ptr<const octree::NodeSource> source;  ///< that the worker was started with
     octree::GrowingBuild* build = nullptr;             ///< begun with the first picture; none: the source is whole
-    /// For a cloud of known bounds: a sample's are not quite those of the whole.
-    std::function<Result<StartingView>(const octree::SourceHeader&)> start;
+    /// For a cloud: what is known of the whole from a sample is not quite so.
+    std::function<Result<StartingView>(const octree::NodeSource&)> start;
 };
 
 /// The loop of the window: input into the model, the model into requests, pictures onto the screen.
@@ -58,7 +58,7 @@ class ViewSession {
 
     void take_picture();
     void follow_build();
-    void take_bounds(const octree::SourceHeader& before, const octree::SourceHeader& now);
+    void take_extent();
     void take_input();
     void take_light_gesture();
     bool take_navigation();
@@ -77,6 +77,7 @@ class ViewSession {
     FrameBudget budget_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
+    uint64_t own_scene_ = 1;  ///< the version that is no user's
     uint64_t scene_seen_ = 0;
     uint32_t whole_pictures_ = 0;
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);

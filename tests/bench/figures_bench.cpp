@@ -46,7 +46,7 @@ class Stage {
         viewer::DrawingOptions options;
         options.scene = bench::scene_file(scene);
         LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-        LUCARNE_ASSIGN(gi::Scene loaded, viewer::load_scene_for(options, source->header()));
+        LUCARNE_ASSIGN(gi::Scene loaded, viewer::load_scene_for(options, *source));
         LUCARNE_ASSIGN(request_.camera, viewer::find_camera(loaded, ""));
         request_.size = size;
         request_.wait = true;

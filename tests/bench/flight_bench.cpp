@@ -81,7 +81,7 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     viewer::DrawingOptions options;
     options.scene = kScene;
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, source->header()));
+    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
     drawing.caps = caps;
     drawing.preset.engine.bounces = 3;
     change(drawing.preset);

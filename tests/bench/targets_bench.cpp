@@ -82,7 +82,7 @@ Result<void> bench_frames(const std::filesystem::path& folder) {
     viewer::DrawingOptions options;
     options.scene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, source->header()));
+    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
     viewer::FrameRequest request;
     request.wait = true;
     LUCARNE_ASSIGN(request.camera, viewer::find_camera(scene, ""));

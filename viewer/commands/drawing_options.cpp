@@ -7,6 +7,7 @@
 
 #include "gi/registry.h"
 #include "io/core/log.h"
+#include "octree/bulk.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -120,8 +121,9 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     return drawing;
 }
 
-Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::SourceHeader& header) {
-    gi::Scene scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
+Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
+    const auto [low, high] = octree::bulk_of(source);
+    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit);
     if (!options.scene.empty()) {
         const auto cameras = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));

@@ -47,7 +47,7 @@ struct Drawing {
 Result<Drawing> resolve(const DrawingOptions& options);
 
 /// The scene file, or the default scene for this cloud; the first camera is there in any case.
-Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::SourceHeader& header);
+Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
 
 /// Errors (ErrorKind::arguments): no camera of that name; the message lists those there are. Empty: the
 /// first.

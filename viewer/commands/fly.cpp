@@ -113,7 +113,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
         }
     const auto begin = Clock::now();
     LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
-    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
+    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, drawing_options, drawing, std::move(scene)));
     conditions.start.open_seconds = std::chrono::duration<double>(Clock::now() - begin).count();

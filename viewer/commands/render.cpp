@@ -172,7 +172,7 @@ Result<void> render(const RenderOptions& options) {
     auto opening = std::async(std::launch::async, [&] { return open_source(options); });
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is looked at
     LUCARNE_ASSIGN(const auto source, opening.get());
-    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, source->header()));
+    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
     FrameRequest request;
     LUCARNE_ASSIGN(request.camera, find_camera(scene, options.camera));
     request.size = drawing.size;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/file.h"
+#include "octree/bulk.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
@@ -26,17 +27,18 @@ struct ViewOptions {
     bool overwrite = false;
 };
 
-Result<StartingView> starting_view(const ViewOptions& options, const octree::SourceHeader& header) {
+Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
     StartingView start;
-    LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, header));
+    LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
     LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
     return start;
 }
 
 Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing,
-                              const octree::SourceHeader& header) {
-    ViewModel model(std::max(glm::distance(header.min, header.max), 1e-6));
-    LUCARNE_ASSIGN(StartingView start, starting_view(options, header));
+                              const octree::NodeSource& source) {
+    const auto [low, high] = octree::bulk_of(source);
+    ViewModel model(std::max(glm::distance(low, high), 1e-6));
+    LUCARNE_ASSIGN(StartingView start, starting_view(options, source));
     model.scene = std::move(start.scene);
     model.home = start.camera;
     model.rig = CameraRig(model.home);
@@ -58,13 +60,14 @@ Result<void> view(const ViewOptions& options) {
     }
     const std::string title = "Lucarne - " + inputs_text(options.input.paths);
     auto opening = std::async(std::launch::async, [&] { return open_growing(options.input); });
-    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, title));  // starts while the input is looked at
+    LUCARNE_ASSIGN(const auto window,
+                   Window::open(drawing.size, title));  // starts while the input is looked at
     LUCARNE_ASSIGN(const OpenInput input, opening.get());
-    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, input.source->header()));
+    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, *input.source));
     LUCARNE_ASSIGN(const auto worker,
                    PictureWorker::start(window->worker_device(), input.source, drawing.caps, &Window::wake));
     model.device = worker->device();
-    const auto start = [&](const octree::SourceHeader& header) { return starting_view(options, header); };
+    const auto start = [&](const octree::NodeSource& source) { return starting_view(options, source); };
     return ViewSession(*window, *worker, model, shot, {title, input.source, input.build.get(), start}).run();
 }
 
@@ -76,8 +79,9 @@ void add_view(CLI::App& app, Command& chosen) {
     add_input_options(*command, options->input);
     add_drawing_options(*command, options->drawing);
     command->add_option("--camera", options->camera, "Start with this camera of the scene");
-    command->add_option("--frame-time", options->frame_time_ms,
-                        "What a picture should take while something moves; cuts and size follow it")
+    command
+        ->add_option("--frame-time", options->frame_time_ms,
+                     "What a picture should take while something moves; cuts and size follow it")
         ->check(CLI::Range(1.0, 1e5))
         ->capture_default_str()
         ->type_name("MS");

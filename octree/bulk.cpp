@@ -1,0 +1,104 @@
+#include "octree/bulk.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace lucarne::octree {
+namespace {
+
+/// Of the points, at each end of each axis, that may be strays.
+constexpr double kStrays = .005;
+/// The bulk is looked at where it is this much smaller than the whole; else nothing is left out of the
+/// picture.
+constexpr double kMuchSmaller = .5;
+constexpr size_t kMostNodes = 1 << 13;
+
+/// Nodes that are loaded to see where in their cubes their points are: a coarse leaf may hold them in one
+/// corner.
+constexpr size_t kMostLoaded = 64;
+constexpr uint32_t kFineLevel = 6;  ///< whose cubes are told by their place alone
+constexpr uint32_t kPointsOfANode = 64;
+
+struct Weighted {
+    glm::dvec3 low, high;
+    double points;
+};
+
+/// The place on an axis that `share` of the points are below.
+double quantile(std::vector<Weighted>& parts, int axis, bool high, double share) {
+    const auto place = [&](const Weighted& w) { return high ? w.high[axis] : w.low[axis]; };
+    std::ranges::sort(parts, {}, place);
+    double all = 0, below = 0;
+    for (const Weighted& w : parts) all += w.points;
+    for (const Weighted& w : parts)
+        if ((below += w.points) > share * all) return place(w);
+    return place(parts.back());
+}
+
+/// The level whose nodes stand for all below them, so that clouds of any size are quick to look at.
+uint32_t deepest(std::span<const NodeInfo> nodes) {
+    std::array<size_t, kMostLevel + 1> at_level{};
+    for (const NodeInfo& node : nodes) ++at_level[node.key.level];
+    uint32_t level = 0;
+    for (size_t sum = at_level[0]; level < kMostLevel && (sum += at_level[level + 1]) <= kMostNodes;) ++level;
+    return level;
+}
+
+/// What divides the points: leaves, and the nodes of the deepest level with all below them. What nodes above
+/// hold is an even sample of space, in which strays would weigh as much as rooms.
+std::vector<Weighted> parts_of(const NodeSource& source) {
+    const auto nodes = source.nodes();
+    const uint32_t level = deepest(nodes);
+    std::vector<uint32_t> coarse;
+    std::vector<Weighted> parts;
+    const auto add_cube = [&](uint32_t i) {
+        const Cube cube = source.cube(i);
+        parts.push_back({cube.min, cube.min + cube.size, static_cast<double>(nodes[i].subtree_count)});
+    };
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        const bool leaf = !nodes[i].child_mask;
+        if (nodes[i].key.level > level || (!leaf && nodes[i].key.level < level)) continue;
+        if (leaf && nodes[i].key.level < kFineLevel)
+            coarse.push_back(i);
+        else
+            add_cube(i);
+    }
+    std::ranges::stable_sort(coarse, std::ranges::greater(), [&](uint32_t i) { return nodes[i].count; });
+    for (size_t n = 0; n < coarse.size(); ++n) {
+        const auto data = n < kMostLoaded ? source.load(coarse[n]) : Result<NodeData>(NodeData{});
+        const uint32_t count = data ? std::min(data->count, kPointsOfANode) : 0;
+        if (count == 0) add_cube(coarse[n]);
+        const SourcePart part = source.part_of(coarse[n]);
+        const io::Schema& schema = part.header.schema;
+        for (uint32_t k = 0; k < count; ++k) {
+            const glm::dvec3 p =
+                io::position_of(schema, &data->records[size_t{k} * schema.stride]) * part.scale;
+            parts.push_back({p, p, static_cast<double>(nodes[coarse[n]].count) / count});
+        }
+    }
+    return parts;
+}
+
+}  // namespace
+
+std::array<glm::dvec3, 2> bulk_of(const NodeSource& source) {
+    const SourceHeader& header = source.header();
+    const std::array<glm::dvec3, 2> whole = {header.min, header.max};
+    if (source.nodes().empty()) return whole;
+    auto parts = parts_of(source);
+    glm::dvec3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = quantile(parts, axis, false, kStrays);
+        high[axis] = quantile(parts, axis, true, 1 - kStrays);
+    }
+    low = glm::max(low, header.min);
+    high = glm::min(high, header.max);
+    const double all = glm::length(header.max - header.min), bulk = glm::length(high - low);
+    return bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false for what is no number
+}
+
+}  // namespace lucarne::octree

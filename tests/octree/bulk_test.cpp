@@ -1,0 +1,60 @@
+#include "octree/bulk.h"
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+#include "io/core/random.h"
+#include "octree/build/build.h"
+#include "octree/cache.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+using lucarne::test::ComputedSource;
+using lucarne::test::TempFolder;
+
+/// A room of 8 x 8 x 3, with one of `every` points up to a kilometre away; 0: none.
+std::array<glm::dvec3, 2> bulk_with_strays(uint64_t points, uint64_t every) {
+    const TempFolder folder;
+    const ComputedSource source(io::Schema{}, points, [every](uint64_t index, std::byte* record) {
+        Random random(7, index);
+        glm::dvec3 p(8 * random.uniform(), 8 * random.uniform(), index % 2 ? 0 : 3);
+        if (every && index % every == 0)
+            p = 1000.0 * glm::dvec3(random.uniform() - .5, random.uniform() - .5, random.uniform());
+        io::store(record, p);
+    });
+    BuildOptions options;
+    options.inputs = {&source};
+    options.output = folder / "a.luc";
+    options.normals = NormalsMode::none;
+    EXPECT_TRUE(build_cache(options));
+    const auto cache = open_cache(options.output);
+    return bulk_of(**cache);
+}
+
+TEST(Bulk, IsTheRoomWhereAFewPointsAreFarAway) {
+    const auto [low, high] = bulk_with_strays(200'000, 1000);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LE(low[axis], 0.1);
+        EXPECT_GE(low[axis], -10);
+        EXPECT_GE(high[axis], axis == 2 ? 2.9 : 7.9);
+        EXPECT_LE(high[axis], 20);
+    }
+}
+
+TEST(Bulk, IsEverythingWhereNothingStraysOrTooManyDo) {
+    const auto [low, high] = bulk_with_strays(100'000, 0);
+    EXPECT_NEAR(high.x - low.x, 8, .01);
+    EXPECT_NEAR(high.z - low.z, 3, .01);
+    const auto scattered = bulk_with_strays(300'000, 3);
+    EXPECT_GT(scattered[1].x - scattered[0].x, 900);
+}
+
+TEST(Bulk, OfOnePointIsThatPoint) {
+    const auto [low, high] = bulk_with_strays(1, 0);
+    EXPECT_EQ(low, high);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
