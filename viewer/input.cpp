@@ -12,6 +12,7 @@
 #include "io/core/log.h"
 #include "io/formats/scan.h"
 #include "octree/cache.h"
+#include "octree/open.h"
 #include "viewer/inputs.h"
 #include "viewer/kept_cache.h"
 
@@ -60,8 +61,8 @@ Result<Scans> open_scans(const InputOptions& options) {
     return scans;
 }
 
-bool has_cache(const std::vector<std::string>& paths) {
-    return std::ranges::any_of(paths, [](const auto& path) { return octree::is_cache(path); });
+bool has_octree(const std::vector<std::string>& paths) {
+    return std::ranges::any_of(paths, [](const auto& path) { return octree::is_octree(path); });
 }
 
 }  // namespace
@@ -90,8 +91,7 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
 }
 
 void add_input_options(CLI::App& command, InputOptions& options) {
-    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")
-        ->required();
+    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")->required();
     command.add_flag(
         "--no-cache", options.no_cache,
         "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
@@ -101,7 +101,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
 
 Result<OpenInput> open_growing(const InputOptions& options) {
     OpenInput open;
-    if (has_cache(options.paths)) {
+    if (has_octree(options.paths)) {
         LUCARNE_ASSIGN(open.source, open_inputs(options.paths));
         return open;
     }
@@ -118,7 +118,7 @@ Result<OpenInput> open_growing(const InputOptions& options) {
 }
 
 Result<Source> open_input(const InputOptions& options) {
-    if (has_cache(options.paths)) return open_inputs(options.paths);
+    if (has_octree(options.paths)) return open_inputs(options.paths);
     LUCARNE_ASSIGN(Scans scans, open_scans(options));
     if (scans.cache) return scans.cache;
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
@@ -129,9 +129,9 @@ Result<Source> open_input(const InputOptions& options) {
 }
 
 Result<Source> open_input(const std::filesystem::path& path) {
-    if (octree::is_cache(path)) {
-        LUCARNE_ASSIGN(auto cache, octree::open_cache(path));
-        return Source(std::move(cache));
+    if (octree::is_octree(path)) {
+        LUCARNE_ASSIGN(auto octree, octree::open_octree(path));
+        return Source(std::move(octree));
     }
     return open_input(InputOptions{{path.string()}, false, {}});
 }

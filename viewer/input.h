@@ -17,7 +17,7 @@ class App;
 
 namespace lucarne::viewer {
 
-/// Caches and scans, drawn together. Where all are scans they become one cache.
+/// Caches, COPC files and scans, drawn together. Where all are scans they become one cache.
 struct InputOptions {
     std::vector<std::string> paths;
     bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
@@ -53,7 +53,7 @@ struct OpenInput {
     std::unique_ptr<octree::GrowingBuild> build;  ///< of scans without a cache yet; not begun
 };
 
-/// Caches as they are, or the one kept of these scans, or a sample of them and their build. Errors: those of the
+/// Caches and COPC files as they are, or the one kept of these scans, or a sample of them and their build. Errors: those of the
 /// readers.
 Result<OpenInput> open_growing(const InputOptions& options);
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "octree/cache.h"
+#include "octree/open.h"
 #include "octree/stream/joined_source.h"
 #include "viewer/input.h"
 
@@ -13,9 +13,9 @@ Result<std::shared_ptr<const octree::NodeSource>> open_inputs(const std::vector<
     const auto handles = std::make_shared<HandlePool>(kMostOpenCaches);
     std::vector<std::shared_ptr<const octree::NodeSource>> sources;
     for (const std::string& path : paths) {
-        if (octree::is_cache(path)) {
-            LUCARNE_ASSIGN(auto cache, octree::open_cache(path, handles));
-            sources.push_back(std::move(cache));
+        if (octree::is_octree(path)) {
+            LUCARNE_ASSIGN(auto octree, octree::open_octree(path, handles));
+            sources.push_back(std::move(octree));
         } else {
             LUCARNE_ASSIGN(sources.emplace_back(), open_input(path));
         }

@@ -12,9 +12,6 @@ namespace lucarne::io::las {
 namespace {
 
 constexpr size_t kVlrHeader = 54, kEvlrHeader = 60;
-/// Where nothing changes from point to point, LAZ's adaptive models still take a hundredth of a bit for each
-/// (what changed: 128 symbols of 2^15; the numbers of bits of two differences: 33 each).
-constexpr uint64_t kMostPointsAByte = 1000;
 
 /// A fixed-width text field: up to its first NUL, in printable ASCII.
 std::string text_field(const std::byte* at, size_t width) {
@@ -60,6 +57,7 @@ class RecordReader {
         return {};
     }
     Result<void> keep(Vlr vlr, uint64_t at, uint64_t bytes) {
+        if (vlr.is("copc", 1000)) return {};  // a hierarchy of nodes: for io/formats/copc.h, page by page
         if (bytes > kMostRecordBytes - kept_) {
             log::warn("{}: the record {} {} of {} bytes is too large to be kept", file_.path().string(),
                       vlr.user_id, vlr.record_id, bytes);

@@ -71,6 +71,9 @@ Result<Header> read_header(const InputFile& file);
 
 inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
 inline constexpr uint32_t kMostRecords = 100'000;
+/// Where nothing changes from point to point, LAZ's adaptive models still take a hundredth of a bit for each
+/// (what changed: 128 symbols of 2^15; the numbers of bits of two differences: 33 each).
+inline constexpr uint64_t kMostPointsAByte = 1000;
 
 /// `info.details`: what a later export needs to write the same header again.
 nlohmann::json to_details(const Header& header);

@@ -5,14 +5,6 @@
 #include "octree/normals/area_floor.h"
 
 namespace lucarne::octree {
-namespace {
-
-/// An inner node's spacing in cube sizes: a plane through the cube then shows some 12000 points.
-constexpr float kSpacing = 1.0f / 128;
-/// The root has no parent whose sample its prefix could continue: its order starts at 1/64 of its points.
-constexpr float kRootSpacing = 8 * kSpacing;
-
-}  // namespace
 
 void NodeSampler::start(const NodeKey& parent) {
     parent_ = parent;
@@ -31,7 +23,7 @@ void NodeSampler::end_child(const Pending& child) {
 }
 
 void NodeSampler::run() {
-    sampler_.run(kSpacing, std::min(limits_.sample, std::max<size_t>(1, sampler_.size() * 3 / 8)));
+    sampler_.run(kNodeSpacing, std::min(limits_.sample, std::max<size_t>(1, sampler_.size() * 3 / 8)));
     first_own_pass_ = 1;
     count_taken();
 }

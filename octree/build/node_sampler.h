@@ -9,6 +9,11 @@
 
 namespace lucarne::octree {
 
+/// An inner node's spacing in cube sizes: a plane through the cube then shows some 12000 points.
+inline constexpr float kNodeSpacing = 1.0f / 128;
+/// The root has no parent whose sample its prefix could continue: its order starts at 1/64 of its points.
+inline constexpr float kRootSpacing = 8 * kNodeSpacing;
+
 /// How large nodes get. Depends on the record's size alone, so that the tree does not depend on --memory.
 struct NodeLimits {
     explicit NodeLimits(uint32_t stride)

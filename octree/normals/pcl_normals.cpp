@@ -14,34 +14,13 @@
 
 #include "octree/normals/leaf_index.h"
 #include "octree/normals/neighbours.h"
+#include "octree/normals/one_chunk.h"
 
 namespace lucarne::octree {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Search = pcl::search::Search<pcl::PointXYZ>;
-
-/// A whole cloud as one chunk.
-class OneChunk final : public ChunkAccess {
- public:
-    explicit OneChunk(std::vector<glm::dvec3> points) : points_(std::move(points)) {
-        for (const auto& p : points_) {
-            bounds_.min = glm::min(bounds_.min, p);
-            bounds_.max = glm::max(bounds_.max, p);
-        }
-    }
-    size_t chunk_count() const override { return 1; }
-    Box bounds(size_t) const override { return bounds_; }
-    uint64_t point_count(size_t) const override { return points_.size(); }
-    Result<std::vector<glm::dvec3>> positions(size_t) const override { return points_; }
-    Result<std::vector<int32_t>> stations(size_t) const override {
-        return std::vector<int32_t>(points_.size(), -1);
-    }
-
- private:
-    std::vector<glm::dvec3> points_;
-    Box bounds_{};
-};
 
 /// Our neighbours behind PCL's interface. The nearest of the cloud's own points, which is what estimators ask
 /// for one by one and in their own order, are found for all points at once when they are asked for first;

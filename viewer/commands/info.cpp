@@ -10,6 +10,7 @@
 #include "io/core/options.h"
 #include "io/formats/scan.h"
 #include "octree/cache.h"
+#include "octree/open.h"
 #include "viewer/commands/commands.h"
 #include "viewer/input.h"
 
@@ -52,7 +53,7 @@ json describe_scan(const io::PointSource& scan) {
             {"attributes", attributes_json(scan.schema())}};
 }
 
-json describe_cache(const octree::NodeSource& cache) {
+json describe_octree(const octree::NodeSource& cache, const char* kind) {
     const auto& header = cache.header();
     json levels = json::array();
     for (const auto& node : cache.nodes()) {
@@ -64,7 +65,7 @@ json describe_cache(const octree::NodeSource& cache) {
     json scans = json::array();
     for (const auto& scan : header.scans)
         scans.push_back({{"path", scan.path}, {"format", scan.format}, {"stations", scan.stations.size()}});
-    return {{"kind", "cache"},
+    return {{"kind", kind},
             {"points", header.points},
             {"nodes", cache.nodes().size()},
             {"levels", std::move(levels)},
@@ -79,9 +80,9 @@ json describe_cache(const octree::NodeSource& cache) {
 
 Result<void> info(const Options& options) {
     json described;
-    if (octree::is_cache(options.input)) {
-        LUCARNE_ASSIGN(const auto cache, octree::open_cache(options.input));
-        described = describe_cache(*cache);
+    if (octree::is_octree(options.input)) {
+        LUCARNE_ASSIGN(const auto source, octree::open_octree(options.input));
+        described = describe_octree(*source, octree::is_cache(options.input) ? "cache" : "copc");
     } else {
         LUCARNE_ASSIGN(const auto scan, io::open_scan(options.input, options.read));
         described = describe_scan(*scan);

@@ -33,6 +33,22 @@ Result<OpenChunk> open_chunk(const Points& points, size_t index) {
     return chunk;
 }
 
+/// The next `count` points of an open chunk, in records of the schema.
+Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk, uint64_t count,
+                    std::byte* to) {
+    const uint32_t bytes = points.header.record_length;
+    std::vector<std::byte> raw(std::min(count, kPiecePoints) * bytes);
+    chunk.left -= count;
+    while (count > 0) {
+        const uint64_t piece = std::min(count, kPiecePoints);
+        LUCARNE_TRY(chunk.decoder->decode(piece, raw.data()));
+        las::decode(points.header, raw.data(), piece, to, schema.stride);
+        to += piece * schema.stride;
+        count -= piece;
+    }
+    return {};
+}
+
 class Reader final : public PointReader {
  public:
     Reader(const Points& points, const Schema& schema)
@@ -66,7 +82,7 @@ class Reader final : public PointReader {
     Result<void> fill_from_large() {
         const uint64_t count = std::min(large_.left, most_ready());
         ready_.resize(count * schema_.stride);
-        LUCARNE_TRY(unpack(large_, count, ready_.data()));
+        LUCARNE_TRY(unpack(points_, schema_, large_, count, ready_.data()));
         if (large_.left == 0) large_ = {};
         return {};
     }
@@ -88,27 +104,14 @@ class Reader final : public PointReader {
                 auto chunk = open_chunk(points_, first + i);
                 Result<void> done;
                 if (chunk)
-                    done = unpack(*chunk, chunk->left, ready_.data() + begins[i] * schema_.stride);
+                    done = unpack(points_, schema_, *chunk, chunk->left,
+                                  ready_.data() + begins[i] * schema_.stride);
                 else
                     done = tl::unexpected(chunk.error());
                 if (!done) error.report(i, std::move(done).error());
             }
         });
         return error.result();
-    }
-
-    Result<void> unpack(OpenChunk& chunk, uint64_t count, std::byte* to) const {
-        const uint32_t bytes = points_.header.record_length;
-        std::vector<std::byte> raw(std::min(count, kPiecePoints) * bytes);
-        chunk.left -= count;
-        while (count > 0) {
-            const uint64_t piece = std::min(count, kPiecePoints);
-            LUCARNE_TRY(chunk.decoder->decode(piece, raw.data()));
-            las::decode(points_.header, raw.data(), piece, to, schema_.stride);
-            to += piece * schema_.stride;
-            count -= piece;
-        }
-        return {};
     }
 
     const Points& points_;
@@ -127,6 +130,13 @@ Result<std::vector<std::byte>> decode_chunk(const Points& points, size_t index, 
     count = std::min(count, chunk.left);
     std::vector<std::byte> records(count * points.header.record_length);
     LUCARNE_TRY(chunk.decoder->decode(count, records.data()));
+    return records;
+}
+
+Result<std::vector<std::byte>> read_chunk(const Points& points, size_t index, const Schema& schema) {
+    LUCARNE_ASSIGN(auto chunk, open_chunk(points, index));
+    std::vector<std::byte> records(chunk.left * schema.stride);
+    LUCARNE_TRY(unpack(points, schema, chunk, chunk.left, records.data()));
     return records;
 }
 

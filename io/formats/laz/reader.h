@@ -17,6 +17,9 @@ struct Points {
 /// The first `count` points of chunk number `index`, or all it has, as records of a LAS file.
 Result<std::vector<std::byte>> decode_chunk(const Points& points, size_t index, uint64_t count);
 
+/// All points of chunk number `index`, in the records of las::make_schema.
+Result<std::vector<std::byte>> read_chunk(const Points& points, size_t index, const Schema& schema);
+
 /// One pass over the points, in the records of las::make_schema; several chunks are decoded side by side.
 /// Both outlive the reader.
 std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "io/core/handle_pool.h"
+#include "octree/source.h"
+
+namespace lucarne::octree {
+
+/// Opens a COPC file as the octree that it is (io/formats/copc.h): nothing is converted. Its voxel keys are
+/// our node keys; a node's points are put into prefix order when it is loaded, with unsigned normals
+/// estimated among them where the file has none. There are no areas: the floors say what a point stands for,
+/// by a sample of the top of the tree and the counts of nodes. Errors: those of io::copc::File::open; nodes
+/// that are there twice or have no parent.
+Result<std::unique_ptr<NodeSource>> open_copc(const std::filesystem::path& path,
+                                              std::shared_ptr<HandlePool> handles = nullptr);
+
+}  // namespace lucarne::octree
