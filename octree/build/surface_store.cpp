@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "octree/build/record_bytes.h"
+#include "octree/build/station_ids.h"
 #include "octree/cache_format.h"
 
 namespace lucarne::octree {
@@ -22,15 +23,9 @@ constexpr float kMostStray = 0.5f;
 class Access final : public ChunkAccess {
  public:
     Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans)
-        : store_(store), by_id_(scans.size()) {
-        for (size_t scan = 0; scan < scans.size(); ++scan)
-            for (const auto& station : scans[scan].stations) {
-                by_id_[scan].try_emplace(station.id, static_cast<int32_t>(stations_.size()));
-                stations_.push_back(station.position);
-            }
-    }
+        : store_(store), ids_(scans, store.schema()) {}
 
-    const std::vector<glm::dvec3>& all_stations() const { return stations_; }
+    const std::vector<glm::dvec3>& all_stations() const { return ids_.stations(); }
 
     size_t chunk_count() const override { return store_.chunks().size(); }
     /// What one place holds by the chunk has no plane that could be seen, and would be everybody's neighbour.
@@ -52,22 +47,12 @@ class Access final : public ChunkAccess {
         return positions;
     }
 
-    /// By point_source_id; the only station of an input saw all of its points.
     Result<std::vector<int32_t>> stations(size_t chunk) const override {
-        if (stations_.empty()) return std::vector<int32_t>(point_count(chunk), -1);
+        if (all_stations().empty()) return std::vector<int32_t>(point_count(chunk), -1);
         std::vector<int32_t> result;
         result.reserve(point_count(chunk));
-        const auto* scan = by_id_.size() > 1 ? store_.schema().find(io::names::scan) : nullptr;
-        const auto* source = store_.schema().find(io::names::point_source_id);
-        LUCARNE_TRY(for_each_record(chunk, [&](const std::byte* record) {
-            result.push_back(-1);
-            const auto& ids = by_id_[scan ? io::load<uint16_t>(record + scan->offset) : 0];
-            if (ids.size() == 1) result.back() = ids.begin()->second;
-            if (ids.size() < 2 || !source) return;
-            const auto found =
-                ids.find(static_cast<uint32_t>(io::scalar_at(source->type, record + source->offset)));
-            if (found != ids.end()) result.back() = found->second;
-        }));
+        LUCARNE_TRY(
+            for_each_record(chunk, [&](const std::byte* record) { result.push_back(ids_.of(record)); }));
         return result;
     }
 
@@ -85,8 +70,7 @@ class Access final : public ChunkAccess {
     }
 
     const ChunkStore& store_;
-    std::vector<std::map<uint32_t, int32_t>> by_id_;  ///< of each scan: station id to index
-    std::vector<glm::dvec3> stations_;
+    StationIds ids_;
 };
 
 }  // namespace
