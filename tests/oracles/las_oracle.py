@@ -7,8 +7,7 @@
 LAZ is decoded twice, by LASzip and by laz-rs, which must agree. Files that neither of ours is to read (old item versions,
 wave packets) are left out.
 
-A digest of a list of numbers is two exact sums modulo 2^64 over their 64-bit patterns b_i (integers sign-extended,
-floats as doubles): sum b_i and sum (i + 1) b_i, so that a changed value and a changed order both show.
+What a digest is: digest.py.
 """
 import json
 import pathlib
@@ -16,6 +15,8 @@ import sys
 
 import laspy
 import numpy as np
+
+from digest import digest
 
 # Our name: laspy's names, in order of component.
 NAMES = {
@@ -36,17 +37,6 @@ NAMES = {
     "nir": ["nir"],
 }
 FLAGS = ["synthetic", "key_point", "withheld", "overlap"]  # bits 0-3 of our class_flags
-
-
-def digest(values):
-    values = np.asarray(values)
-    if values.dtype.kind == "f":
-        bits = values.astype(np.float64).view(np.uint64)
-    else:
-        bits = values.astype(np.int64).view(np.uint64) if values.dtype.kind == "i" else values.astype(np.uint64)
-    with np.errstate(over="ignore"):
-        index = np.arange(1, len(bits) + 1, dtype=np.uint64)
-        return [f"{int(bits.sum(dtype=np.uint64)):016x}", f"{int((bits * index).sum(dtype=np.uint64)):016x}"]
 
 
 def describe(path, backend):
