@@ -18,7 +18,7 @@ struct Section {
 Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
                              const Scan& scan);
 
-inline constexpr uint64_t kMostConstant = uint64_t{1} << 20;
+inline constexpr uint64_t kMostConstant = uint64_t{1} << 16;
 inline constexpr size_t kBlockRecords = 1024;
 
 /// The records of a scan, block by block, a column a field. Holds one buffer of the file and what of the
