@@ -13,7 +13,7 @@ namespace lucarne::io {
 /// One scan file format. A new one is a file that exports such a function and a line in registry.cpp.
 struct Format {
     std::string_view name;                      ///< "LAS"
-    std::string_view extension;                 ///< ".las", lower case: what `create` is chosen by
+    std::string_view extension;                 ///< ".las", lower case: what `create` is chosen by; empty where it is not written
     bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 4096)
     Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file,
                                                  const ReadOptions& options);
@@ -26,6 +26,8 @@ const Format& las_format();
 const Format& laz_format();
 const Format& ply_format();
 const Format& e57_format();
+const Format& ptx_format();
+const Format& text_format();  ///< XYZ, PTS and the like
 
 /// A batch holds at most this many bytes of records, however wide they are.
 inline constexpr size_t kLargestBatch = size_t{64} << 20;

@@ -9,8 +9,9 @@
 namespace lucarne::io {
 namespace {
 
-std::array<const Format*, 4> formats() {
-    return {&las_format(), &laz_format(), &ply_format(), &e57_format()};
+// Text comes last: other formats are text as well.
+auto formats() {
+    return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(), &ptx_format(), &text_format()};
 }
 
 constexpr size_t kHeadBytes = 4096;

@@ -1,0 +1,363 @@
+#include "io/formats/text/columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "io/formats/text/number.h"
+
+namespace lucarne::io::text {
+namespace {
+
+using Triple = std::array<std::string_view, 3>;
+constexpr Triple kAxes = {"x", "y", "z"}, kColor = {"red", "green", "blue"}, kNormal = {"nx", "ny", "nz"};
+
+struct Alias {
+    std::string_view theirs, ours;
+};
+// As compared: lower case, letters and digits only.
+constexpr std::array kAliases = std::to_array<Alias>({
+    {"easting", "x"},
+    {"northing", "y"},
+    {"elevation", "z"},
+    {"height", "z"},
+    {"xm", "x"},
+    {"ym", "y"},
+    {"zm", "z"},
+    {"xcoordinate", "x"},
+    {"ycoordinate", "y"},
+    {"zcoordinate", "z"},
+    {"coordx", "x"},
+    {"coordy", "y"},
+    {"coordz", "z"},
+    {"r", "red"},
+    {"g", "green"},
+    {"b", "blue"},
+    {"rf", "red"},
+    {"gf", "green"},
+    {"bf", "blue"},
+    {"colorr", "red"},
+    {"colorg", "green"},
+    {"colorb", "blue"},
+    {"diffusered", "red"},
+    {"diffusegreen", "green"},
+    {"diffuseblue", "blue"},
+    {"normalx", "nx"},
+    {"normaly", "ny"},
+    {"normalz", "nz"},
+    {"i", "intensity"},
+    {"scalarintensity", "intensity"},
+    {"reflectance", "intensity"},
+    {"amplitude", "intensity"},
+    {"class", "classification"},
+    {"scalarclassification", "classification"},
+    {"returnnumber", "return_number"},
+    {"numberofreturns", "number_of_returns"},
+    {"gpstime", "gps_time"},
+    {"pointsourceid", "point_source_id"},
+    {"userdata", "user_data"},
+    {"scandirectionflag", "scan_direction"},
+    {"edgeofflightline", "edge_of_flight_line"},
+    {"scananglerank", "scan_angle_rank"},
+    {"infrared", "nir"},
+});
+/// Attributes whose type is agreed on (io/points.h).
+struct Known {
+    std::string_view name;
+    ScalarType type;
+};
+constexpr std::array kKnown = std::to_array<Known>({
+    {names::classification, ScalarType::u8},
+    {names::return_number, ScalarType::u8},
+    {names::number_of_returns, ScalarType::u8},
+    {names::scan_direction, ScalarType::u8},
+    {names::edge_of_flight_line, ScalarType::u8},
+    {names::class_flags, ScalarType::u8},
+    {names::scanner_channel, ScalarType::u8},
+    {names::user_data, ScalarType::u8},
+    {names::scan_angle_rank, ScalarType::i8},
+    {names::scan_angle, ScalarType::i16},
+    {names::point_source_id, ScalarType::u16},
+    {names::nir, ScalarType::u16},
+    {names::gps_time, ScalarType::f64},
+});
+
+std::string our_name(std::string_view theirs) {
+    std::string plain;
+    for (const char c : theirs) {
+        if (c >= 'A' && c <= 'Z')
+            plain += static_cast<char>(c - 'A' + 'a');
+        else if ((c >= 'a' && c <= 'z') || is_digit(c))
+            plain += c;
+    }
+    for (const Alias& alias : kAliases)
+        if (plain == alias.theirs) return std::string(alias.ours);
+    for (const auto& triple : {kAxes, kColor, kNormal})
+        for (const auto name : triple)
+            if (plain == name) return std::string(name);
+    if (plain == names::intensity || plain == names::classification || plain == names::nir) return plain;
+    return printable(theirs);
+}
+
+size_t count_of(const std::vector<Column>& columns, std::string_view name) {
+    return static_cast<size_t>(
+        std::count_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; }));
+}
+size_t index_of(const std::vector<Column>& columns, std::string_view name) {
+    return static_cast<size_t>(
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; }) -
+        columns.begin());
+}
+bool has_axes(const std::vector<Column>& columns) {
+    return std::all_of(kAxes.begin(), kAxes.end(),
+                       [&](std::string_view axis) { return count_of(columns, axis) == 1; });
+}
+
+/// What the numbers of a column have in common.
+struct Look {
+    bool numbers = false, whole = true;
+    double least = INFINITY, most = -INFINITY;
+};
+Look look_at(const Sample& sample, size_t column) {
+    Look look;
+    if (column >= sample.columns || sample.words[column]) return look;
+    for (size_t row = 0; row < sample.rows(); ++row) {
+        const double value = sample.at(row, column);
+        if (std::isnan(value)) {
+            look.whole = false;
+            continue;
+        }
+        look.numbers = true;
+        look.whole = look.whole && value == std::trunc(value);
+        look.least = std::min(look.least, value);
+        look.most = std::max(look.most, value);
+    }
+    return look;
+}
+
+bool looks_like_normals(const Sample& sample, size_t column) {
+    if (column + 3 > sample.columns) return false;
+    size_t units = 0;
+    for (size_t row = 0; row < sample.rows(); ++row) {
+        double square = 0;
+        for (size_t c = column; c < column + 3; ++c) square += sample.at(row, c) * sample.at(row, c);
+        if (std::isnan(square) || (square != 0 && std::abs(square - 1) > 0.05)) return false;
+        units += square != 0;
+    }
+    return units > 0;
+}
+
+bool looks_like_color(const Sample& sample, size_t column) {
+    if (column + 3 > sample.columns) return false;
+    bool whole = true;
+    double most = 0;
+    for (size_t c = column; c < column + 3; ++c) {
+        const Look look = look_at(sample, c);
+        if (!look.numbers || look.least < 0 || look.most > 65535) return false;
+        whole = whole && look.whole;
+        most = std::max(most, look.most);
+    }
+    return whole || most <= 1;
+}
+
+ScalarType guessed_type(std::string_view name, const Look& look) {
+    const auto fits = [&](ScalarType type) {
+        if (type == ScalarType::f64 || !look.numbers) return true;
+        const double range = std::ldexp(1.0, static_cast<int>(8 * scalar_bytes(type)));
+        const bool is_signed = type == ScalarType::i8 || type == ScalarType::i16 || type == ScalarType::i32;
+        return look.whole && look.least >= (is_signed ? -range / 2 : 0) &&
+               look.most < (is_signed ? range / 2 : range);
+    };
+    for (const Known& known : kKnown)
+        if (name == known.name && fits(known.type)) return known.type;
+    return look.numbers && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
+}
+
+/// Lays out fields and attributes.
+class LayoutMaker {
+ public:
+    LayoutMaker(const std::vector<Column>& columns, const Sample& sample)
+        : columns_(columns), sample_(sample) {
+        layout_.fields.resize(columns.size());
+    }
+
+    RowLayout make() {
+        for (size_t i = 0; i < columns_.size(); ++i) {
+            Field& field = layout_.fields[i];
+            field.name = columns_[i].name;
+            const auto axis = std::find(kAxes.begin(), kAxes.end(), columns_[i].name);
+            if (axis != kAxes.end()) {
+                field.kind = Field::Kind::position;
+                field.to = static_cast<uint32_t>(axis - kAxes.begin());
+            } else if (group(i, kColor, names::color) || group(i, kNormal, names::normal)) {
+                continue;
+            } else if (columns_[i].name != "-" && (columns_[i].type || !holds_words(i))) {
+                scalar(i);
+            }
+        }
+        return std::move(layout_);
+    }
+
+ private:
+    bool holds_words(size_t column) const { return column < sample_.columns && sample_.words[column]; }
+
+    bool group(size_t column, const Triple& triple, std::string_view name) {
+        const auto self = std::find(triple.begin(), triple.end(), columns_[column].name);
+        if (self == triple.end()) return false;
+        for (const auto member : triple)
+            if (count_of(columns_, member) != 1) return false;
+        if (!layout_.schema.find(name))
+            layout_.schema.add(std::string(name), name == names::normal ? normal_type() : color_type(), 3);
+        const Attribute* attribute = layout_.schema.find(name);
+        const auto component = static_cast<uint32_t>(self - triple.begin());
+        put(column, attribute->type,
+            attribute->offset + component * static_cast<uint32_t>(scalar_bytes(attribute->type)));
+        return true;
+    }
+    std::optional<ScalarType> stated(const Triple& triple) const {
+        for (const auto member : triple)
+            if (const auto type = columns_[index_of(columns_, member)].type) return type;
+        return std::nullopt;
+    }
+    ScalarType normal_type() const {
+        return stated(kNormal) == ScalarType::f64 ? ScalarType::f64 : ScalarType::f32;
+    }
+    ScalarType color_type() const {
+        const auto given = stated(kColor);
+        if (given == ScalarType::u8 || given == ScalarType::u16 || given == ScalarType::f32) return *given;
+        for (const auto member : kColor)
+            if (const Look look = look_at(sample_, index_of(columns_, member)); look.numbers && !look.whole)
+                return ScalarType::f32;
+        return color_bits(columns_, sample_) == 8 ? ScalarType::u8 : ScalarType::u16;
+    }
+
+    void scalar(size_t column) {
+        const Column& c = columns_[column];
+        std::string name = c.name;
+        // These names promise a shape that a single column does not have.
+        for (const auto reserved : {names::color, names::normal, names::normal_oct, names::area})
+            if (name == reserved) name.insert(0, "text_");
+        const auto type = c.type.value_or(guessed_type(name, look_at(sample_, column)));
+        layout_.schema.add(unique_name(layout_.schema, name), type);
+        put(column, type, layout_.schema.attributes.back().offset);
+    }
+    void put(size_t column, ScalarType type, uint32_t to) {
+        layout_.fields[column].kind = Field::Kind::scalar;
+        layout_.fields[column].type = type;
+        layout_.fields[column].to = to;
+    }
+
+    const std::vector<Column>& columns_;
+    const Sample& sample_;
+    RowLayout layout_;
+};
+
+}  // namespace
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+    std::vector<std::string_view> cells;
+    if (separator == ' ') {
+        for (auto word = next_word(line); !word.empty(); word = next_word(line)) cells.push_back(word);
+        return cells;
+    }
+    for (bool more = true; more;) {
+        const size_t end = line.find(separator);
+        more = end != line.npos;
+        auto cell = line.substr(0, end);
+        if (more) line.remove_prefix(end + 1);
+        while (!cell.empty() && is_blank(cell.front())) cell.remove_prefix(1);
+        while (!cell.empty() && is_blank(cell.back())) cell.remove_suffix(1);
+        if (more || !cell.empty()) cells.push_back(cell);  // one behind the last value means nothing
+    }
+    return cells;
+}
+
+Result<std::vector<Column>> parse_columns(std::string_view text) {
+    const auto wrong = [](std::string why) {
+        return bad_arguments("--columns", std::move(why), "write them as x,y,z,-,intensity:f32,r,g,b");
+    };
+    std::vector<Column> columns;
+    for (const auto cell : split(text, ',')) {
+        const size_t colon = cell.find(':');
+        Column column{cell.substr(0, colon) == "-" ? "-" : our_name(cell.substr(0, colon)), std::nullopt};
+        if (cell.empty()) return wrong("a name is missing");
+        if (colon != cell.npos) {
+            column.type = scalar_type(cell.substr(colon + 1));
+            if (!column.type) return wrong(fmt::format("'{}' is no type", printable(cell.substr(colon + 1))));
+        }
+        columns.push_back(std::move(column));
+    }
+    if (!has_axes(columns)) return wrong("x, y and z have to be among them, each once");
+    return columns;
+}
+
+std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words) {
+    std::vector<Column> columns;
+    for (auto word : words) {
+        if (word.size() >= 2 && word.front() == '"' && word.back() == '"')
+            word = word.substr(1, word.size() - 2);
+        columns.push_back({our_name(word), std::nullopt});
+    }
+    if (!has_axes(columns)) return std::nullopt;
+    return columns;
+}
+
+std::vector<Column> guess_columns(const Sample& sample) {
+    std::vector<Column> columns;
+    const auto add = [&](const Triple& triple) {
+        for (const auto name : triple) columns.push_back({std::string(name), std::nullopt});
+    };
+    bool color = false, normal = false, intensity = false;
+    add(kAxes);
+    while (columns.size() < sample.columns) {
+        const size_t at = columns.size(), left = sample.columns - at;
+        // x y z i r g b: the first of four is the intensity.
+        const bool four = left % 3 == 1 && !intensity && !sample.words[at];
+        const bool color_next = four && !color && looks_like_color(sample, at + 1);
+        if (sample.words[at]) {
+            columns.push_back({"-", std::nullopt});
+        } else if (!normal && looks_like_normals(sample, at)) {
+            add(kNormal);
+            normal = true;
+        } else if (!color && !color_next && looks_like_color(sample, at)) {
+            add(kColor);
+            color = true;
+        } else if (!intensity) {
+            columns.push_back({std::string(names::intensity), std::nullopt});
+            intensity = true;
+        } else {
+            columns.push_back({fmt::format("column_{}", at + 1), std::nullopt});
+        }
+    }
+    return columns;
+}
+
+RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample) {
+    return LayoutMaker(columns, sample).make();
+}
+
+std::string columns_text(const std::vector<Column>& columns) {
+    std::string text;
+    for (const Column& c : columns) {
+        if (!text.empty()) text += ' ';
+        text += c.name;
+        if (c.type) text += fmt::format(":{}", scalar_name(*c.type));
+    }
+    return text;
+}
+
+uint32_t color_bits(const std::vector<Column>& columns, const Sample& sample) {
+    double most = 0;
+    bool whole = true;
+    for (const auto name : kColor) {
+        const Look look = look_at(sample, index_of(columns, name));
+        whole = whole && (look.whole || !look.numbers);
+        if (look.numbers) most = std::max(most, look.most);
+    }
+    if (whole) return most > 255 ? 16 : 8;
+    return most > 255 ? 16 : most > 1 ? 8 : 0;
+}
+
+}  // namespace lucarne::io::text

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/core/error.h"
+#include "io/formats/text/rows.h"
+
+// What the columns of a text file are: as the user says, as its header says, or as its numbers look.
+namespace lucarne::io::text {
+
+struct Column {
+    std::string name;                ///< "x", "red", "nx", "intensity"...; "-" is left out
+    std::optional<ScalarType> type;  ///< where it was stated
+};
+
+/// Rows from all over a file as numbers.
+struct Sample {
+    size_t columns = 0;
+    std::vector<double> values;  ///< row by row; NaN where there is none
+    std::vector<bool> words;     ///< of each column: holds something that is no number
+    size_t rows() const { return columns ? values.size() / columns : 0; }
+    double at(size_t row, size_t column) const { return values[row * columns + column]; }
+};
+
+/// "x,y,z,-,intensity:f32,r,g,b". Errors (bad arguments): an unknown type, x, y or z missing or named twice.
+Result<std::vector<Column>> parse_columns(std::string_view text);
+
+/// The cells of a line.
+std::vector<std::string_view> split(std::string_view line, char separator);
+
+/// What a header's words mean: the names that others use become ours. Nothing where x, y and z are not among
+/// them, each once.
+std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words);
+
+/// x, y, z; then what looks like unit normals, colours, an intensity.
+std::vector<Column> guess_columns(const Sample& sample);
+
+/// The records that these columns make. Types that are not stated follow from the sample: whole numbers and
+/// colours as small as they are, normals float, anything else double.
+RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample);
+
+/// "x y z intensity:i32 red green blue".
+std::string columns_text(const std::vector<Column>& columns);
+
+/// 8, 16, or 0 where they go from 0 to 1: of the sample's colours.
+uint32_t color_bits(const std::vector<Column>& columns, const Sample& sample);
+
+}  // namespace lucarne::io::text

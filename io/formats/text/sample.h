@@ -1,0 +1,27 @@
+#pragma once
+
+#include "io/formats/text/columns.h"
+
+namespace lucarne::io::text {
+
+struct Sampled {
+    Sample sample;
+    uint64_t rows = 0;  ///< in the file: counted up to 4 MiB, else estimated from what was looked at
+};
+
+/// Looks at rows of [begin, end), at 64 places of 64 KiB or at all of it where that is no more. `columns` is
+/// how many values a row has; other lines are left out.
+Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end, const RowLayout& layout,
+                            size_t columns);
+
+/// '\r' in files of old Macintoshes.
+inline char line_end_of(std::string_view head) {
+    return head.find('\n') == head.npos && head.find('\r') != head.npos ? '\r' : '\n';
+}
+
+/// Whether a line, without blanks ahead, is meant for people.
+inline bool is_comment(std::string_view line) {
+    return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
+}
+
+}  // namespace lucarne::io::text

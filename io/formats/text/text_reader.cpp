@@ -1,0 +1,193 @@
+// Rows of numbers: XYZ, TXT, CSV, ASC, and PTS, whose rows stand behind their count.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/format.h"
+#include "io/formats/text.h"
+#include "io/formats/text/columns.h"
+#include "io/formats/text/rows.h"
+#include "io/formats/text/sample.h"
+
+namespace lucarne::io {
+namespace {
+
+using namespace text;
+
+constexpr size_t kHeadBytes = size_t{64} << 10;
+
+/// What stands before the rows.
+struct Head {
+    uint64_t begin = 0, line = 1;  ///< of the count, else of the first row; lines count from 1
+    std::optional<uint64_t> count;
+    std::string header, comment;  ///< the last of each
+    RowLayout layout;             ///< separator and line end
+    size_t columns = 0;
+};
+
+/// Semicolons, then commas, then blanks: a line is cut by the first of these that it holds.
+char separator_of(std::string_view line) {
+    return line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return extension;
+}
+
+class TextSource final : public PointSource {
+ public:
+    explicit TextSource(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
+
+    Result<void> describe(const ReadOptions& options) {
+        const std::string extension = lower_extension(file_->path());
+        for (const std::string_view other : {".las", ".laz", ".e57", ".ply", ".pcd", ".obj"})
+            if (extension == other && options.columns.empty())
+                return refuse(fmt::format("is named {} and has no such header", other),
+                              "if it holds rows of numbers, say what they are with --columns");
+        LUCARNE_TRY(read_head());
+        const bool pts = head_.count.has_value() || extension == ".pts";
+        head_.layout.has_counts = pts;
+        LUCARNE_ASSIGN(auto sampled,
+                       take_sample(*file_, head_.begin, file_->size(), head_.layout, head_.columns));
+        LUCARNE_ASSIGN(const auto columns, choose_columns(sampled.sample, options));
+        Section section{head_.begin, file_->size(), make_layout(columns, sampled.sample), {}, head_.line};
+        section.layout.separator = head_.layout.separator;
+        section.layout.line_end = head_.layout.line_end;
+        section.layout.has_counts = pts;
+        sections_.push_back(std::move(section));
+        fill_info(pts ? "PTS" : "XYZ", columns, sampled);
+        // A row takes at least two bytes a column, the last may lack its line end.
+        const uint64_t most = (file_->size() - head_.begin + 1) / (2 * head_.columns);
+        if (head_.count && *head_.count > most)
+            return refuse(
+                fmt::format("is truncated: it promises {} points, at most {} are there", *head_.count, most));
+        return {};
+    }
+
+    const Schema& schema() const override { return sections_[0].layout.schema; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override { return read_rows(file_, sections_); }
+
+ private:
+    Result<void> refuse(std::string why, std::string todo = {}) const {
+        return rejected(file_->path().string(), std::move(why), std::move(todo));
+    }
+
+    /// Finds the first row: a line of three or more cells that begins with a number.
+    Result<void> read_head() {
+        std::string bytes(static_cast<size_t>(std::min<uint64_t>(kHeadBytes, file_->size())), '\0');
+        LUCARNE_TRY(file_->read_at(0, std::as_writable_bytes(std::span(bytes))));
+        std::string_view rest = bytes;
+        if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);  // the byte order mark of UTF-8
+        head_.layout.line_end = line_end_of(rest);
+        uint64_t number = 0;
+        while (!rest.empty()) {
+            const uint64_t begin = bytes.size() - rest.size();
+            const size_t end = rest.find(head_.layout.line_end);
+            auto line = rest.substr(0, end);
+            rest.remove_prefix(end == rest.npos ? rest.size() : end + 1);
+            ++number;
+            while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+            if (line.empty()) continue;
+            if (is_comment(line)) {
+                head_.comment = line.substr(std::min(line.find_first_not_of("#%/ \t"), line.size()));
+                continue;
+            }
+            const char separator = separator_of(line);
+            const auto cells = split(line, separator);
+            if (cells.size() == 1 && parse_number<uint64_t>(cells[0])) {
+                head_.count = parse_number<uint64_t>(cells[0]);
+                set_begin(begin, number);
+            } else if (cells.size() >= 3 && (parse_number<double>(cells[0]) || cells[0].empty())) {
+                if (!head_.count) set_begin(begin, number);
+                head_.layout.separator = separator;
+                head_.columns = cells.size();
+                return {};
+            } else if (head_.count) {
+                break;
+            } else {
+                head_.header = line;
+            }
+        }
+        return refuse("is in no format that can be read: it is text without rows of three numbers or more");
+    }
+    void set_begin(uint64_t begin, uint64_t line) {
+        head_.begin = begin;
+        head_.line = line;
+    }
+
+    Result<std::vector<Column>> choose_columns(const Sample& sample, const ReadOptions& options) const {
+        if (!options.columns.empty()) {
+            LUCARNE_ASSIGN(auto columns, parse_columns(options.columns));
+            if (columns.size() != sample.columns)
+                return bad_arguments("--columns",
+                                     fmt::format("names {} columns, the rows of {} have {}", columns.size(),
+                                                 file_->path().string(), sample.columns));
+            return columns;
+        }
+        for (const bool is_header : {true, false}) {
+            const std::string& text = is_header ? head_.header : head_.comment;
+            auto words = split(text, head_.layout.separator);
+            // A comment may be cut by blanks where the rows are cut by commas.
+            if (!is_header && words.size() != sample.columns) words = split(text, ' ');
+            auto columns = named_columns(words);
+            if (columns && words.size() == sample.columns) return std::move(*columns);
+            if (is_header && !text.empty())
+                return rejected(
+                    file_->path().string(),
+                    fmt::format("its header '{}' does not name the {} columns of its rows, with x, y "
+                                "and z among them once each",
+                                printable(text), sample.columns),
+                    "say what they are with --columns");
+        }
+        auto columns = guess_columns(sample);
+        if (!options.quiet)
+            log::info("{}: its columns are taken as {}; --columns can say otherwise", file_->path().string(),
+                      columns_text(columns));
+        return columns;
+    }
+
+    void fill_info(std::string_view name, const std::vector<Column>& columns, const Sampled& sampled) {
+        info_.path = file_->path().string();
+        info_.format = fmt::format("{}, columns {}", name, columns_text(columns));
+        info_.declared_points = head_.count.value_or(sampled.rows);
+        info_.file_bytes = file_->size();
+        info_.modified = file_->modified();
+        if (schema().find(names::color)) info_.color_bits = color_bits(columns, sampled.sample);
+        info_.details = nlohmann::json{{"color_bits", info_.color_bits}}.dump();
+    }
+
+    std::shared_ptr<const InputFile> file_;
+    Head head_;
+    std::vector<Section> sections_;
+    ScanInfo info_;
+};
+
+Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const InputFile> file,
+                                               const ReadOptions& options) {
+    auto source = std::make_unique<TextSource>(std::move(file));
+    LUCARNE_TRY(source->describe(options));
+    return source;
+}
+
+/// No control characters but white space.
+bool is_text(std::string_view head) {
+    return std::all_of(head.begin(), head.end(), [](char c) {
+        return static_cast<unsigned char>(c) >= ' ' || is_blank(c) || c == '\n';
+    });
+}
+
+}  // namespace
+
+const Format& text_format() {
+    static constexpr Format kFormat{"XYZ", "", is_text, open_text, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

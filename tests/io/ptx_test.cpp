@@ -1,0 +1,132 @@
+// PTX: scans stand where their poses say, rays that met nothing are dropped and counted.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "io/core/random.h"
+#include "tests/io/scan_text.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Ptx : public testing::TextScan {};
+
+const std::string kIdentity = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+/// Turned by 90 degrees about z, 2 600 000 east, 1 200 000 north, 450 up.
+const std::string kTurned =
+    "2600000 1200000 450\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n2600000 1200000 450 1\n";
+
+TEST_F(Ptx, PosesAreAppliedInDoublesAndBecomeStations) {
+    read("2\n1\n" + kTurned +
+         "1.0001 2.0002 3.0003 0.5 10 20 30\n-1 0 0 0.25 255 0 1\n"
+         "1\n2\n" +
+         kIdentity + "7 8 9 1\n0 0 0 0.5\n");
+    ASSERT_EQ(points(), 3u);
+    EXPECT_EQ(records_.dropped, 1u);
+    EXPECT_EQ(source_->info().declared_points, 4u);
+    EXPECT_EQ(position(0), glm::dvec3(2600000 - 2.0002, 1200000 + 1.0001, 450 + 3.0003));
+    EXPECT_EQ(position(1), glm::dvec3(2600000, 1199999, 450));
+    EXPECT_EQ(position(2), glm::dvec3(7, 8, 9));
+    EXPECT_EQ(value(0, names::intensity), 0.5);
+    EXPECT_EQ(value(1, names::color, 0), 255);
+    EXPECT_EQ(value(2, names::color, 0), 0);  // this scan has none
+    const auto& stations = source_->info().stations;
+    ASSERT_EQ(stations.size(), 2u);
+    EXPECT_EQ(stations[0].position, glm::dvec3(2600000, 1200000, 450));
+    for (size_t i = 0; i < 3; ++i) EXPECT_EQ(value(i, names::point_source_id), stations[i / 2].id);
+}
+
+TEST_F(Ptx, ScansInTheWorldStandAtTheirScannersPosition) {
+    read("1\n1\n10 20 30\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n11 21 31 0\n");
+    EXPECT_EQ(source_->info().stations[0].position, glm::dvec3(10, 20, 30));
+    EXPECT_EQ(position(0), glm::dvec3(11, 21, 31));
+}
+
+TEST_F(Ptx, RowsHaveThreeFourOrSevenValuesAndMissedRaysMayHaveFewer) {
+    read("1\n1\n" + kIdentity + "1 2 3\n");
+    EXPECT_TRUE(schema().attributes.empty());
+    read("1\n3\n" + kIdentity + "0 0 0 0\n1 2 3 .5 1 2 3\n0 0 0 .5\n");
+    EXPECT_EQ(points(), 1u);
+    EXPECT_EQ(records_.dropped, 2u);
+    EXPECT_EQ(value(0, names::color, 2), 3);
+    EXPECT_THAT(error_of("1\n1\n" + kIdentity + "1 2 3 4 5\n").line(), HasSubstr("line 11 has 5 values"));
+    EXPECT_THAT(error_of("1\n2\n" + kIdentity + "1 2 3 4\n1 2 3\n").line(),
+                HasSubstr("line 12 on: it has 3 values"));
+    EXPECT_THAT(error_of("1\n1\n" + kIdentity + "1 2 3 4 5 6 256\n").line(), HasSubstr("no value for blue"));
+}
+
+TEST_F(Ptx, LineEndsAndBlankLinesBetweenScansDoNotMatter) {
+    std::string text = "1\n1\n" + kIdentity + "1 2 3 0\n\n\n1\n1\n" + kIdentity + "4 5 6 0";
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string changed;
+        for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
+        read(changed);
+        ASSERT_EQ(points(), 2u);
+        EXPECT_EQ(position(1), glm::dvec3(4, 5, 6));
+    }
+}
+
+TEST_F(Ptx, ScansWithoutRaysAreNoError) {
+    read("0\n5\n" + kIdentity);
+    EXPECT_EQ(points(), 0u);
+    read("0\n0\n" + kIdentity + "1\n1\n" + kTurned + "1 0 0 0\n");
+    EXPECT_EQ(points(), 1u);
+    EXPECT_EQ(value(0, names::point_source_id), 2);
+}
+
+TEST_F(Ptx, LiesOfAHeaderAreRejected) {
+    EXPECT_THAT(error_of("4000000000\n4000000000\n" + kIdentity + "1 2 3 4\n").line(),
+                HasSubstr("is truncated"));
+    EXPECT_THAT(error_of("9999999999999999999999\n1\n" + kIdentity).line(), HasSubstr("its header"));
+    EXPECT_THAT(error_of("2\n3\n" + kIdentity + "1 2 3 4\n").line(),
+                HasSubstr("5 of 6 points of a scan are missing"));
+    EXPECT_THAT(error_of("1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0\n").line(),
+                HasSubstr("line 8 is not four"));
+    EXPECT_THAT(error_of("1\n1\n0 0 0\n1 0 nan\n").line(), HasSubstr("line 4 is not three"));
+    EXPECT_THAT(error_of("1\n1\n" + kIdentity + "1 2 3 4\n1 2 3 4\n").line(),
+                HasSubstr("number of columns or rows"));
+    EXPECT_THAT(error_of("1\n1\n" + kIdentity + "1 2 3 4\n1\n1\n0 0 0\n").line(),
+                HasSubstr("ends within the header"));
+}
+
+TEST_F(Ptx, LargeScansEndWhereTheyShould) {
+    // Longer than the reader's buffers: the second header is found by counting lines.
+    std::string text = "1000\n150\n" + kIdentity;
+    for (int i = 0; i < 150000; ++i) text += fmt::format("{} {:.6f} 1 0.5\n", i + 1, i / 7.0);
+    text += "1\n2\n" + kTurned + "1 2 3 4\n0 0 0 0\n";
+    read(text);
+    EXPECT_EQ(points(), 150001u);
+    EXPECT_EQ(position(149999).x, 150000);
+    EXPECT_EQ(value(150000, names::point_source_id), 2);
+}
+
+TEST_F(Ptx, TruncationAnywhereIsRejected) {
+    const std::string text =
+        "2\n1\n" + kTurned + "1 2 3 0.5 10 20 30\n-1 0 0 0.25 255 0 1\n1\n1\n" + kIdentity + "7 8 9 1 1 1 1";
+    const size_t second = text.find("\n1\n1\n0 0") + 1;
+    const size_t last = text.rfind('\n') + 6;  // behind it a shorter row is a row
+    for (size_t length = 1; length < last; ++length) {
+        if (length == second || length + 1 == second) continue;
+        EXPECT_FALSE(error_of(text.substr(0, length)).why.empty()) << length;
+    }
+}
+
+TEST_F(Ptx, ChangedBytesNeverCrash) {
+    const std::string seed =
+        "2\n1\n" + kTurned + "1 2 3 0.5 10 20 30\n-1 0 0 0.25 255 0 1\n1\n1\n" + kIdentity + "7 8 9 1\n";
+    Random random(5);
+    for (int i = 0; i < 6000; ++i) {
+        std::string text = seed;
+        for (uint64_t k = 0; k <= random.next() % 4; ++k)
+            text[random.next() % text.size()] = random.next() % 2 ? "0123456789.- \n\re"[random.next() % 16]
+                                                                  : static_cast<char>(random.next());
+        const auto error = error_of(text);  // or none
+        EXPECT_TRUE(error.why.empty() || error.kind == ErrorKind::input_rejected) << text;
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::io
