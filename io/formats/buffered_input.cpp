@@ -7,13 +7,10 @@
 
 namespace lucarne::io {
 
-namespace {
-constexpr uint64_t kBufferBytes = 2 * BufferedInput::kLargestPeek;
-}
-
-BufferedInput::BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end)
+BufferedInput::BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end,
+                             uint64_t buffer)
     : file_(std::move(file)), next_(offset), end_(std::max(offset, end)) {
-    buffer_.resize(static_cast<size_t>(std::min(kBufferBytes, end_ - next_)));
+    buffer_.resize(static_cast<size_t>(std::min(buffer, end_ - next_)));
 }
 
 Result<std::span<const std::byte>> BufferedInput::peek(size_t bytes) {

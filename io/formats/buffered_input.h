@@ -15,9 +15,13 @@ namespace lucarne::io {
 /// Sequential reading of [offset, end) of a file through one buffer: large system calls, bounded memory.
 class BufferedInput {
  public:
-    BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end);
+    static constexpr size_t kLargestPeek = size_t{1} << 20;
 
-    /// What is buffered, at least `bytes` (at most kLargestPeek) unless the range ends before. Valid until
+    /// `buffer`: the bytes it holds; lines and long peeks need all of them.
+    BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end,
+                  uint64_t buffer = 2 * kLargestPeek);
+
+    /// What is buffered, at least `bytes` (at most half the buffer) unless the range ends before. Valid until
     /// the next call.
     Result<std::span<const std::byte>> peek(size_t bytes);
     void skip(size_t bytes) { first_ += bytes; }  ///< of what `peek` returned
@@ -27,8 +31,6 @@ class BufferedInput {
 
     uint64_t position() const { return next_ - (last_ - first_); }  ///< in the file
     std::string path() const { return file_->path().string(); }
-
-    static constexpr size_t kLargestPeek = size_t{1} << 20;
 
  private:
     std::shared_ptr<const InputFile> file_;

@@ -26,6 +26,7 @@ const Format& las_format();
 const Format& laz_format();
 const Format& ply_format();
 const Format& e57_format();
+const Format& pcd_format();
 const Format& ptx_format();
 const Format& text_format();  ///< XYZ, PTS and the like
 

@@ -196,49 +196,6 @@ std::string_view word_of(ScalarType type) {
     return {};
 }
 
-Result<Remarks> remarks_of(const std::string& file, const Header& header) {
-    Remarks remarks;
-    for (const std::string& comment : header.comments) {
-        std::string_view rest = comment;
-        if (next_word(rest) != "lucarne") continue;
-        const auto key = next_word(rest);
-        bool good = true;
-        if (key == "station") {
-            const auto id = parse_number<uint32_t>(next_word(rest));
-            Station station{id.value_or(0), {}};
-            for (int axis = 0; axis < 3; ++axis) {
-                const auto value = parse_number<double>(next_word(rest));
-                good = good && value && usable(*value);
-                station.position[axis] = value.value_or(0);
-            }
-            good = good && id && remarks.stations.size() < kMostStations;
-            remarks.stations.push_back(station);
-        } else if (key == "color_bits") {
-            remarks.color_bits = parse_number<uint32_t>(next_word(rest));
-            good = remarks.color_bits == 0u || remarks.color_bits == 8u || remarks.color_bits == 16u;
-        } else if (key == "metres_per_unit") {
-            remarks.metres_per_unit = parse_number<double>(next_word(rest));
-            good =
-                remarks.metres_per_unit && *remarks.metres_per_unit > 1e-9 && *remarks.metres_per_unit < 1e9;
-        }
-        if (!good)
-            return rejected(
-                file, fmt::format("has a comment that cannot be understood: '{}'", comment.substr(0, 80)));
-    }
-    return remarks;
-}
-
-std::string remark_lines(const ScanInfo& info) {
-    std::string lines;
-    for (const Station& s : info.stations)
-        lines += fmt::format("comment lucarne station {} {} {} {}\n", s.id, s.position.x, s.position.y,
-                             s.position.z);
-    lines += fmt::format("comment lucarne color_bits {}\n", info.color_bits);
-    if (info.metres_per_unit != 1.0)
-        lines += fmt::format("comment lucarne metres_per_unit {}\n", info.metres_per_unit);
-    return lines;
-}
-
 nlohmann::json to_details(const Header& header) {
     nlohmann::json properties = nlohmann::json::array();
     for (const Property& p : header.vertices().properties)

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "io/core/file.h"
-#include "io/points.h"
+#include "io/formats/remarks.h"
 
 // The header of a PLY file. Source: Greg Turk, "The PLY Polygon File Format", 1994, and the sized type names
 // that later writers use.
@@ -46,17 +46,6 @@ Result<Header> read_header(const std::shared_ptr<const InputFile>& file);
 /// "uchar", "uint8"...; empty for unknown words.
 std::optional<ScalarType> type_of(std::string_view word);
 std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
-
-/// What our own comments say: "lucarne station ID X Y Z", "lucarne color_bits N", "lucarne metres_per_unit
-/// M".
-struct Remarks {
-    std::vector<Station> stations;
-    std::optional<uint32_t> color_bits;
-    std::optional<double> metres_per_unit;
-};
-Result<Remarks> remarks_of(const std::string& file, const Header& header);
-/// The lines "comment lucarne ..." that say the same of `info`.
-std::string remark_lines(const ScanInfo& info);
 
 /// `info.details`: the properties and comments, for a later export.
 nlohmann::json to_details(const Header& header);

@@ -29,7 +29,7 @@ class LayoutMaker {
     Layout make() {
         position();
         for (size_t i = 0; i < properties_.size(); ++i) {
-            if (done_[i]) continue;
+            if (done_[i] || properties_[i].name.empty()) continue;
             if (group(i, kColorNames, names::color) || group(i, kNormalNames, names::normal)) continue;
             std::string name = properties_[i].name;
             // These names promise a shape that a single property does not have.

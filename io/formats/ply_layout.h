@@ -36,6 +36,7 @@ struct Layout {
 /// `x`, `y`, `z` become the position: f32 where all three are float, else f64, which holds every PLY type.
 /// red/green/blue (or diffuse_red..., r/g/b) become `color`, nx/ny/nz (or normal_x...) `normal`, where their
 /// types allow; everything else keeps its name and type.
+/// What has no name is left out.
 Layout make_layout(const std::vector<Property>& properties, Encoding encoding);
 
 }  // namespace lucarne::io::ply

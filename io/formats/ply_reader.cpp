@@ -211,7 +211,7 @@ class PlySource final : public PointSource {
         info_.declared_points = header_.vertices().count;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
-        LUCARNE_ASSIGN(auto remarks, ply::remarks_of(name, header_));
+        LUCARNE_ASSIGN(auto remarks, remarks_of(name, header_.comments));
         info_.stations = std::move(remarks.stations);
         info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
         LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));

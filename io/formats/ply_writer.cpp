@@ -129,7 +129,7 @@ class PlyWriter final : public PointWriter {
 
     Result<void> begin(const ScanInfo& info) {
         std::string header = "ply\nformat binary_little_endian 1.0\n";
-        header += kept_lines(info) + remark_lines(info) + "element vertex ";
+        header += kept_lines(info) + remark_lines(info, "comment ") + "element vertex ";
         count_offset_ = header.size();
         header += std::string(kCountWidth, ' ') + '\n';
         for (const Output& o : outputs_) header += fmt::format("property {} {}\n", word_of(o.to), o.name);

@@ -11,14 +11,14 @@ namespace {
 
 // Text comes last: other formats are text as well.
 auto formats() {
-    return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(), &ptx_format(), &text_format()};
+    return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(),
+                      &pcd_format(), &ptx_format(), &text_format()};
 }
 
 constexpr size_t kHeadBytes = 4096;
 
 /// What a file is that we do not read, for a better message than "unknown".
 std::string_view foreign_format(std::string_view head) {
-    if (head.starts_with("# .PCD") || head.starts_with("VERSION")) return "a PCD file";
     if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
     if (head.starts_with("PK\x03\x04") || head.starts_with("\x1f\x8b")) return "a compressed archive";
     return {};
@@ -53,7 +53,7 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
             return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
-                         "end the name in .las, .laz or .ply");
+                         "end the name in .las, .laz, .ply or .pcd");
 }
 
 std::string printable(std::string_view name) {

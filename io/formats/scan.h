@@ -31,7 +31,7 @@ struct WriteOptions {
     std::optional<std::array<glm::dvec3, 2>> bounds;
 };
 
-/// A writer for the format that `path`'s extension names (.las, .laz, .ply); the file appears when `finish`
+/// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd); the file appears when `finish`
 /// succeeds. `info.details` of a source of the same format restores its header (version, point format, VLRs,
 /// types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,

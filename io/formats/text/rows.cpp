@@ -220,6 +220,7 @@ class RowParser {
         }
         for (uint32_t k = 0; k < 3; ++k)
             store(record + field.to + k, static_cast<uint8_t>(bits >> (16 - 8 * k)));
+        if (field.alpha) store(record + *field.alpha, static_cast<uint8_t>(bits >> 24));
         return true;
     }
 

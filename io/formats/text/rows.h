@@ -25,7 +25,8 @@ struct Field {
     Kind kind = Kind::skip;
     ScalarType type = ScalarType::f64;
     uint32_t to = 0;
-    std::string name;  ///< for messages
+    std::string name;               ///< for messages
+    std::optional<uint32_t> alpha;  ///< of `packed`: where the uppermost byte goes
 };
 
 /// How the rows of a part of a file become records.

@@ -1,0 +1,254 @@
+// PCD: ASCII, binary, binary_compressed. Source: see header.h.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/formats/buffered_input.h"
+#include "io/formats/format.h"
+#include "io/formats/pcd/header.h"
+#include "io/formats/pcd/layout.h"
+#include "io/formats/pcd/lzf.h"
+#include "io/formats/pcd/writer.h"
+#include "io/formats/pick.h"
+
+namespace lucarne::io {
+namespace {
+
+using namespace pcd;
+
+/// Binary records, one behind the other.
+class BinaryReader final : public PointReader {
+ public:
+    BinaryReader(std::shared_ptr<const InputFile> file, const Header& header, const ply::Layout& layout)
+        : input_(file, header.data_offset, file->size()), layout_(layout), left_(header.points) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const size_t stride = layout_.schema.stride, length = layout_.packed_bytes;
+        const size_t wanted = batch_limit(layout_.schema, most);
+        batch.bytes.resize(static_cast<size_t>(std::min<uint64_t>(wanted, left_)) * stride);
+        batch.count = 0;
+        while (batch.count < wanted && left_ > 0) {
+            LUCARNE_ASSIGN(const auto bytes, input_.peek(length));
+            const auto count =
+                static_cast<size_t>(std::min<uint64_t>({bytes.size() / length, wanted - batch.count, left_}));
+            if (count == 0)
+                return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+            for (size_t i = 0; i < count; ++i) {
+                const bool good = layout_.unpack(&bytes[i * length], &batch.bytes[batch.count * stride]);
+                batch.count += good;
+                dropped_ += !good;
+            }
+            input_.skip(count * length);
+            left_ -= count;
+        }
+        batch.bytes.resize(batch.count * stride);
+        return batch.count;
+    }
+    uint64_t dropped() const override { return dropped_; }
+
+ private:
+    BufferedInput input_;
+    const ply::Layout& layout_;
+    uint64_t left_, dropped_ = 0;
+};
+
+/// Where each field begins in a compressed stream, which holds all values of the first field, then all of the
+/// second.
+struct Compressed {
+    uint64_t begin = 0, end = 0;  ///< of the stream in the file
+    std::vector<LzfInput::State> fields;
+};
+
+/// Compressed fields, decoded side by side.
+class CompressedReader final : public PointReader {
+ public:
+    CompressedReader(const std::shared_ptr<const InputFile>& file, const Header& header,
+                     const ply::Layout& layout, const Compressed& compressed)
+        : header_(header), layout_(layout), left_(header.points) {
+        for (const auto& state : compressed.fields) {
+            inputs_.emplace_back(file, compressed.begin, compressed.end);
+            inputs_.back().go_to(state);
+        }
+    }
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const size_t stride = layout_.schema.stride, length = layout_.packed_bytes;
+        const size_t wanted = batch_limit(layout_.schema, most);
+        batch.bytes.clear();
+        batch.count = 0;
+        while (batch.count < wanted && left_ > 0) {
+            const size_t room = std::max<size_t>(1, kPieceBytes / length);
+            const auto count = static_cast<size_t>(std::min<uint64_t>({room, wanted - batch.count, left_}));
+            LUCARNE_TRY(decode(count));
+            batch.bytes.resize((batch.count + count) * stride);
+            for (size_t i = 0; i < count; ++i) {
+                const bool good = layout_.unpack(&packed_[i * length], &batch.bytes[batch.count * stride]);
+                batch.count += good;
+                dropped_ += !good;
+            }
+            left_ -= count;
+        }
+        batch.bytes.resize(batch.count * stride);
+        return batch.count;
+    }
+    uint64_t dropped() const override { return dropped_; }
+
+ private:
+    static constexpr size_t kPieceBytes = size_t{256} << 10;
+
+    Result<void> decode(size_t count) {
+        const size_t length = layout_.packed_bytes;
+        packed_.resize(count * length);
+        size_t offset = 0;
+        for (size_t f = 0; f < inputs_.size(); ++f) {
+            const size_t bytes = header_.fields[f].bytes();
+            values_.resize(count * bytes);
+            LUCARNE_TRY(inputs_[f].read(values_));
+            for (size_t i = 0; i < count; ++i)
+                std::memcpy(&packed_[i * length + offset], &values_[i * bytes], bytes);
+            offset += bytes;
+        }
+        return {};
+    }
+
+    const Header& header_;
+    const ply::Layout& layout_;
+    std::vector<LzfInput> inputs_;
+    uint64_t left_, dropped_ = 0;
+    std::vector<std::byte> packed_, values_;
+};
+
+class PcdSource final : public PointSource {
+ public:
+    PcdSource(std::shared_ptr<const InputFile> file, Header header)
+        : file_(std::move(file)), header_(std::move(header)), layout_(pcd::make_layout(header_)) {}
+
+    Result<void> describe() {
+        LUCARNE_TRY(check_size());
+        if (header_.encoding == Encoding::compressed) LUCARNE_TRY(find_fields());
+        if (header_.encoding == Encoding::ascii)
+            sections_.push_back(
+                {header_.data_offset, file_->size(), layout_.rows, header_.points, header_.data_line});
+        constexpr std::array kEncodings = {"ascii", "binary", "binary_compressed"};
+        info_.path = file_->path().string();
+        info_.format = fmt::format("PCD, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
+        info_.declared_points = header_.points;
+        info_.file_bytes = file_->size();
+        info_.modified = file_->modified();
+        LUCARNE_ASSIGN(auto remarks, remarks_of(info_.path, header_.comments));
+        info_.stations = std::move(remarks.stations);
+        info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
+        if (const Attribute* color = schema().find(names::color); color && color->type != ScalarType::u8)
+            info_.color_bits = remarks.color_bits.value_or(color->type == ScalarType::u16 ? 16u : 0u);
+        const auto& v = header_.viewpoint;
+        const glm::dvec3 viewpoint(v[0], v[1], v[2]);
+        // Who writes a cloud without a grid often leaves the viewpoint at its default.
+        if (info_.stations.empty() && (header_.height > 1 || viewpoint != glm::dvec3(0.0)))
+            info_.stations.push_back({1, viewpoint});
+        info_.details = nlohmann::json{{"format", "pcd"},
+                                       {"color_bits", info_.color_bits},
+                                       {"width", header_.width},
+                                       {"height", header_.height},
+                                       {"viewpoint", header_.viewpoint}}
+                            .dump();
+        return {};
+    }
+
+    const Schema& schema() const override { return layout_.binary.schema; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override {
+        switch (header_.encoding) {
+            case Encoding::ascii:
+                return text::read_rows(file_, sections_);
+            case Encoding::binary:
+                return std::make_unique<BinaryReader>(file_, header_, layout_.binary);
+            case Encoding::compressed:
+                break;
+        }
+        return std::make_unique<CompressedReader>(file_, header_, layout_.binary, compressed_);
+    }
+    bool seekable() const override { return header_.encoding == Encoding::binary; }
+    Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
+        if (!seekable()) return PointSource::pick(indices, batch);
+        const size_t stride = schema().stride;
+        batch.bytes.resize(indices.size() * stride);
+        batch.count = 0;
+        return for_picked(*file_, header_.data_offset, layout_.binary.packed_bytes, indices,
+                          [&](const std::byte* at) {
+                              batch.count += layout_.binary.unpack(at, &batch.bytes[batch.count * stride]);
+                          });
+    }
+
+ private:
+    /// That the file can hold what its header promises.
+    Result<void> check_size() const {
+        const uint64_t there = file_->size() - header_.data_offset;
+        uint64_t most = there / layout_.binary.packed_bytes;
+        // A value of text takes two bytes with what separates it, but for the very last; three bytes of LZF
+        // become at most 264.
+        if (header_.encoding == Encoding::ascii) most = (there + 1) / (2 * layout_.rows.fields.size());
+        if (header_.encoding == Encoding::compressed) most = there * 88 / layout_.binary.packed_bytes;
+        if (header_.points <= most) return {};
+        return rejected(file_->path().string(),
+                        fmt::format("is truncated: its header promises {} points, at most {} are there",
+                                    header_.points, most));
+    }
+
+    /// Decodes all once, so that it is known to be whole.
+    Result<void> find_fields() {
+        if (header_.points == 0) return {};
+        std::array<std::byte, 8> sizes{};
+        LUCARNE_TRY(file_->read_at(header_.data_offset, sizes));
+        const auto packed = load<uint32_t>(sizes.data()), unpacked = load<uint32_t>(sizes.data() + 4);
+        compressed_.begin = header_.data_offset + sizes.size();
+        compressed_.end = compressed_.begin + packed;
+        if (compressed_.end > file_->size())
+            return rejected(file_->path().string(),
+                            fmt::format("is truncated: it promises {} compressed bytes, {} are there", packed,
+                                        file_->size() - compressed_.begin));
+        if (unpacked != header_.points * layout_.binary.packed_bytes)
+            return rejected(file_->path().string(),
+                            fmt::format("its {} points take {} bytes, {} are compressed", header_.points,
+                                        header_.points * layout_.binary.packed_bytes, unpacked));
+        LzfInput input(file_, compressed_.begin, compressed_.end);
+        std::vector<std::byte> passed(size_t{64} << 10);
+        for (const Field& field : header_.fields) {
+            compressed_.fields.push_back(input.state());
+            for (uint64_t left = header_.points * field.bytes(); left > 0;) {
+                const auto bytes = static_cast<size_t>(std::min<uint64_t>(left, passed.size()));
+                LUCARNE_TRY(input.read(std::span(passed).first(bytes)));
+                left -= bytes;
+            }
+        }
+        return {};
+    }
+
+    std::shared_ptr<const InputFile> file_;
+    Header header_;
+    Layout layout_;
+    std::vector<text::Section> sections_;
+    Compressed compressed_;
+    ScanInfo info_;
+};
+
+Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+    LUCARNE_ASSIGN(auto header, pcd::read_header(file));
+    auto source = std::make_unique<PcdSource>(std::move(file), std::move(header));
+    LUCARNE_TRY(source->describe());
+    return source;
+}
+
+bool is_pcd(std::string_view head) {
+    return head.starts_with("# .PCD") || head.starts_with("VERSION ") || head.starts_with("FIELDS ");
+}
+
+}  // namespace
+
+const Format& pcd_format() {
+    static constexpr Format kFormat{"PCD", ".pcd", is_pcd, open_pcd, pcd::create};
+    return kFormat;
+}
+
+}  // namespace lucarne::io
