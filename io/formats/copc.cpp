@@ -64,6 +64,13 @@ bool is_copc(const std::filesystem::path& path) {
     return file && begins_as_copc(*file);
 }
 
+bool is_name(const std::filesystem::path& path) {
+    std::string name = path.filename().string();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return name.ends_with(".copc.laz");
+}
+
 Result<File> File::open(const std::filesystem::path& path, std::shared_ptr<HandlePool> handles) {
     LUCARNE_ASSIGN(auto opened, InputFile::open(path, std::move(handles)));
     const auto input = std::make_shared<const InputFile>(std::move(opened));

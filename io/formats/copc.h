@@ -43,6 +43,9 @@ struct Node {
 /// Whether the file begins as COPC must; false for anything else, unreadable files included.
 bool is_copc(const std::filesystem::path& path);
 
+/// Whether a file of this name is to be COPC: it ends in .copc.laz.
+bool is_name(const std::filesystem::path& path);
+
 /// A COPC file with its hierarchy in memory; the points are read node by node. Thread-safe.
 class File {
  public:

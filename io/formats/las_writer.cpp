@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "io/core/file.h"
-#include "io/formats/las_target.h"
-#include "io/formats/laz/writer.h"
 
 namespace lucarne::io::las {
 namespace {
 
 constexpr uint64_t kMost32 = std::numeric_limits<uint32_t>::max();
-constexpr size_t kChunkBytes = size_t{2} << 20;
+constexpr size_t kPieceBytes = size_t{2} << 20;
 constexpr uint8_t kCompressedBit = 0x80;
 
 /// Little-endian fields one after the other.
@@ -35,26 +32,6 @@ class Bytes {
 
  private:
     std::vector<std::byte> data_;
-};
-
-/// What the header says about the points, gathered as they pass.
-struct Statistics {
-    std::array<int32_t, 3> low, high;
-    std::array<uint64_t, 16> returns{};  ///< by return number
-    Statistics() {
-        low.fill(std::numeric_limits<int32_t>::max());
-        high.fill(std::numeric_limits<int32_t>::min());
-    }
-    void add(const std::byte* records, size_t count, size_t stride, size_t return_offset) {
-        for (; count-- > 0; records += stride) {
-            for (size_t axis = 0; axis < 3; ++axis) {
-                const auto value = load<int32_t>(records + 4 * axis);
-                low[axis] = std::min(low[axis], value);
-                high[axis] = std::max(high[axis], value);
-            }
-            ++returns[load<uint8_t>(records + return_offset) & 15];
-        }
-    }
 };
 
 /// A record's own header; its data follow.
@@ -113,120 +90,143 @@ Bytes header_block(const Header& h, const Statistics& s, uint64_t points_offset,
     return b;
 }
 
-class LasWriter final : public PointWriter {
- public:
-    LasWriter(OutputFile file, std::string path, Target target, uint32_t in_stride)
-        : file_(std::move(file)),
-          path_(std::move(path)),
-          target_(std::move(target)),
-          in_stride_(in_stride),
-          return_offset_(target_.schema.find(names::return_number)->offset) {}
-
-    /// Leaves room for the header and writes the records before the points.
-    Result<void> begin() {
-        if (target_.header.compressed) {
-            const auto compression = laz::layered_compression(target_.header);
-            target_.header.vlrs.push_back(laz::compression_record(compression));
-            compressed_.emplace(file_, compression, target_.header.record_length);
-        }
-        Bytes front;
-        front.text("", header_bytes(target_.header.minor));
-        for (const Vlr& vlr : target_.header.vlrs) {
-            if (vlr.extended) continue;
-            if (vlr.data.size() > 0xffff)
-                return failed(path_, fmt::format("the record {} is too large", vlr.user_id));
-            append_record_header(front, vlr, target_.header.minor);
-            front.text(vlr.text(), vlr.data.size());
-        }
-        if (target_.header.minor == 0)
-            front.put<uint16_t>(0xddcc);  // LAS 1.0: the signature before the points
-        points_offset_ = front.data().size();
-        if (points_offset_ > kMost32) return failed(path_, "has more records than LAS can hold");
-        LUCARNE_TRY(file_.append(front.data()));
-        return compressed_ ? compressed_->begin() : Result<void>{};
+/// The records before the points.
+Result<Bytes> front_records(const std::string& path, const Header& header) {
+    Bytes front;
+    for (const Vlr& vlr : header.vlrs) {
+        if (vlr.extended) continue;
+        if (vlr.data.size() > 0xffff)
+            return failed(path, fmt::format("the record {} is too large", vlr.user_id));
+        append_record_header(front, vlr, header.minor);
+        front.text(vlr.text(), vlr.data.size());
     }
+    if (header.minor == 0) front.put<uint16_t>(0xddcc);  // LAS 1.0: the signature before the points
+    return front;
+}
 
-    Result<void> write(std::span<const std::byte> records) override {
-        const size_t chunk =
-            std::max<size_t>(1, kChunkBytes / std::max<size_t>(in_stride_, target_.schema.stride));
-        for (size_t left = records.size() / in_stride_; left > 0;) {
-            const size_t count = std::min(left, chunk);
-            LUCARNE_TRY(write_chunk(records.data(), count));
-            records = records.subspan(count * in_stride_);
-            left -= count;
+}  // namespace
+
+Statistics::Statistics() {
+    low.fill(std::numeric_limits<int32_t>::max());
+    high.fill(std::numeric_limits<int32_t>::min());
+}
+
+void Statistics::add(const std::byte* records, size_t count, const Schema& schema) {
+    const size_t return_offset = schema.find(names::return_number)->offset;
+    const Attribute* time = schema.find(names::gps_time);
+    for (; count-- > 0; records += schema.stride) {
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const auto value = load<int32_t>(records + 4 * axis);
+            low[axis] = std::min(low[axis], value);
+            high[axis] = std::max(high[axis], value);
         }
-        return {};
+        ++returns[load<uint8_t>(records + return_offset) & 15];
+        if (!time) continue;
+        const auto at = load<double>(records + time->offset);
+        gps_low = std::min(gps_low, at);  // NaN: stays
+        gps_high = std::max(gps_high, at);
     }
+}
 
-    Result<void> finish() override {
-        LUCARNE_TRY(flush());
-        if (compressed_) LUCARNE_TRY(compressed_->finish());
-        const uint64_t evlr_offset = file_.position();
-        bool any = false;
-        for (const Vlr& vlr : target_.header.vlrs) {
-            if (!vlr.extended || target_.header.minor < 4) continue;
-            Bytes head;
-            append_record_header(head, vlr, target_.header.minor);
-            LUCARNE_TRY(file_.append(head.data()));
-            LUCARNE_TRY(file_.append(vlr.data));
-            any = true;
-        }
-        LUCARNE_TRY(file_.write_at(
-            0, header_block(target_.header, statistics_, points_offset_, any ? evlr_offset : 0).data()));
-        return file_.commit();
+Writer::Writer(OutputFile file, std::string path, Target target, uint32_t in_stride)
+    : file_(std::move(file)), path_(std::move(path)), target_(std::move(target)), in_stride_(in_stride) {}
+
+Result<void> Writer::begin(uint32_t chunk_points) {
+    if (target_.header.compressed) {
+        const auto compression = laz::layered_compression(target_.header, chunk_points);
+        target_.header.vlrs.push_back(laz::compression_record(compression));
+        compressed_.emplace(file_, compression, target_.header.record_length);
     }
+    LUCARNE_ASSIGN(const Bytes front, front_records(path_, target_.header));
+    points_offset_ = header_bytes(target_.header.minor) + front.data().size();
+    if (points_offset_ > kMost32) return failed(path_, "has more records than LAS can hold");
+    LUCARNE_TRY(file_.append(std::vector<std::byte>(header_bytes(target_.header.minor))));
+    LUCARNE_TRY(file_.append(front.data()));
+    return compressed_ ? compressed_->begin() : Result<void>{};
+}
 
- private:
-    Result<void> write_chunk(const std::byte* in, size_t count) {
-        Header& header = target_.header;
-        if (header.minor < 4 && header.points + count > kMost32)
+Result<void> Writer::write(std::span<const std::byte> records) {
+    const size_t piece =
+        std::max<size_t>(1, kPieceBytes / std::max<size_t>(in_stride_, target_.schema.stride));
+    for (size_t left = records.size() / in_stride_; left > 0;) {
+        const size_t count = std::min(left, piece);
+        LUCARNE_TRY(write_piece(records.data(), count));
+        records = records.subspan(count * in_stride_);
+        left -= count;
+    }
+    return {};
+}
+
+Result<void> Writer::end_chunk() {
+    LUCARNE_TRY(flush());
+    return compressed_->end_chunk();
+}
+
+Result<void> Writer::finish_points() {
+    LUCARNE_TRY(flush());
+    points_done_ = true;
+    return compressed_ ? compressed_->finish() : Result<void>{};
+}
+
+Result<void> Writer::finish() {
+    if (!points_done_) LUCARNE_TRY(finish_points());
+    const uint64_t evlr_offset = file_.position();
+    const Header& header = target_.header;
+    bool any = false;
+    for (const Vlr& vlr : header.vlrs) {
+        if (!vlr.extended || header.minor < 4) continue;
+        Bytes head;
+        append_record_header(head, vlr, header.minor);
+        LUCARNE_TRY(file_.append(head.data()));
+        LUCARNE_TRY(file_.append(vlr.data));
+        any = true;
+    }
+    LUCARNE_TRY(
+        file_.write_at(0, header_block(header, statistics_, points_offset_, any ? evlr_offset : 0).data()));
+    LUCARNE_ASSIGN(const Bytes front, front_records(path_, header));
+    LUCARNE_TRY(file_.write_at(header_bytes(header.minor), front.data()));
+    return file_.commit();
+}
+
+Result<void> Writer::write_piece(const std::byte* in, size_t count) {
+    Header& header = target_.header;
+    if (header.minor < 4 && header.points + count > kMost32)
+        return failed(path_, fmt::format("LAS 1.{} cannot count more than {} points", header.minor, kMost32));
+    const size_t stride = target_.schema.stride;
+    if (!target_.converter.identity()) {
+        converted_.resize(count * stride);
+        if (!target_.converter.convert(in, count, converted_.data()))
             return failed(path_,
-                          fmt::format("LAS 1.{} cannot count more than {} points", header.minor, kMost32));
-        const size_t stride = target_.schema.stride;
-        if (!target_.converter.identity()) {
-            converted_.resize(count * stride);
-            if (!target_.converter.convert(in, count, converted_.data()))
-                return failed(
-                    path_, fmt::format("a position does not fit 32-bit integers of scale {}", header.scale.x),
-                    "choose PLY, which holds doubles");
-            in = converted_.data();
-        }
-        statistics_.add(in, count, stride, return_offset_);
-        const size_t at = buffer_.size();
-        buffer_.resize(at + count * header.record_length);
-        if (!encode(header, in, stride, count, buffer_.data() + at))
-            return failed(path_,
-                          fmt::format("a class, flag or return number does not fit point format {}",
-                                      header.point_format),
-                          "choose PLY");
-        header.points += count;
-        return buffer_.size() >= kChunkBytes ? flush() : Result<void>{};
+                          fmt::format("a position does not fit 32-bit integers of scale {}", header.scale.x),
+                          "choose PLY, which holds doubles");
+        in = converted_.data();
     }
+    statistics_.add(in, count, target_.schema);
+    const size_t at = buffer_.size();
+    buffer_.resize(at + count * header.record_length);
+    if (!encode(header, in, stride, count, buffer_.data() + at))
+        return failed(
+            path_,
+            fmt::format("a class, flag or return number does not fit point format {}", header.point_format),
+            "choose PLY");
+    header.points += count;
+    return buffer_.size() >= kPieceBytes ? flush() : Result<void>{};
+}
 
-    Result<void> flush() {
-        LUCARNE_TRY(compressed_ ? compressed_->write(buffer_) : file_.append(buffer_));
-        buffer_.clear();
-        return {};
-    }
+Result<void> Writer::flush() {
+    LUCARNE_TRY(compressed_ ? compressed_->write(buffer_) : file_.append(buffer_));
+    buffer_.clear();
+    return {};
+}
 
-    OutputFile file_;
-    std::string path_;
-    Target target_;
-    uint32_t in_stride_;
-    size_t return_offset_;
-    uint64_t points_offset_ = 0;
-    std::optional<laz::PointsWriter> compressed_;
-    Statistics statistics_;
-    std::vector<std::byte> converted_, buffer_;
-};
+namespace {
 
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options,
                                             bool compress) {
     LUCARNE_ASSIGN(auto target, make_target(path.string(), schema, info, options, compress));
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, options.overwrite));
-    auto writer =
-        std::make_unique<LasWriter>(std::move(file), path.string(), std::move(target), schema.stride);
+    auto writer = std::make_unique<Writer>(std::move(file), path.string(), std::move(target), schema.stride);
     LUCARNE_TRY(writer->begin());
     return writer;
 }

@@ -1,10 +1,60 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 
+#include "io/formats/las_target.h"
+#include "io/formats/laz/writer.h"
 #include "io/formats/scan.h"
 
 namespace lucarne::io::las {
+
+/// What a header says about the points, gathered as they pass.
+struct Statistics {
+    std::array<int32_t, 3> low, high;
+    std::array<uint64_t, 16> returns{};  ///< by return number
+    double gps_low = std::numeric_limits<double>::infinity(), gps_high = -gps_low;
+
+    Statistics();
+    /// Records of a schema of ours.
+    void add(const std::byte* records, size_t count, const Schema& schema);
+};
+
+/// A LAS or LAZ file, as its target has it.
+class Writer final : public PointWriter {
+ public:
+    Writer(OutputFile file, std::string path, Target target, uint32_t in_stride);
+    Writer(const Writer&) = delete;  // its points are written through a reference to its file
+    Writer& operator=(const Writer&) = delete;
+
+    /// Leaves room for the header and writes the records before the points. Of LAZ: chunks of so many points,
+    /// or, with laz::kVariableChunks, of what is written between two calls of end_chunk().
+    Result<void> begin(uint32_t chunk_points = laz::kUsualChunk);
+    Result<void> write(std::span<const std::byte> records) override;
+    Result<void> end_chunk();
+    /// Ends the points: the chunks are known then, and where the extended records will begin.
+    Result<void> finish_points();
+    const std::vector<laz::ChunkPlace>& chunks() const { return compressed_->chunks(); }
+    uint64_t position() const { return file_.position(); }
+    const Statistics& statistics() const { return statistics_; }
+    /// Until finish(): records may change, but those before the points not in number and length.
+    Header& header() { return target_.header; }
+    Result<void> finish() override;
+
+ private:
+    Result<void> write_piece(const std::byte* in, size_t count);
+    Result<void> flush();
+
+    OutputFile file_;
+    std::string path_;
+    Target target_;
+    uint32_t in_stride_;
+    uint64_t points_offset_ = 0;
+    bool points_done_ = false;
+    std::optional<laz::PointsWriter> compressed_;
+    Statistics statistics_;
+    std::vector<std::byte> converted_, buffer_;
+};
 
 /// See create_scan.
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,

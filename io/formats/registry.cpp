@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/copc.h"
 #include "io/formats/format.h"
 
 namespace lucarne::io {
@@ -45,6 +46,9 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
 
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options) {
+    if (copc::is_name(path))
+        return bad_arguments(path.string(), "COPC is an octree, and this is none yet",
+                             "convert to a cache and export that");
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "io/formats/copc_writer.h"
 #include "octree/attributes.h"
+#include "octree/build/node_sampler.h"
 #include "octree/build/unify.h"
 
 namespace lucarne::octree {
@@ -44,27 +46,69 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : sou
     info_.metres_per_unit = header.metres_per_unit;
 }
 
-Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
+void Exporter::append(const NodeData& data, size_t first, size_t count,
+                      std::vector<std::byte>& records) const {
     const uint32_t from = source_.header().schema.stride;
+    const size_t begin = records.size();
+    records.resize(begin + count * schema_.stride);
+    for (size_t i = 0; i < count; ++i) {
+        const std::byte* in = &data.records[(first + i) * from];
+        std::byte* out = &records[begin + i * schema_.stride];
+        for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
+        if (!estimated_) continue;
+        const auto normal = decode_normal(io::load<NormalCode>(in + estimated_->offset));
+        io::store(out + schema_.attributes.back().offset, normal.value_or(glm::vec3(0.0f)));
+    }
+}
+
+Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
     std::vector<std::byte> records;
     for (uint32_t node = 0; node < source_.nodes().size(); ++node) {
         LUCARNE_ASSIGN(const NodeData data, source_.load(node));
         for (size_t first = 0; first < data.count; first += kBatchPoints) {
-            const size_t count = std::min(kBatchPoints, data.count - first);
-            records.resize(count * schema_.stride);
-            for (size_t i = 0; i < count; ++i) {
-                const std::byte* in = &data.records[(first + i) * from];
-                std::byte* out = &records[i * schema_.stride];
-                for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
-                if (!estimated_) continue;
-                const auto normal = decode_normal(io::load<NormalCode>(in + estimated_->offset));
-                io::store(out + schema_.attributes.back().offset, normal.value_or(glm::vec3(0.0f)));
-            }
+            records.clear();
+            append(data, first, std::min(kBatchPoints, data.count - first), records);
             LUCARNE_TRY(writer.write(records));
         }
         progress(data.count);
     }
     return writer.finish();
+}
+
+Result<void> Exporter::append_node(uint32_t node, bool below, std::vector<std::byte>& records) const {
+    LUCARNE_ASSIGN(const NodeData data, source_.load(node));
+    append(data, 0, data.count, records);
+    const NodeInfo& info = source_.nodes()[node];
+    for (uint32_t octant = 0; below && octant < 8; ++octant)
+        if (const uint32_t child = info.child(octant); child != kNoNode)
+            LUCARNE_TRY(append_node(child, true, records));
+    return {};
+}
+
+Result<void> Exporter::write_copc(const std::filesystem::path& path, bool overwrite,
+                                  const std::function<void(uint64_t)>& progress) const {
+    const SourceHeader& header = source_.header();
+    io::copc::Info cube;
+    cube.half_size = header.root.size / 2;
+    cube.centre = header.root.min + cube.half_size;
+    cube.spacing = header.root.size * kNodeSpacing;
+    LUCARNE_ASSIGN(const auto writer,
+                   io::copc::NodeWriter::create(path, schema_, info_,
+                                                {.overwrite = overwrite,
+                                                 .expected_points = header.points,
+                                                 .bounds = std::array{header.min, header.max}},
+                                                cube));
+    const auto nodes = source_.nodes();
+    std::vector<std::byte> records;
+    for (uint32_t node = 0; node < nodes.size(); ++node) {
+        const NodeKey& key = nodes[node].key;
+        if (key.level > kMaxLevel) continue;
+        records.clear();
+        LUCARNE_TRY(append_node(node, key.level == kMaxLevel, records));
+        LUCARNE_TRY(writer->write({key.level, key.x, key.y, key.z}, records));
+        progress(records.size() / schema_.stride);
+    }
+    return writer->finish();
 }
 
 }  // namespace lucarne::octree

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include "octree/source.h"
@@ -21,10 +22,21 @@ class Exporter {
     /// Writes every point, node by node, and finishes the file. `progress` is told the points of each node.
     Result<void> write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const;
 
+    /// Writes a COPC file: its nodes are the source's, in their prefix order, each level's spacing half of
+    /// that above. Nodes that divide one place's points (below kMaxLevel) are one, since COPC knows places
+    /// alone.
+    Result<void> write_copc(const std::filesystem::path& path, bool overwrite,
+                            const std::function<void(uint64_t)>& progress) const;
+
  private:
     struct Copy {
         uint32_t from = 0, to = 0, bytes = 0;
     };
+    /// Appends `count` of a node's points in our schema, from `first` on.
+    void append(const NodeData& data, size_t first, size_t count, std::vector<std::byte>& records) const;
+    /// Appends all points of a node, and with `below` of its descendants.
+    Result<void> append_node(uint32_t node, bool below, std::vector<std::byte>& records) const;
+
     const NodeSource& source_;
     io::Schema schema_;
     io::ScanInfo info_;

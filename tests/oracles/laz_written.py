@@ -28,18 +28,22 @@ def points(las, names):
     return table[np.lexsort(table.T[::-1])]
 
 
-program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-good = True
-with tempfile.TemporaryDirectory() as scratch:
-    for name in FILES:
-        cache, written = scratch + "/cache.luc", scratch + "/written.laz"
-        for command in (["convert", folder / name, "-o", cache, "--normals", "none", "--overwrite"],
-                        ["export", cache, "-o", written, "--overwrite"]):
-            subprocess.run([program, *command], check=True, stderr=subprocess.DEVNULL)
-        original = laspy.read(folder / name)
-        names = list(original.point_format.dimension_names)
-        for backend in (laspy.LazBackend.Laszip, laspy.LazBackend.Lazrs, laspy.LazBackend.LazrsParallel):
-            same = np.array_equal(points(original, names), points(laspy.read(written, laz_backend=backend), names))
-            print(f"{name}, {backend.name}: {'the same' if same else 'DIFFERENT'}")
-            good &= same
-sys.exit(0 if good else 1)
+def main(program, folder):
+    good = True
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in FILES:
+            cache, written = scratch + "/cache.luc", scratch + "/written.laz"
+            for command in (["convert", folder / name, "-o", cache, "--normals", "none", "--overwrite"],
+                            ["export", cache, "-o", written, "--overwrite"]):
+                subprocess.run([program, *command], check=True, stderr=subprocess.DEVNULL)
+            original = laspy.read(folder / name)
+            names = list(original.point_format.dimension_names)
+            for backend in (laspy.LazBackend.Laszip, laspy.LazBackend.Lazrs, laspy.LazBackend.LazrsParallel):
+                same = np.array_equal(points(original, names), points(laspy.read(written, laz_backend=backend), names))
+                print(f"{name}, {backend.name}: {'the same' if same else 'DIFFERENT'}")
+                good &= same
+    return good
+
+
+if __name__ == "__main__":
+    sys.exit(0 if main(sys.argv[1], pathlib.Path(sys.argv[2])) else 1)

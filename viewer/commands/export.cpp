@@ -7,8 +7,9 @@
 
 #include "io/core/log.h"
 #include "io/core/progress.h"
+#include "io/formats/copc.h"
 #include "io/formats/scan.h"
-#include "octree/cache.h"
+#include "octree/open.h"
 #include "viewer/commands/commands.h"
 
 namespace lucarne::viewer {
@@ -21,14 +22,20 @@ struct Options {
 };
 
 Result<void> export_cache(const Options& options) {
-    LUCARNE_ASSIGN(const auto source, octree::open_cache(options.cache));
+    LUCARNE_ASSIGN(const auto source, octree::open_octree(options.cache));
     const octree::Exporter exporter(*source, options.content);
     const uint64_t points = source->header().points;
+    Progress progress("exporting", points, "points");
+    const auto advance = [&](uint64_t done) { progress.add(done); };
+    if (io::copc::is_name(options.output)) {
+        LUCARNE_TRY(exporter.write_copc(options.output, options.overwrite, advance));
+        log::info("{}: {} points", options.output.string(), points);
+        return {};
+    }
     LUCARNE_ASSIGN(const auto writer,
                    io::create_scan(options.output, exporter.schema(), exporter.info(),
                                    {.overwrite = options.overwrite, .expected_points = points}));
-    Progress progress("exporting", points, "points");
-    LUCARNE_TRY(exporter.write(*writer, [&](uint64_t done) { progress.add(done); }));
+    LUCARNE_TRY(exporter.write(*writer, advance));
     log::info("{}: {} points", options.output.string(), points);
     return {};
 }
@@ -38,8 +45,8 @@ Result<void> export_cache(const Options& options) {
 void add_export(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
     auto* command = app.add_subcommand("export", "Write a cache back to a scan file, losing nothing");
-    command->add_option("cache", options->cache, "The cache to read")->required()->type_name("CACHE");
-    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
+    command->add_option("cache", options->cache, "The cache (or COPC file) to read")->required()->type_name("CACHE");
+    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz or .ply")
         ->required()
         ->type_name("FILE");
     command->add_flag("--normals", options->content.normals, "Write the estimated normals as well");

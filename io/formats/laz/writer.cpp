@@ -20,10 +20,15 @@ void put(std::vector<std::byte>& bytes, T value) {
     store(&bytes[bytes.size() - sizeof value], value);
 }
 
+/// Chunks that are encoded at a time.
+size_t side_by_side() {
+    return std::max(1u, std::thread::hardware_concurrency());
+}
+
 }  // namespace
 
-Compression layered_compression(const las::Header& header) {
-    return {true, true, 50'000, items_of(header, kLayeredItems)};
+Compression layered_compression(const las::Header& header, uint32_t chunk_points) {
+    return {true, true, chunk_points, items_of(header, kLayeredItems)};
 }
 
 las::Vlr compression_record(const Compression& compression) {
@@ -57,43 +62,58 @@ Result<void> PointsWriter::begin() {
 
 Result<void> PointsWriter::write(std::span<const std::byte> records) {
     waiting_.insert(waiting_.end(), records.begin(), records.end());
-    return flush(false);
+    if (compression_.chunk_points == kVariableChunks) return {};
+    const size_t chunk = size_t{compression_.chunk_points} * record_bytes_;
+    for (size_t end = (ends_.size() + 1) * chunk; end <= waiting_.size(); end += chunk) cut(end);
+    return ends_.size() < side_by_side() ? Result<void>{} : flush();
 }
 
-Result<void> PointsWriter::flush(bool all) {
-    const size_t chunk = size_t{compression_.chunk_points} * record_bytes_;
-    const size_t side_by_side = std::max(1u, std::thread::hardware_concurrency());
-    if (!all && waiting_.size() < side_by_side * chunk) return {};
-    const size_t count = all ? (waiting_.size() + chunk - 1) / chunk : waiting_.size() / chunk;
-    std::vector<std::vector<std::byte>> encoded(count);
-    parallel_ranges(count, 1, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            encoded[i] = encode_chunk(
-                compression_,
-                std::span(waiting_).subspan(i * chunk, std::min(chunk, waiting_.size() - i * chunk)));
+Result<void> PointsWriter::end_chunk() {
+    cut(waiting_.size());
+    return ends_.size() < side_by_side() ? Result<void>{} : flush();
+}
+
+void PointsWriter::cut(size_t end) {
+    if (end > (ends_.empty() ? 0 : ends_.back())) ends_.push_back(end);
+}
+
+Result<void> PointsWriter::flush() {
+    std::vector<std::vector<std::byte>> encoded(ends_.size());
+    const auto begin_of = [&](size_t i) { return i ? ends_[i - 1] : 0; };
+    parallel_ranges(encoded.size(), 1, [&](size_t i, size_t) {
+        encoded[i] =
+            encode_chunk(compression_, std::span(waiting_).subspan(begin_of(i), ends_[i] - begin_of(i)));
     });
-    for (const auto& bytes : encoded) {
-        LUCARNE_TRY(file_.append(bytes));
-        chunk_bytes_.push_back(static_cast<uint32_t>(bytes.size()));
+    for (size_t i = 0; i < encoded.size(); ++i) {
+        chunks_.push_back({file_.position(), encoded[i].size(), (ends_[i] - begin_of(i)) / record_bytes_});
+        LUCARNE_TRY(file_.append(encoded[i]));
     }
-    const size_t done = std::min(waiting_.size(), count * chunk);
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
+    if (!ends_.empty())
+        waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(ends_.back()));
+    ends_.clear();
     return {};
 }
 
 Result<void> PointsWriter::finish() {
-    LUCARNE_TRY(flush(true));
+    cut(waiting_.size());
+    LUCARNE_TRY(flush());
     std::vector<std::byte> table;
     put<uint32_t>(table, 0);  // version
-    put(table, static_cast<uint32_t>(chunk_bytes_.size()));
-    if (!chunk_bytes_.empty()) {
+    put(table, static_cast<uint32_t>(chunks_.size()));
+    if (!chunks_.empty()) {
         Encoder encoder;
         IntegerModel model(32, 2);
-        for (size_t i = 0; i < chunk_bytes_.size(); ++i)
-            model.code(encoder, i ? static_cast<int32_t>(chunk_bytes_[i - 1]) : 0,
-                       static_cast<int32_t>(chunk_bytes_[i]), 1);
-        const auto code = encoder.finish();
-        table.insert(table.end(), code.begin(), code.end());
+        ChunkPlace last;
+        for (const ChunkPlace& chunk : chunks_) {
+            const auto code = [&](uint64_t before, uint64_t now, uint32_t context) {
+                model.code(encoder, static_cast<int32_t>(before), static_cast<int32_t>(now), context);
+            };
+            if (compression_.chunk_points == kVariableChunks) code(last.points, chunk.points, 0);
+            code(last.bytes, chunk.bytes, 1);
+            last = chunk;
+        }
+        const auto bytes = encoder.finish();
+        table.insert(table.end(), bytes.begin(), bytes.end());
     }
     std::vector<std::byte> place;
     put(place, file_.position());
