@@ -71,10 +71,10 @@ class SiteEstimator {
         cell.cut(*patch, heights_, fit.layer);
         if (cell.open()) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
-            around.within(std::min(cell.widest_search(), cell.widest_cut()), window_);
-            cell.cut_open(window_);
+            const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
+            const size_t beyond = cell.cut_open(view.tile, view.centre, static_cast<float>(view.radius));
             if (apart && !cell.closed()) return leave_out(site);
-            connect_rim(site, cell, reach2);
+            if (beyond < view.tile.count) connect_rim(site, view, beyond);
             surface_.areas[site] = cell.area_at_rim();
         } else {
             surface_.areas[site] = cell.area();
@@ -134,18 +134,12 @@ class SiteEstimator {
     }
     /// From the rim of a patch to what goes on beyond it: a patch much denser than the surface around it has
     /// no other edges to that.
-    void connect_rim(uint32_t site, const ShareCell& cell, float reach2) {
-        size_t nearest = window_.count;
-        float best = std::numeric_limits<float>::max();
-        for (size_t i = 0; i < window_.count; ++i)
-            if (window_.distance2[i] > reach2 && window_.distance2[i] < best && cell.goes_on(window_, i)) {
-                best = window_.distance2[i];
-                nearest = i;
-            }
-        if (nearest == window_.count) return;
-        const uint32_t other = window_.index[nearest];
+    void connect_rim(uint32_t site, const ChunkNeighbours::Surroundings::View& view, size_t slot) {
+        const Tile& tile = view.tile;
+        const uint32_t other = tile.index[slot];
         if (neighbours_.is_halo(other))
-            border_.push_back({site, neighbours_.halo_point(other), window_.offset(nearest)});
+            border_.push_back({site, neighbours_.halo_point(other),
+                               glm::vec3(tile.x[slot], tile.y[slot], tile.z[slot]) - view.centre});
         else
             surface_.edges[site].back() = other;
     }
@@ -155,14 +149,14 @@ class SiteEstimator {
     /// From one scan line to the next, and out of what noise has made a blob: to the nearest in each quarter
     /// that is low over the plane.
     void connect_across(SiteEdges& edges, const Patch& wide, const glm::vec3& normal) const {
-        const ShareCell axes(normal, 1, 1);
+        const TangentFrame frame = tangent_frame(normal);
         std::array<float, kSiteEdges - kNearEdges> best;
         best.fill(std::numeric_limits<float>::max());
         for (size_t i = 0; i < wide.count; ++i) {
             const glm::vec3 offset = wide.offset(i);
-            const float x = glm::dot(offset, axes.x_axis()), y = glm::dot(offset, axes.y_axis());
+            const float x = glm::dot(offset, frame.x), y = glm::dot(offset, frame.y);
             const size_t quarter = (x > 0 ? 1 : 0) + (y > 0 ? 2 : 0);
-            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter] && axes.goes_on(wide, i)) {
+            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter] && goes_on(offset, normal)) {
                 best[quarter] = wide.distance2[i];
                 set_edge(edges[kNearEdges + quarter], wide.index[i]);
             }

@@ -98,11 +98,17 @@ class ChunkNeighbours::Surroundings {
 
     /// Whether all points nearer than `radius` are at hand (or no more can be).
     bool knows(double radius) const;
-    /// Takes all points within `radius` of the site into `patch`, in no particular order; where those are
-    /// very many, all within a smaller radius. Returns the radius.
+    /// All points within a radius of the site, in no particular order, among others.
+    struct View {
+        const Tile& tile;
+        glm::vec3 centre;  ///< the site, relative to the tile's origin
+        double radius;     ///< that asked for; where those within it are very many, a smaller one
+    };
+    View around(double radius);
+    /// Takes those into `patch`. Returns the radius.
     double within(double radius, Patch& patch);
     /// The `k` nearest sites of those known.
-    void nearest(size_t k, Patch& patch) const;
+    void nearest(size_t k, Patch& patch);
 
  private:
     struct Gathered {
@@ -114,6 +120,7 @@ class ChunkNeighbours::Surroundings {
     };
     bool gather(const Box& box, double radius, size_t most, Gathered& gathered) const;
     bool find_shared(size_t k);
+    bool find_wide(size_t k, Patch& patch);
 
     const ChunkNeighbours& of_;
     double halo_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/common.hpp>
@@ -29,140 +30,89 @@ constexpr int kMostShrinks = 12;
 constexpr int kRimSteps = 4;  ///< from a spacing (neighbours in half a disc) to nearly the fixed point, which
                               ///< a straight rim has at .55 spacings
 constexpr float kCoincident = 1e-10f;
-constexpr size_t kBlock = 64;  ///< neighbours projected at a time
-
-/// The two coordinates in the tangent plane of some points, and twice these over their squared length: what
-/// they cut by. Zero, which cuts nothing, where `wanted` says no.
-struct Projected {
-    std::array<float, kBlock> x, y;
-    size_t count = 0;
-
-    template <class Wanted>
-    void take(const Patch& patch, size_t first, const glm::vec3& to_x, const glm::vec3& to_y,
-              const Wanted& wanted) {
-        count = std::min(kBlock, patch.count - first);
-        for (size_t i = 0; i < count; ++i) {
-            const float px = patch.x[first + i], py = patch.y[first + i], pz = patch.z[first + i];
-            const float u = px * to_x.x + py * to_x.y + pz * to_x.z,
-                        v = px * to_y.x + py * to_y.y + pz * to_y.z;
-            const float length2 = u * u + v * v;
-            const float scale = wanted(first + i, length2) ? 2.0f / length2 : 0.0f;
-            x[i] = scale * u;
-            y[i] = scale * v;
-        }
-    }
-};
 
 }  // namespace
 
-ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours)
-    : normal_(normal),
-      reach_(reach),
-      widest_search_(kLook * reach),
-      rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))) {
+TangentFrame tangent_frame(const glm::vec3& normal) {
     const glm::vec3 size = glm::abs(normal);
     const glm::vec3 axis = size.x <= size.y && size.x <= size.z ? glm::vec3(1, 0, 0)
                            : size.y <= size.z                   ? glm::vec3(0, 1, 0)
                                                                 : glm::vec3(0, 0, 1);
-    x_ = glm::normalize(glm::cross(normal, axis));
-    y_ = glm::cross(normal, x_);
-    nearness_.fill(2 / widest_search_);
+    const glm::vec3 x = glm::normalize(glm::cross(normal, axis));
+    return {normal, x, glm::cross(normal, x)};
+}
+
+bool goes_on(const glm::vec3& offset, const glm::vec3& normal) {
+    const float height = glm::dot(offset, normal);
+    return height * height <= kSlope * kSlope * (glm::dot(offset, offset) - height * height);
+}
+
+ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours)
+    : frame_(tangent_frame(normal)),
+      reach_(reach),
+      widest_search_(kLook * reach),
+      rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))),
+      least_(2 / widest_search_) {
+    nearness_.fill(least_);
 }
 
 void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer) {
-    const float coincident2 = kCoincident * reach_ * reach_;
-    Projected cuts;
-    size_t here = 0;  // the point itself, too
-    for (size_t first = 0; first < neighbours.count; first += kBlock) {
-        cuts.take(neighbours, first, x_, y_, [&](size_t i, float length2) {
-            const bool in = (heights[i] >= layer.low) & (heights[i] <= layer.high);
-            const bool apart = length2 > coincident2;
-            here += in & !apart;
-            return in & apart;
-        });
-        cut_by(cuts.x.data(), cuts.y.data(), cuts.count, nearness_);
-    }
-    coincident_ = std::max<size_t>(here, 1) - 1;
+    const size_t here =
+        cut_by_layer(neighbours, heights, layer, frame_, kCoincident * reach_ * reach_, nearness_);
+    coincident_ = std::max<size_t>(here, 1) - 1;  // the point itself, too
+    least_ = least_of(nearness_);
 }
 
-void ShareCell::cut_open(const Patch& around) {
-    const float widest2 = widest_cut() * widest_cut(), coincident2 = kCoincident * reach_ * reach_;
-    std::array<float, kDirections> further = nearness_;
-    Projected cuts;
-    for (size_t first = 0; first < around.count; first += kBlock) {
-        cuts.take(around, first, x_, y_, [&](size_t i, float length2) {
-            const float height = around.x[i] * normal_.x + around.y[i] * normal_.y + around.z[i] * normal_.z;
-            return (length2 > coincident2) & (length2 < widest2) &
-                   (height * height <= kSlope * kSlope * length2);
-        });
-        size_t used = 0;
-        for (size_t i = 0; i < cuts.count; ++i) {
-            cuts.x[used] = cuts.x[i];
-            cuts.y[used] = cuts.y[i];
-            used += (cuts.x[i] != 0) | (cuts.y[i] != 0);
-        }
-        cut_by(cuts.x.data(), cuts.y.data(), used, further);
-    }
+size_t ShareCell::cut_open(const Tile& around, const glm::vec3& centre, float radius) {
+    const Slope slope{centre, radius * radius, kSlope * kSlope, kCoincident * reach_ * reach_};
+    Nearness further = nearness_;
+    const size_t nearest = cut_by_slope(around, slope, frame_, reach_ * reach_, further);
     const float known = 1 / (kKnown * reach_);
-    for (size_t d = 0; d < kDirections; ++d)
-        if (nearness_[d] < known) nearness_[d] = further[d];
-}
-
-bool ShareCell::goes_on(const Patch& around, size_t i) const {
-    const float height = glm::dot(around.offset(i), normal_);
-    return height * height <= kSlope * kSlope * (around.distance2[i] - height * height);
-}
-
-float ShareCell::least() const {
-    return *std::min_element(nearness_.begin(), nearness_.end());
+    for (size_t d = 0; d < kDirections; ++d) nearness_[d] = nearness_[d] < known ? further[d] : nearness_[d];
+    least_ = least_of(nearness_);
+    return nearest;
 }
 
 float ShareCell::widest_cut() const {
-    return 2 / least();
+    return 2 / least_;
 }
 
 bool ShareCell::open() const {
-    return least() * kKnown * reach_ < 1;
+    return least_ * kKnown * reach_ < 1;
 }
 
 bool ShareCell::closed() const {
-    return least() > 2 / widest_search_;
+    return least_ > 2 / widest_search_;
+}
+
+float ShareCell::full_area() const {
+    return kPi * mean_square_within(nearness_, std::numeric_limits<float>::infinity());
 }
 
 float ShareCell::area() const {
-    float sum = 0;
-    for (const float n : nearness_) sum += 1 / (n * n);
-    return kPi / kDirections * sum / static_cast<float>(1 + coincident_);
+    return full_area() / static_cast<float>(1 + coincident_);
 }
 
 void ShareCell::cut_off(float radius) {
     for (float& n : nearness_) n = std::max(n, 1 / radius);
-}
-
-/// Of the distances of the cell's sides from the point, over their angles; what is farther left out.
-float ShareCell::mean_square_within(float radius) const {
-    float sum = 0, count = 0;
-    for (const float n : nearness_) {
-        if (n * radius <= 1) continue;
-        sum += 1 / (n * n);
-        ++count;
-    }
-    return count > 0 ? sum / count : 0.0f;
+    least_ = std::max(least_, 1 / radius);
 }
 
 float ShareCell::area_at_rim() {
     if (!closed()) {
         float radius = rim_spacing_;
         for (int step = 1; step < kRimSteps && radius > 0; ++step)
-            radius = std::sqrt(mean_square_within(radius));
+            radius = std::sqrt(mean_square_within(nearness_, radius));
         if (radius > 0) cut_off(radius);
     }
+    float filled = full_area();
     for (int step = 0; step < kMostShrinks; ++step) {
-        const float filled = area() * static_cast<float>(1 + coincident_), farthest = 1 / least();
+        const float farthest = 1 / least_;
         if (filled >= kFill * kPi * farthest * farthest) break;
         cut_off(kShrink * farthest);
+        filled = full_area();
     }
-    return area();
+    return filled / static_cast<float>(1 + coincident_);
 }
 
 }  // namespace lucarne::octree

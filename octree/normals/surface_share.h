@@ -24,10 +24,10 @@ class ShareCell {
 
     /// Cuts off what is nearer to the neighbours in the layer low .. high; all `heights` are over the plane.
     void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer);
-    /// Cuts, where the cell is open, what is nearer to anything that goes on with the surface.
-    void cut_open(const Patch& around);
-    /// Whether a point is low enough over the tangent plane to go on with the surface.
-    bool goes_on(const Patch& around, size_t i) const;
+    /// Cuts, where the cell is open, what is nearer to anything that goes on with the surface: the points of
+    /// `around` within `radius` of the site, which is at `centre` there. Returns the nearest of these beyond
+    /// the reach, or the tile's count.
+    size_t cut_open(const Tile& around, const glm::vec3& centre, float radius);
     /// Whether neighbours beyond the reach may still cut off much: then the known ones say nothing of one
     /// side.
     bool open() const;
@@ -43,18 +43,20 @@ class ShareCell {
     /// can cover.
     float area_at_rim();
 
-    const glm::vec3& x_axis() const { return x_; }
-    const glm::vec3& y_axis() const { return y_; }
-
  private:
-    float least() const;
     void cut_off(float radius);
-    float mean_square_within(float radius) const;
+    float full_area() const;  ///< before it is shared with what is above and below
 
-    glm::vec3 normal_, x_{0.0f}, y_{0.0f};
+    TangentFrame frame_;
     float reach_, widest_search_, rim_spacing_;
-    size_t coincident_ = 0;                    ///< neighbours exactly above or below share the cell
-    std::array<float, kDirections> nearness_;  ///< one over how far it reaches
+    size_t coincident_ = 0;  ///< neighbours exactly above or below share the cell
+    Nearness nearness_;      ///< one over how far it reaches
+    float least_;            ///< of these
 };
+
+/// Axes in the plane of a normal.
+TangentFrame tangent_frame(const glm::vec3& normal);
+/// Whether a point at an offset is low enough over the tangent plane to go on with the surface.
+bool goes_on(const glm::vec3& offset, const glm::vec3& normal);
 
 }  // namespace lucarne::octree

@@ -98,7 +98,22 @@ bool ChunkNeighbours::Surroundings::find_shared(size_t k) {
     return reach > kFinest * (std::min(near_.radius, 1e300) + glm::distance(box_.min, box_.max));
 }
 
-void ChunkNeighbours::Surroundings::nearest(size_t k, Patch& patch) const {
+/// The k nearest, more than were asked for before, in ever wider surroundings of all sites of the group.
+bool ChunkNeighbours::Surroundings::find_wide(size_t k, Patch& patch) {
+    constexpr int kMostTries = 4;
+    double radius = previous_reach_;
+    for (int tries = 0; !alone_ && radius > 0 && tries < kMostTries; ++tries) {
+        radius *= 2;
+        if (within(radius, candidates_) < radius) return false;
+        if (candidates_.count < k) continue;
+        patch.take_nearest(candidates_, k);
+        return true;
+    }
+    return false;
+}
+
+void ChunkNeighbours::Surroundings::nearest(size_t k, Patch& patch) {
+    if (find_wide(k, patch)) return;
     std::vector<Neighbour> found(k);
     size_t count = of_.index_->merge_nearest(of_.sites_[site_], found, 0, 0);
     if (of_.halo_index_)
@@ -115,20 +130,23 @@ bool ChunkNeighbours::Surroundings::knows(double radius) const {
     return radius <= halo_ || !of_.reaches_out(site_, radius * radius);
 }
 
-double ChunkNeighbours::Surroundings::within(double radius, Patch& patch) {
+ChunkNeighbours::Surroundings::View ChunkNeighbours::Surroundings::around(double radius) {
     const glm::dvec3 at = of_.sites_[site_];
-    if (!alone_ && (near_.radius >= radius || near_.all)) {
-        patch.take_within(near_.tile, glm::vec3(at - near_.tile.origin), square(radius));
-        return radius;
-    }
-    if (!alone_ && (wide_.radius >= radius || gather(box_, radius * kSlack, kMostShared, wide_))) {
-        patch.take_within(wide_.tile, glm::vec3(at - wide_.tile.origin), square(radius));
-        return radius;
-    }
+    const auto view = [&](const Gathered& gathered) {
+        return View{gathered.tile, glm::vec3(at - gathered.tile.origin), radius};
+    };
+    if (!alone_ && (near_.radius >= radius || near_.all)) return view(near_);
+    if (!alone_ && (wide_.radius >= radius || gather(box_, radius * kSlack, kMostShared, wide_)))
+        return view(wide_);
     own_.clear();
     while (!gather({at, at}, radius, kMostAlone, own_) && radius > 0) radius /= 2;
-    patch.take_within(own_.tile, glm::vec3(at - own_.tile.origin), square(radius));
-    return radius;
+    return view(own_);
+}
+
+double ChunkNeighbours::Surroundings::within(double radius, Patch& patch) {
+    const View view = around(radius);
+    patch.take_within(view.tile, view.centre, square(view.radius));
+    return view.radius;
 }
 
 }  // namespace lucarne::octree

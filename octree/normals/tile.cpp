@@ -186,8 +186,22 @@ const Directions& directions() {
     return table;
 }
 
-void cut_by(const float* x, const float* y, size_t count, std::array<float, kDirections>& nearness) {
-    LUCARNE_CALL(cut, x, y, count, directions(), nearness.data());
+size_t cut_by_layer(const Patch& patch, const std::vector<float>& heights, const Range& layer,
+                    const TangentFrame& frame, float coincident2, Nearness& nearness) {
+    return LUCARNE_CALL(cut_layer, patch, heights.data(), layer, frame, coincident2, nearness);
+}
+
+size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,
+                    Nearness& nearness) {
+    return LUCARNE_CALL(cut_slope, tile, slope, frame, beyond2, nearness);
+}
+
+float least_of(const Nearness& nearness) {
+    return LUCARNE_CALL(least, nearness);
+}
+
+float mean_square_within(const Nearness& nearness, float radius) {
+    return LUCARNE_CALL(mean_square, nearness, radius);
 }
 
 }  // namespace lucarne::octree

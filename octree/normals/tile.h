@@ -95,8 +95,32 @@ struct Directions {
 };
 const Directions& directions();
 
-/// nearness[d] = max over i of x[i] ux[d] + y[i] uy[d], and of itself: each (x, y) is twice a neighbour's
-/// offset over its squared length, so that 1 / nearness is how far the cell reaches in a direction.
-void cut_by(const float* x, const float* y, size_t count, std::array<float, kDirections>& nearness);
+/// Two axes in the plane through a point, and its normal: all unit and at right angles.
+struct TangentFrame {
+    glm::vec3 normal{0.0f}, x{0.0f}, y{0.0f};
+};
+
+/// A cell by its reach: nearness[d] is one over how far it goes in a direction. A neighbour at (u, v) in the
+/// plane cuts it at 2 (u cos + v sin) / (u^2 + v^2).
+using Nearness = std::array<float, kDirections>;
+
+/// Cuts the cell by the neighbours whose height is in the layer; returns how many of these are nearer to the
+/// point, in the plane, than the root of `coincident2`, and cut nothing. `heights` as heights_over() gives.
+size_t cut_by_layer(const Patch& patch, const std::vector<float>& heights, const Range& layer,
+                    const TangentFrame& frame, float coincident2, Nearness& nearness);
+
+/// What of a tile goes on with a surface: points within the root of `limit2` of `centre` whose height over
+/// the plane, squared, is at most `slope2` of their squared distance in it.
+struct Slope {
+    glm::vec3 centre;  ///< relative to the tile's origin
+    float limit2, slope2, coincident2;
+};
+/// Cuts the cell by these; returns the nearest farther than the root of `beyond2`, or the tile's count.
+size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,
+                    Nearness& nearness);
+
+float least_of(const Nearness& nearness);
+/// Of the distances 1 / nearness under `radius` squared; 0 where there are none.
+float mean_square_within(const Nearness& nearness, float radius);
 
 }  // namespace lucarne::octree

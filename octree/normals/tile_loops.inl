@@ -30,9 +30,7 @@ struct Packer {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                             _mm256_permutevar8x32_epi32((__m256i)values, order));
     }
-    LUCARNE_INLINE size_t count() const {
-        return static_cast<size_t>(__builtin_popcount(mask));
-    }
+    LUCARNE_INLINE size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
     uint32_t mask;
     __m256i order;
 };
@@ -83,16 +81,16 @@ LUCARNE_INLINE void append_lanes(Tile& tile, const Lanes& x, const Lanes& y, con
 }
 
 [[gnu::noinline]] void append(Tile& tile, const PointArrays& points, size_t first, size_t last,
-                                uint32_t offset, const glm::vec3& low, const glm::vec3& high, float limit2) {
+                              uint32_t offset, const glm::vec3& low, const glm::vec3& high, float limit2) {
     size_t i = first;
     for (; i < last && i + kLanes <= points.size(); i += kLanes)
-        append_lanes(tile, relative(points.x, i, tile.origin.x),
-                             relative(points.y, i, tile.origin.y), relative(points.z, i, tile.origin.z),
-                             kLane + static_cast<int32_t>(i + offset), last - i, low, high, limit2);
+        append_lanes(tile, relative(points.x, i, tile.origin.x), relative(points.y, i, tile.origin.y),
+                     relative(points.z, i, tile.origin.z), kLane + static_cast<int32_t>(i + offset), last - i,
+                     low, high, limit2);
     for (; i < last; ++i) {  // the end of the arrays
         const glm::vec3 p(points[i] - tile.origin);
         append_lanes(tile, p.x - Lanes{}, p.y - Lanes{}, p.z - Lanes{},
-                             kLane + static_cast<int32_t>(i + offset), 1, low, high, limit2);
+                     kLane + static_cast<int32_t>(i + offset), 1, low, high, limit2);
     }
 }
 
@@ -160,8 +158,7 @@ LUCARNE_INLINE float total(const Lanes& v) {
         store(&heights[i], h);
     }
     Range range{0, 0};
-    for (size_t i = 0; i < kLanes; ++i)
-        range = {std::min(range.low, low[i]), std::max(range.high, high[i])};
+    for (size_t i = 0; i < kLanes; ++i) range = {std::min(range.low, low[i]), std::max(range.high, high[i])};
     return range;
 }
 
@@ -184,14 +181,101 @@ LUCARNE_INLINE float total(const Lanes& v) {
     return gap;
 }
 
-[[gnu::noinline]] void cut(const float* x, const float* y, size_t count, const Directions& to,
-                             float* nearness) {
-    constexpr size_t kVectors = kDirections / kLanes;
-    Lanes near[kVectors];
-    for (size_t v = 0; v < kVectors; ++v) near[v] = load<Lanes>(&nearness[v * kLanes]);
-    for (size_t i = 0; i < count; ++i)
-        for (size_t v = 0; v < kVectors; ++v)
-            near[v] = greater(near[v], load<Lanes>(&to.x[v * kLanes]) * x[i] +
-                                           load<Lanes>(&to.y[v * kLanes]) * y[i]);
-    for (size_t v = 0; v < kVectors; ++v) store(&nearness[v * kLanes], near[v]);
+/// What cuts a cell, kept side by side until there are many.
+struct Cuts {
+    static constexpr size_t kMost = 256;
+    float x[kMost + kLanes], y[kMost + kLanes];
+    size_t count = 0;
+
+    LUCARNE_INLINE void take(const Words& chosen, const Lanes& u, const Lanes& v, const Lanes& length2,
+                             Nearness& nearness) {
+        if (count + kLanes > kMost) apply(nearness);
+        const Lanes scale = 2.0f / length2;  // infinite only where not chosen
+        const Packer packer(chosen);
+        packer.put(scale * u, &x[count]);
+        packer.put(scale * v, &y[count]);
+        count += packer.count();
+    }
+    LUCARNE_INLINE void apply(Nearness& nearness) {
+        constexpr size_t kVectors = kDirections / kLanes;
+        const Directions& to = directions();
+        Lanes near[kVectors];
+        for (size_t v = 0; v < kVectors; ++v) near[v] = load<Lanes>(&nearness[v * kLanes]);
+        for (size_t i = 0; i < count; ++i)
+            for (size_t v = 0; v < kVectors; ++v)
+                near[v] = greater(
+                    near[v], load<Lanes>(&to.x[v * kLanes]) * x[i] + load<Lanes>(&to.y[v * kLanes]) * y[i]);
+        for (size_t v = 0; v < kVectors; ++v) store(&nearness[v * kLanes], near[v]);
+        count = 0;
+    }
+};
+
+LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y, const Lanes& z) {
+    return x * axis.x + y * axis.y + z * axis.z;
+}
+
+[[gnu::noinline]] size_t cut_layer(const Patch& patch, const float* heights, const Range& layer,
+                                   const TangentFrame& frame, float coincident2, Nearness& nearness) {
+    Cuts cuts;
+    Words here{};
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]),
+                    h = load<Lanes>(&heights[i]);
+        const Lanes u = along(frame.x, x, y, z), v = along(frame.y, x, y, z), length2 = u * u + v * v;
+        const Words in = (h >= layer.low) & (h <= layer.high) &
+                         (kLane < static_cast<int32_t>(patch.count - i)),
+                    apart = length2 > coincident2;
+        here -= in & ~apart;
+        cuts.take(in & apart, u, v, length2, nearness);
+    }
+    cuts.apply(nearness);
+    size_t sum = 0;
+    for (size_t i = 0; i < kLanes; ++i) sum += static_cast<size_t>(here[i]);
+    return sum;
+}
+
+[[gnu::noinline]] size_t cut_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame,
+                                   float beyond2, Nearness& nearness) {
+    Cuts cuts;
+    Lanes least = std::numeric_limits<float>::max() - Lanes{};
+    Words slot = static_cast<int32_t>(tile.count) - Words{};
+    for (size_t i = 0; i < tile.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&tile.x[i]) - slope.centre.x,
+                    y = load<Lanes>(&tile.y[i]) - slope.centre.y,
+                    z = load<Lanes>(&tile.z[i]) - slope.centre.z;
+        const Lanes d2 = x * x + y * y + z * z, h = along(frame.normal, x, y, z), u = along(frame.x, x, y, z),
+                    v = along(frame.y, x, y, z), length2 = u * u + v * v;
+        const Words chosen = (d2 <= slope.limit2) & (h * h <= slope.slope2 * length2) &
+                             (length2 > slope.coincident2) & (kLane < static_cast<int32_t>(tile.count - i));
+        const Words nearer = chosen & (d2 > beyond2) & (d2 < least);
+        least = nearer ? d2 : least;
+        slot = nearer ? kLane + static_cast<int32_t>(i) : slot;
+        cuts.take(chosen, u, v, length2, nearness);
+    }
+    cuts.apply(nearness);
+    size_t best = 0;
+    for (size_t i = 1; i < kLanes; ++i)
+        if (least[i] < least[best] || (least[i] == least[best] && slot[i] < slot[best])) best = i;
+    return static_cast<size_t>(slot[best]);
+}
+
+[[gnu::noinline]] float least(const Nearness& nearness) {
+    Lanes least = load<Lanes>(nearness.data());
+    for (size_t d = kLanes; d < kDirections; d += kLanes) least = lesser(least, load<Lanes>(&nearness[d]));
+    float all = least[0];
+    for (size_t i = 1; i < kLanes; ++i) all = std::min(all, least[i]);
+    return all;
+}
+
+[[gnu::noinline]] float mean_square(const Nearness& nearness, float radius) {
+    Lanes sum{}, count{};
+    const Lanes none{}, one = 1 - none;
+    for (size_t d = 0; d < kDirections; d += kLanes) {
+        const Lanes n = load<Lanes>(&nearness[d]);
+        const Words within = n * radius > 1.0f;
+        sum += within ? 1.0f / (n * n) : none;
+        count += within ? one : none;
+    }
+    const float all = total(count);
+    return all > 0 ? total(sum) / all : 0.0f;
 }
