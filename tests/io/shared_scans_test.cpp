@@ -105,5 +105,19 @@ TEST_F(SharedScans, BadFilesAreRejectedWithTheReasonOrReadAsDocumented) {
     }
 }
 
+TEST_F(SharedScans, DamagedE57FilesAreRejectedAndEmptyOnesAreEmpty) {
+    EXPECT_THAT(error_of("bad/e57_bad-crc.e57").line(), ::testing::HasSubstr("the page at byte 0 is wrong"));
+    EXPECT_THAT(error_of("bad/e57_corrupt_crc.e57").line(),
+                ::testing::HasSubstr("the page at byte 33792 is wrong"));
+    // Their one scan has no record; in the first its section was never written.
+    for (const char* file : {"bad/e57_InvalidCVHeader.e57", "bad/e57_empty_pc.e57"}) {
+        const auto source = open_scan(folder_ / file);
+        ASSERT_TRUE(source) << source.error().line();
+        const auto records = read_all(**source);
+        ASSERT_TRUE(records) << records.error().line();
+        EXPECT_EQ(records->count, 0u);
+    }
+}
+
 }  // namespace
 }  // namespace lucarne::io
