@@ -44,13 +44,21 @@ std::string text_of(const json& value, int indent = -1) {
 
 json describe_scan(const io::PointSource& scan) {
     const auto& info = scan.info();
-    return {{"kind", "scan"},
-            {"format", info.format},
-            {"declared_points", info.declared_points},
-            {"bytes_per_point", scan.schema().stride},
-            {"metres_per_unit", info.metres_per_unit},
-            {"stations", info.stations.size()},
-            {"attributes", attributes_json(scan.schema())}};
+    json stations = json::array();
+    for (const auto& s : info.stations)
+        stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
+    json described = {{"kind", "scan"},
+                      {"format", info.format},
+                      {"declared_points", info.declared_points},
+                      {"bytes_per_point", scan.schema().stride},
+                      {"metres_per_unit", info.metres_per_unit},
+                      {"stations", std::move(stations)},
+                      {"attributes", attributes_json(scan.schema())}};
+    // What a file of several scans says of each, and its images, which are not read (E57).
+    const json details = json::parse(info.details, nullptr, false);
+    for (const char* list : {"scans", "images"})
+        if (details.is_object() && details.contains(list)) described[list] = details[list];
+    return described;
 }
 
 json describe_octree(const octree::NodeSource& cache, const char* kind) {
