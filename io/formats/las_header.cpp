@@ -98,7 +98,9 @@ Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
     h.points_offset = load<uint32_t>(b + 96);
     raw.vlr_count = load<uint32_t>(b + 100);
     raw.format_byte = load<uint8_t>(b + 104);
-    h.point_format = raw.format_byte & 0x3f;
+    const uint8_t format = raw.format_byte & 0x3f;
+    h.point_format = without_waves(format);
+    h.wave_bytes = h.point_format == format ? 0 : kWavePacketBytes;
     h.record_length = load<uint16_t>(b + 105);
     h.points = load<uint32_t>(b + 107);
     for (int axis = 0; axis < 3; ++axis) {
@@ -115,16 +117,12 @@ Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
 }
 
 Result<void> check_format(const std::string& name, const Header& h) {
-    if (h.point_format == 4 || h.point_format == 5 || h.point_format == 9 || h.point_format == 10)
-        return rejected(
-            name, fmt::format("has point format {} (wave packets), which cannot be read", h.point_format),
-            "convert it to point format 0-3 or 6-8");
     if (record_bytes(h.point_format) == 0)
         return rejected(name, fmt::format("has point format {}, which the LAS specification does not know",
                                           h.point_format));
-    if (h.record_length < record_bytes(h.point_format))
+    if (h.record_length < record_bytes(h.point_format) + h.wave_bytes)
         return rejected(name, fmt::format("has records of {} bytes, but point format {} needs {}",
-                                          h.record_length, h.point_format, record_bytes(h.point_format)));
+                                          h.record_length, h.point_format, record_bytes(h.point_format) + h.wave_bytes));
     for (int axis = 0; axis < 3; ++axis)
         if (h.scale[axis] == 0 || !usable(std::abs(h.scale[axis]) * 0x1p31 + std::abs(h.offset[axis])))
             return rejected(name, fmt::format("has no usable scale and offset for {} ({}, {})", "xyz"[axis],

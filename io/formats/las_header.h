@@ -41,6 +41,7 @@ struct Header {
     uint64_t points = 0;
     uint64_t points_offset = 0;  ///< in the file; of no use for writing
     bool compressed = false;     ///< LAZ: io/formats/laz; of no use for writing
+    uint16_t wave_bytes = 0;     ///< of the file's records behind their fields: skipped; 0 for writing
     glm::dvec3 scale{1.0}, offset{0.0};
     std::vector<Vlr> vlrs;
 
@@ -52,7 +53,17 @@ constexpr uint16_t header_bytes(uint8_t minor) {
 constexpr bool extended_format(uint8_t point_format) {
     return point_format >= 6;
 }
-/// Bytes of a record before its extra bytes; 0 for formats that are not read (4, 5, 9, 10: wave packets).
+/// Formats 4, 5, 9 and 10 are others with a wave packet between their fields and their extra bytes: which;
+/// others are what they are.
+constexpr uint8_t without_waves(uint8_t point_format) {
+    constexpr std::array<uint8_t, 11> kSame = {0, 1, 2, 3, 1, 3, 6, 7, 8, 6, 8};
+    return point_format < kSame.size() ? kSame[point_format] : point_format;
+}
+constexpr uint8_t with_waves(uint8_t point_format) {
+    return point_format == 1 ? 4 : point_format == 3 ? 5 : point_format == 6 ? 9 : 10;
+}
+inline constexpr uint16_t kWavePacketBytes = 29;
+/// Bytes of a record before its extra bytes; 0 for formats that are not known, and those with wave packets.
 constexpr uint16_t record_bytes(uint8_t point_format) {
     constexpr std::array<uint16_t, 9> kBytes = {20, 28, 26, 34, 0, 0, 30, 36, 38};
     return point_format < kBytes.size() ? kBytes[point_format] : 0;

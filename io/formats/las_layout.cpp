@@ -76,6 +76,21 @@ bool pack_all(const std::byte* in, size_t in_stride, size_t count, std::byte* ou
     return lost == 0;
 }
 
+/// One by one, without the wave packet between fields and extra bytes.
+void decode_around_waves(Header header, const std::byte* in, size_t count, std::byte* out,
+                         size_t out_stride) {
+    const size_t fields = record_bytes(header.point_format), wave = header.wave_bytes;
+    const size_t stride = header.record_length, extra = stride - fields - wave;
+    header.record_length = static_cast<uint16_t>(fields + extra);
+    header.wave_bytes = 0;
+    std::vector<std::byte> record(header.record_length);
+    for (; count-- > 0; in += stride, out += out_stride) {
+        std::memcpy(record.data(), in, fields);
+        std::memcpy(record.data() + fields, in + fields + wave, extra);
+        decode(header, record.data(), 1, out, out_stride);
+    }
+}
+
 void add_core(Schema& schema, bool extended) {
     const auto u8 = [&](std::string_view name) { schema.add(std::string(name), ScalarType::u8); };
     schema.add(std::string(names::intensity), ScalarType::u16);
@@ -100,7 +115,7 @@ void add_core(Schema& schema, bool extended) {
 }
 
 void add_extra(Schema& schema, const Header& header) {
-    size_t left = header.record_length - record_bytes(header.point_format);
+    size_t left = header.record_length - record_bytes(header.point_format) - header.wave_bytes;
     if (const Vlr* vlr = header.find(kSpecUser, kExtraBytesRecord)) {
         for (size_t at = 0; left > 0 && vlr->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
             const auto descriptor = std::span(vlr->data).subspan(at, kDescriptorBytes);
@@ -148,6 +163,7 @@ Schema make_schema(const Header& header) {
 
 void decode(const Header& header, const std::byte* in, size_t count, std::byte* out, size_t out_stride) {
     const size_t stride = header.record_length;
+    if (header.wave_bytes) return decode_around_waves(header, in, count, out, out_stride);
     if (extended_format(header.point_format)) {
         const size_t tail = stride - Extended::tail;
         if (tail == 8) return unpack_all<Extended>(in, stride, count, out, out_stride, 8);

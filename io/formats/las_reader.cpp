@@ -1,9 +1,10 @@
-// LAS 1.0-1.4, uncompressed, point formats 0-3 and 6-8. Source: see las_header.h.
+// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see las_header.h.
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/log.h"
 #include "io/formats/buffered_input.h"
 #include "io/formats/format.h"
 #include "io/formats/las_crs.h"
@@ -60,8 +61,10 @@ class LasSource final : public PointSource {
         const std::string name = file_->path().string();
         if (header_.compressed) LUCARNE_TRY(find_chunks());
         info_.path = name;
-        info_.format = fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
-                                   header_.point_format);
+        info_.format =
+            fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
+                        header_.wave_bytes ? las::with_waves(header_.point_format) : header_.point_format);
+        if (header_.wave_bytes) skip_waves();
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
@@ -72,7 +75,9 @@ class LasSource final : public PointSource {
         if (const Attribute* color = schema_.find(names::color)) {
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color));
         }
-        nlohmann::json details = las::to_details(header_);
+        las::Header kept = header_;
+        kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
+        nlohmann::json details = las::to_details(kept);
         details["color_bits"] = info_.color_bits;
         info_.details = details.dump();
         return {};
@@ -89,12 +94,24 @@ class LasSource final : public PointSource {
         if (compressed_) return PointSource::pick(indices, batch);
         batch.bytes.resize(indices.size() * schema_.stride);
         batch.count = 0;
-        return for_picked(*file_, header_.points_offset, header_.record_length, indices, [&](const std::byte* at) {
-            las::decode(header_, at, 1, &batch.bytes[batch.count++ * schema_.stride], schema_.stride);
-        });
+        return for_picked(
+            *file_, header_.points_offset, header_.record_length, indices, [&](const std::byte* at) {
+                las::decode(header_, at, 1, &batch.bytes[batch.count++ * schema_.stride], schema_.stride);
+            });
     }
 
  private:
+    void skip_waves() {
+        log::warn("{}: the wave packets of its points are skipped", file_->path().string());
+        // Descriptors (100 to 354) and packets (65535) that nothing points to any more.
+        std::erase_if(header_.vlrs, [](const las::Vlr& vlr) {
+            const bool wave = (vlr.record_id >= 100 && vlr.record_id < 355) || vlr.record_id == 65535;
+            return vlr.user_id == las::kSpecUser && wave;
+        });
+        constexpr uint16_t kWaveBits = 6;  // packets inside the file, or in another
+        header_.global_encoding &= static_cast<uint16_t>(~kWaveBits);
+    }
+
     Result<void> find_chunks() {
         LUCARNE_ASSIGN(auto compression, laz::read_compression(file_->path().string(), header_));
         LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression));

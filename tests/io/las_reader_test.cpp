@@ -8,6 +8,7 @@
 
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
+#include "io/formats/las_header.h"
 #include "tests/io/las_builder.h"
 
 namespace lucarne::io {
@@ -235,14 +236,43 @@ TEST_F(Las, StationsThatCannotBeUnderstoodAreRejected) {
     }
 }
 
-TEST_F(Las, CompressedAndWavePacketFilesAreNamedAsSuch) {
+TEST_F(Las, WavePacketsAreSkippedAndTheBytesBehindThemAreNot) {
+    const testing::TemporaryFolder folder;
+    constexpr size_t kWave = 29;
+    for (const auto& [format, same] : {std::pair{4, 1}, {5, 3}, {9, 6}, {10, 8}}) {
+        const size_t fields = las::record_bytes(static_cast<uint8_t>(same));
+        LasFile plain, waves;
+        plain.minor = waves.minor = 4;
+        plain.format = static_cast<uint8_t>(same);
+        waves.format = static_cast<uint8_t>(format);
+        for (int point = 0; point < 5; ++point) {
+            std::string record(fields + 3, '\0');
+            for (size_t i = 0; i < record.size(); ++i)
+                record[i] = static_cast<char>((i * 37 + static_cast<size_t>(point) * 11) & 0x7f);
+            plain.records.push_back(record);
+            waves.records.push_back(record.insert(fields, std::string(kWave, '\xee')));
+        }
+        waves.add_vlr("LASF_Spec", 100, std::string(26, 'w'));
+        testing::write_bytes(folder / "plain.las", plain.bytes());
+        testing::write_bytes(folder / "waves.las", waves.bytes());
+        const auto a = open_scan(folder / "plain.las"), b = open_scan(folder / "waves.las");
+        ASSERT_TRUE(a && b) << b.error().line();
+        EXPECT_EQ((*a)->schema(), (*b)->schema());
+        EXPECT_EQ(testing::read_all(**a)->bytes, testing::read_all(**b)->bytes) << format;
+        EXPECT_EQ((*b)->info().format, "LAS 1.4, point format " + std::to_string(format));
+        EXPECT_EQ((*b)->info().details.find("100"), std::string::npos) << "the wave's description is kept";
+    }
+    LasFile small;
+    small.minor = 4;
+    small.format = 4;
+    small.records = {std::string(56, '\0')};
+    expect_rejected(small, "needs 57");
+}
+
+TEST_F(Las, CompressedFilesThatDoNotSayHowAreRejected) {
     LasFile file;
     file.records = {std::string(80, '\0')};
-    for (const int format : {4, 5, 9, 10}) {
-        file.format = static_cast<uint8_t>(format);
-        file.minor = 4;
-        expect_rejected(file, "wave packets");
-    }
+    file.minor = 4;
     file.format = 0x80 | 3;
     expect_rejected(file, "no LASzip record");
     file.format = 0;

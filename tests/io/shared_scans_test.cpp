@@ -73,7 +73,7 @@ TEST_F(SharedScans, WhatLazOfOldOrUnknownMakeIsRefusedByName) {
     const std::map<std::string, std::string> reasons = {
         {"las/point-version-1-point-wise.laz", "old LASzip item version 1"},
         {"las/simple-laszip-compressor-version-1.2r0.laz", "old LASzip item version 1"},
-        {"las/fullwave.laz", "point format 10 (wave packets)"},
+        {"las/fullwave.laz", "compressed point format 10 (wave packets)"},
         {"bad/laszip_broken_coder.laz", "unknown LASzip coder 15"},
         {"bad/laszip_broken_compressor.laz", "unknown LASzip compressor 16"},
         {"bad/laszip_broken_size.laz", "unknown LASzip item version 6"},
