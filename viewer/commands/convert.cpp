@@ -17,6 +17,7 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
 #include "viewer/input.h"
+#include "viewer/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -35,8 +36,7 @@ class ClosedScan final : public io::PointSource {
     static Result<std::unique_ptr<io::PointSource>> create(const std::string& path,
                                                            const io::ReadOptions& options) {
         LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options));
-        return std::unique_ptr<io::PointSource>(
-            new ClosedScan(path, options, scan->schema(), scan->info()));
+        return std::unique_ptr<io::PointSource>(new ClosedScan(path, options, scan->schema(), scan->info()));
     }
     const io::Schema& schema() const override { return schema_; }
     const io::ScanInfo& info() const override { return info_; }
@@ -88,16 +88,49 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
     return file.commit();
 }
 
-Result<void> append(const ConvertOptions& options) {
+using Scans = std::vector<std::unique_ptr<io::PointSource>>;
+
+/// Those of the inputs that open; the others are taken out of the list.
+Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
+    Scans scans;
+    for (size_t i = 0; i < options.inputs.size();) {
+        auto scan = ClosedScan::create(options.inputs[i], options.read);
+        if (scan) {
+            scans.push_back(std::move(*scan));
+            ++i;
+        } else if (!aside.take(scan.error(), options.inputs)) {
+            return tl::unexpected(std::move(scan).error());
+        }
+    }
+    if (scans.empty()) return rejected("convert", "none of the inputs can be read");
+    return scans;
+}
+
+/// Builds from what opens, and once more without an input that turns out broken on the way: the first stage
+/// reads all of them.
+template <class Build>
+auto build_of_the_sound(ConvertOptions& options, SetAside& aside, const Build& build) -> decltype(build()) {
+    for (;;) {
+        LUCARNE_ASSIGN(const Scans scans, open_scans(options, aside));
+        options.build.inputs.clear();
+        for (const auto& scan : scans) options.build.inputs.push_back(scan.get());
+        auto done = build();
+        if (done || !aside.take(done.error(), options.inputs)) return done;
+    }
+}
+
+Result<void> append(ConvertOptions options, SetAside& aside) {
     const auto& build = options.build;
     const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
                                    build.neighbours};
-    LUCARNE_ASSIGN(const auto report, octree::append_to_cache(build.inputs, edit));
+    LUCARNE_ASSIGN(const auto report, build_of_the_sound(options, aside, [&] {
+                       return octree::append_to_cache(build.inputs, edit);
+                   }));
     log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed",
               build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
               report.nodes);
-    if (options.json.empty()) return {};
-    return write_edit_report(options.json, build.overwrite, report);
+    if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
+    return aside.result(build.output.string());
 }
 
 Result<void> convert(ConvertOptions options) {
@@ -105,14 +138,11 @@ Result<void> convert(ConvertOptions options) {
     LUCARNE_ASSIGN(build.memory, parse_bytes("--memory", options.memory));
     if (!options.append) LUCARNE_TRY(check_output(build.output, build.overwrite));
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
-    std::vector<std::unique_ptr<io::PointSource>> sources;
-    for (const auto& input : options.inputs) {
-        LUCARNE_ASSIGN(auto source, ClosedScan::create(input, options.read));
-        build.inputs.push_back(source.get());
-        sources.push_back(std::move(source));
-    }
-    if (options.append) return append(options);
-    LUCARNE_ASSIGN(const auto report, octree::build_cache(build));
+    LUCARNE_ASSIGN(options.inputs, expand_folders(options.inputs));
+    SetAside aside(options.inputs.size());
+    if (options.append) return append(std::move(options), aside);
+    LUCARNE_ASSIGN(const auto report,
+                   build_of_the_sound(options, aside, [&] { return octree::build_cache(build); }));
     double cpu = 0, wall = 0;
     for (const auto& stage : report.stages) {
         log::info("{:<8}{:8.2f} s, {:8.2f} CPU-s", stage.name, stage.wall_seconds, stage.cpu_seconds);
@@ -121,8 +151,8 @@ Result<void> convert(ConvertOptions options) {
     }
     log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s)", build.output.string(),
               report.points, report.nodes, bytes_text(report.bytes), wall, cpu);
-    if (!options.json.empty()) return write_report(options.json, build.overwrite, report);
-    return {};
+    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report));
+    return aside.result(build.output.string());
 }
 
 }  // namespace
@@ -139,7 +169,10 @@ void add_convert(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<ConvertOptions>();
     options->build.resume = octree::Resume::later;
     auto* command = app.add_subcommand("convert", "Build an octree cache from scans");
-    command->add_option("inputs", options->inputs, "Scan files; several become one cache")
+    command
+        ->add_option(
+            "inputs", options->inputs,
+            "Scan files, or folders of them; several become one cache. A broken one of several is left out")
         ->required()
         ->type_name("INPUT");
     add_read_options(*command, options->read);

@@ -1,0 +1,63 @@
+#include "viewer/scan_list.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+
+namespace lucarne::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 9> kExtensions = {".las", ".laz", ".e57", ".ply", ".pcd",
+                                                         ".ptx", ".pts", ".xyz", ".asc"};
+
+bool is_scan(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& inputs) {
+    std::vector<std::string> files;
+    for (const std::string& input : inputs) {
+        std::error_code error;
+        if (!fs::is_directory(input, error)) {
+            files.push_back(input);
+            continue;
+        }
+        const size_t first = files.size();
+        fs::recursive_directory_iterator entry(input, error), end;
+        for (; !error && entry != end; entry.increment(error))
+            if (entry->is_regular_file() && is_scan(entry->path())) files.push_back(entry->path().string());
+        if (error) return rejected(input, "cannot be looked through: " + error.message());
+        if (files.size() == first) return rejected(input, "is a folder without scans");
+        std::sort(files.begin() + static_cast<std::ptrdiff_t>(first), files.end());
+    }
+    return files;
+}
+
+bool SetAside::take(const Error& error, std::vector<std::string>& inputs) {
+    const auto broken = std::ranges::find(inputs, error.what);
+    if (error.kind != ErrorKind::input_rejected || inputs_ < 2 || broken == inputs.end()) return false;
+    log::warn("{}; it is left out", error.line());
+    lines_.push_back(error.line());
+    inputs.erase(broken);
+    return true;
+}
+
+Result<void> SetAside::result(const std::string& output) const {
+    if (lines_.empty()) return {};
+    std::string all;
+    for (const std::string& line : lines_) all += (all.empty() ? "" : "; ") + line;
+    return rejected(output, fmt::format("{} of {} inputs are not in it: {}", lines_.size(), inputs_, all));
+}
+
+}  // namespace lucarne::viewer

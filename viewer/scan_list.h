@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/core/error.h"
+
+namespace lucarne::viewer {
+
+/// The files that are meant: a folder stands for the scans in it and below (by their extension: .las .laz
+/// .e57 .ply .pcd .ptx .pts .xyz .asc), sorted by name; anything else for itself. Errors: folders that cannot
+/// be read or hold none.
+Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& inputs);
+
+/// Inputs that were left out of a conversion, and why: one broken file of many stops only itself.
+class SetAside {
+ public:
+    explicit SetAside(size_t inputs) : inputs_(inputs) {}
+
+    /// Whether the error is that of one input of several whose bytes are not what they claim to be; notes it.
+    bool take(const Error& error, std::vector<std::string>& inputs);
+    /// Fails with the summary where any input was left out.
+    Result<void> result(const std::string& output) const;
+
+ private:
+    size_t inputs_;
+    std::vector<std::string> lines_;
+};
+
+}  // namespace lucarne::viewer
