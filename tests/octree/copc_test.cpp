@@ -1,9 +1,10 @@
 // COPC files as octrees: real ones, and what lies in them.
 #include "io/formats/copc.h"
 
-#include <numeric>
+#include <cmath>
 
-#include <gmock/gmock.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 #include "io/formats/scan.h"
 #include "octree/attributes.h"
@@ -14,7 +15,6 @@ namespace lucarne::octree {
 namespace {
 
 using test::TempFolder;
-using ::testing::HasSubstr;
 
 class SharedCopc : public ::testing::TestWithParam<const char*> {
  protected:
@@ -64,6 +64,84 @@ TEST_P(SharedCopc, EveryPointIsInItsNodesCubeAndTheNodesAreATree) {
                 ASSERT_LE(at[axis], header.max[axis] + slack);
             }
         }
+    }
+}
+
+/// A level square of 10 units of random points, built and written as COPC.
+class CopcSquare : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        io::Schema schema;
+        schema.position = io::PositionType::i32_scaled;
+        schema.scale = glm::dvec3(1e-4);
+        schema.stride = 12;
+        const test::ComputedSource square(schema, 200'000, [](uint64_t index, std::byte* record) {
+            Random random(3, index);
+            io::store(record, static_cast<int32_t>(1e5 * random.uniform()));
+            io::store(record + 4, static_cast<int32_t>(1e5 * random.uniform()));
+            io::store(record + 8, int32_t{7});
+        });
+        ASSERT_TRUE(
+            build_cache({.inputs = {&square}, .output = folder_ / "a.luc", .normals = NormalsMode::none}));
+        const auto cache = open_octree(folder_ / "a.luc");
+        ASSERT_TRUE(Exporter(**cache, {}).write_copc(folder_ / "a.copc.laz", false, [](uint64_t) {}));
+        auto copc = open_octree(folder_ / "a.copc.laz");
+        ASSERT_TRUE(copc) << copc.error().line();
+        copc_ = std::move(*copc);
+    }
+    const TempFolder folder_;
+    std::unique_ptr<NodeSource> copc_;
+};
+
+TEST_F(CopcSquare, ItsNormalsPointUp) {
+    const io::Schema& schema = copc_->header().schema;
+    const io::Attribute* normal = schema.find(io::names::normal_oct);
+    ASSERT_TRUE(normal);
+    for (uint32_t node = 0; node < copc_->nodes().size(); ++node) {
+        const auto data = copc_->load(node);
+        ASSERT_TRUE(data) << data.error().line();
+        for (size_t i = 0; i < data->count; ++i) {
+            const auto n =
+                decode_normal(io::load<NormalCode>(&data->records[i * schema.stride + normal->offset]));
+            ASSERT_TRUE(n && n->z > 0.999f) << "node " << node;
+        }
+    }
+}
+
+TEST_F(CopcSquare, ItsFloorsAddUpToItsSurfaceAtEveryLevel) {
+    const auto nodes = copc_->nodes();
+    const uint32_t deepest = nodes.back().key.level;
+    ASSERT_GE(deepest, 2u);
+    for (uint32_t level = 0; level <= deepest; ++level) {
+        // A point's area is the floor of the deepest node around it, down to this level. The points of a node
+        // and its ancestors are as dense as its floor says, so its surface is its own points' share of that.
+        double covered = 0;
+        for (const NodeInfo& node : nodes) {
+            if (node.key.level > level || (node.child_mask && node.key.level < level)) continue;
+            const double own = 1 / node.area_floor[0],
+                         above = node.parent == kNoNode ? 0.0 : 1 / nodes[node.parent].area_floor[0];
+            covered += node.count / (own - above);
+        }
+        EXPECT_NEAR(covered, 100.0, 20.0) << "level " << level;
+    }
+    for (const NodeInfo& node : nodes)
+        for (size_t step = 1; step < kPrefixSteps; ++step)
+            EXPECT_GE(node.area_floor[step], node.area_floor[step - 1]);
+}
+
+TEST_F(CopcSquare, EveryPrefixOfANodeIsEven) {
+    const io::Schema& schema = copc_->header().schema;
+    const auto data = copc_->load(0);
+    ASSERT_TRUE(data) << data.error().line();
+    for (const size_t part : {4, 16, 64}) {
+        std::vector<glm::dvec3> points;
+        for (size_t i = 0; i < data->count / part; ++i)
+            points.push_back(io::position_of(schema, &data->records[i * schema.stride]));
+        double nearest = 1e9;
+        for (size_t i = 0; i < points.size(); ++i)
+            for (size_t j = 0; j < i; ++j) nearest = std::min(nearest, glm::distance(points[i], points[j]));
+        const double spacing = std::sqrt(100.0 / static_cast<double>(points.size()));
+        EXPECT_GT(nearest, 0.4 * spacing) << points.size() << " of " << data->count;
     }
 }
 
