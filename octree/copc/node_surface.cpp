@@ -1,9 +1,8 @@
 #include "octree/copc/node_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-
-#include "octree/build/subtree.h"
 
 namespace lucarne::octree {
 namespace {
@@ -19,6 +18,42 @@ std::span<const uint64_t> codes_in(std::span<const uint64_t> codes, const NodeKe
     return {begin, end};
 }
 
+/// The surface that points (sorted codes) in a node's cube show. They fill cells, four points or more each,
+/// and what blocks of 4 x 4 x 4 cells cover of the three planes is the projections of the surface in them,
+/// whose squares add up to its own (as those of a plane's area do).
+double surface_shown(std::span<const uint64_t> codes, uint32_t level, double root_size) {
+    constexpr uint32_t kBlockLevels = 2, kFewestPoints = 4;
+    const auto shift_of = [](uint32_t depth) { return 3 * (kMaxLevel - depth); };
+    const auto cells_at = [&](uint32_t depth) {
+        size_t cells = 1;
+        for (size_t i = 1; i < codes.size(); ++i)
+            cells += codes[i] >> shift_of(depth) != codes[i - 1] >> shift_of(depth);
+        return cells;
+    };
+    uint32_t depth = std::clamp(level + 1, kBlockLevels, kMaxLevel);
+    while (depth < kMaxLevel && kFewestPoints * cells_at(depth + 1) <= codes.size()) ++depth;
+    const uint32_t shift = shift_of(depth), block_shift = shift_of(depth - kBlockLevels);
+    double faces = 0;  // of a cell
+    for (size_t i = 0; i < codes.size();) {
+        const uint64_t block = codes[i] >> block_shift;
+        uint16_t covered[3] = {};
+        for (; i < codes.size() && codes[i] >> block_shift == block; ++i) {
+            const uint64_t cell = codes[i] >> shift;
+            const auto along = [&](uint32_t axis) {
+                return static_cast<uint32_t>((cell >> axis & 1) | (cell >> (3 + axis) & 1) << 1);
+            };
+            for (uint32_t axis = 0; axis < 3; ++axis)
+                covered[axis] |=
+                    static_cast<uint16_t>(1u << (along((axis + 1) % 3) * 4 + along((axis + 2) % 3)));
+        }
+        double squares = 0;
+        for (const uint16_t plane : covered) squares += std::pow(std::popcount(plane), 2);
+        faces += std::sqrt(squares);
+    }
+    const double width = root_size * std::exp2(-static_cast<double>(depth));
+    return faces * width * width;
+}
+
 }  // namespace
 
 void set_area_floors(std::span<NodeInfo> nodes, std::span<const uint64_t> codes, double root_size) {
@@ -29,8 +64,7 @@ void set_area_floors(std::span<NodeInfo> nodes, std::span<const uint64_t> codes,
         const auto inside = codes_in(codes, node.key);
         double surface = 0;
         if (root || inside.size() >= kEnough) {
-            const std::vector<float> unknown(inside.size(), 0.0f);
-            surface = surface_of(unknown, inside, node.key.level, root_size);
+            surface = surface_shown(inside, node.key.level, root_size);
         } else {
             const NodeInfo& parent = nodes[node.parent];
             const uint64_t below = parent.subtree_count - parent.count;

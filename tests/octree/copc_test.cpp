@@ -1,13 +1,14 @@
 // COPC files as octrees: real ones, and what lies in them.
-#include "io/formats/copc.h"
-
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "io/core/random.h"
 #include "io/formats/scan.h"
 #include "octree/attributes.h"
+#include "octree/build/build.h"
+#include "octree/export/export.h"
 #include "octree/open.h"
 #include "tests/octree/test_sources.h"
 
