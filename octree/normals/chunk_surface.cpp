@@ -46,10 +46,12 @@ class SiteEstimator {
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
         const Patch* patch = &nearest;  // that of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
+        double seen = reach;  // all that is nearer, in `patch`
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
-            if (take_window(nearest, around, reach))
+            seen = take_window(around, reach);
+            if (window_.count > nearest.count)
                 patch = improve(fit, fitter_.fit(window_, spacing), window_, *patch);
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
             if (!(fit.deviation < kPoorDeviation) && window_.count < most) {  // nearly alone, or on a line
@@ -66,7 +68,8 @@ class SiteEstimator {
             surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
             return 0;
         }
-        ShareCell cell(fit.normal, reach, nearest.count - 1);
+        if (patch != &window_) seen = reach;  // at least
+        ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen));
         heights_over(*patch, fit.normal, heights_);
         cell.cut(*patch, heights_, fit.layer);
         if (cell.open()) {
@@ -101,8 +104,8 @@ class SiteEstimator {
         return &patch;
     }
 
-    /// The window around a site; false if it holds no more than what is known.
-    bool take_window(const Patch& nearest, ChunkNeighbours::Surroundings& around, double reach) {
+    /// The window around a site; returns how far it goes.
+    double take_window(ChunkNeighbours::Surroundings& around, double reach) {
         double radius = kWindow * reach;
         for (int tries = 0; tries < 8; ++tries) {
             radius = around.within(radius, window_);
@@ -111,7 +114,7 @@ class SiteEstimator {
                 static_cast<double>(kUsualWindow * usual_) / static_cast<double>(window_.count);
             radius = std::max(reach, radius * std::sqrt(share));
         }
-        return window_.count > nearest.count;
+        return radius;
     }
 
     void connect(uint32_t site, const Patch& nearest, const Patch* wide, const glm::vec3& normal) {
@@ -149,18 +152,11 @@ class SiteEstimator {
     /// From one scan line to the next, and out of what noise has made a blob: to the nearest in each quarter
     /// that is low over the plane.
     void connect_across(SiteEdges& edges, const Patch& wide, const glm::vec3& normal) const {
-        const TangentFrame frame = tangent_frame(normal);
-        std::array<float, kSiteEdges - kNearEdges> best;
-        best.fill(std::numeric_limits<float>::max());
-        for (size_t i = 0; i < wide.count; ++i) {
-            const glm::vec3 offset = wide.offset(i);
-            const float x = glm::dot(offset, frame.x), y = glm::dot(offset, frame.y);
-            const size_t quarter = (x > 0 ? 1 : 0) + (y > 0 ? 2 : 0);
-            if (wide.distance2[i] > 0 && wide.distance2[i] < best[quarter] && goes_on(offset, normal)) {
-                best[quarter] = wide.distance2[i];
-                set_edge(edges[kNearEdges + quarter], wide.index[i]);
-            }
-        }
+        const auto nearest = nearest_by_quarter(wide, tangent_frame(normal), kSlope2);
+        static_assert(nearest.size() == kSiteEdges - kNearEdges);
+        for (size_t quarter = 0; quarter < nearest.size(); ++quarter)
+            if (nearest[quarter] < wide.count)
+                set_edge(edges[kNearEdges + quarter], wide.index[nearest[quarter]]);
     }
 
     ChunkNeighbours& neighbours_;

@@ -125,19 +125,6 @@ void LeafIndex::build_tree() {
     } while (count > 1);
 }
 
-/// Squared distances of a node's boxes from a box.
-void LeafIndex::distances(const Node& node, const Box& box, std::array<double, kFan>& distance2) {
-    distance2.fill(0);
-    for (size_t axis = 0; axis < 3; ++axis) {
-        const double to = box.min[static_cast<int>(axis)], from = box.max[static_cast<int>(axis)];
-        for (size_t i = 0; i < kFan; ++i) {
-            const double under = node.low[axis][i] - from, over = to - node.high[axis][i];
-            const double most = under > over ? under : over, apart = most > 0 ? most : 0;
-            distance2[i] += apart * apart;
-        }
-    }
-}
-
 bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const {
     const double limit2 = radius * radius;
     const glm::vec3 low(box.min - tile.origin), high(box.max - tile.origin);
@@ -148,7 +135,7 @@ bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t mo
     std::array<double, kFan> distance2;
     while (waiting > 0) {
         const Step step = stack[--waiting];
-        distances(levels_[step.level][step.node], box, distance2);
+        distances_of(levels_[step.level][step.node], box.min, box.max, distance2);
         // The first is taken up first, so that a tile is in the points' order.
         if (step.level > 0) {
             for (size_t i = kFan; i-- > 0;)
@@ -192,7 +179,7 @@ size_t LeafIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> ne
             }
             continue;
         }
-        distances(levels_[step.level - 1][step.node], {query, query}, distance2);
+        distances_of(levels_[step.level - 1][step.node], query, query, distance2);
         const size_t below = waiting;
         for (size_t i = kFan; i-- > 0;) {
             if (!(distance2[i] < worst())) continue;

@@ -18,17 +18,14 @@ class LeafIndex final : public PointIndex {
     std::span<const uint32_t> leaves() const { return first_; }
 
  private:
-    static constexpr size_t kFan = 8;
-    struct Node {
-        std::array<std::array<double, kFan>, 3> low, high;
-    };
+    static constexpr size_t kFan = kBoxes;
+    using Node = Boxes;  ///< of what is below
     /// A box of the tree that a search still has to look into: a node of `level`, or a leaf.
     struct Step {
         double distance2;
         uint32_t level, node;
     };
     static constexpr size_t kMostSteps = 12 * kFan;  ///< eight to the power of 11 leaves
-    static void distances(const Node& node, const Box& box, std::array<double, kFan>& distance2);
     void cut(uint32_t first, uint32_t last, std::span<const uint64_t> codes);
     void build_tree();
     Box bounds_of_leaf(size_t leaf) const;

@@ -15,13 +15,11 @@ constexpr float kPi = std::numbers::pi_v<float>;
 /// Corners up to this share of the reach count as known. A corner is the centre of an empty disc: beyond the
 /// reach only part of it is unseen, and in a Poisson pattern the chance of such a disc to be empty is e^-10.
 constexpr float kKnown = 0.8f;
+constexpr float kMostSeen = 2.0f;  ///< reaches: an open side is half of kLook away
 /// How much farther than the known neighbours the surface is looked for. At the rim of a dense patch these
 /// are all of the patch; a sparse point a third of its spacing away from it sees 16 of them within half its
 /// spacing. Twice as far would cost much in a scan with many rims.
 constexpr float kLook = 4.0f;
-/// What goes on with the surface: lower than this over the tangent plane, over the distance along it (14
-/// degrees).
-constexpr float kSlope = 0.25f;
 /// The least share that a cell at a rim fills of the disc around it. A strip between two neighbours of a rim
 /// then ends about a spacing outside.
 constexpr float kFill = 0.4f;
@@ -42,14 +40,10 @@ TangentFrame tangent_frame(const glm::vec3& normal) {
     return {normal, x, glm::cross(normal, x)};
 }
 
-bool goes_on(const glm::vec3& offset, const glm::vec3& normal) {
-    const float height = glm::dot(offset, normal);
-    return height * height <= kSlope * kSlope * (glm::dot(offset, offset) - height * height);
-}
-
-ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours)
+ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen)
     : frame_(tangent_frame(normal)),
       reach_(reach),
+      known_(kKnown * std::min(seen, kMostSeen * reach)),
       widest_search_(kLook * reach),
       rim_spacing_(reach * std::sqrt(kPi / 2 / static_cast<float>(neighbours))),
       least_(2 / widest_search_) {
@@ -64,10 +58,10 @@ void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, 
 }
 
 size_t ShareCell::cut_open(const Tile& around, const glm::vec3& centre, float radius) {
-    const Slope slope{centre, radius * radius, kSlope * kSlope, kCoincident * reach_ * reach_};
+    const Slope slope{centre, radius * radius, kSlope2, kCoincident * reach_ * reach_};
     Nearness further = nearness_;
     const size_t nearest = cut_by_slope(around, slope, frame_, reach_ * reach_, further);
-    const float known = 1 / (kKnown * reach_);
+    const float known = 1 / known_;
     for (size_t d = 0; d < kDirections; ++d) nearness_[d] = nearness_[d] < known ? further[d] : nearness_[d];
     least_ = least_of(nearness_);
     return nearest;
@@ -78,7 +72,7 @@ float ShareCell::widest_cut() const {
 }
 
 bool ShareCell::open() const {
-    return least_ * kKnown * reach_ < 1;
+    return least_ * known_ < 1;
 }
 
 bool ShareCell::closed() const {

@@ -18,9 +18,9 @@ namespace lucarne::octree {
 /// widest cell to be looked for.
 class ShareCell {
  public:
-    /// `reach`: distance of the farthest of the `neighbours` known so far; more are looked for within
-    /// widest_search().
-    ShareCell(const glm::vec3& normal, float reach, size_t neighbours);
+    /// `reach`: distance of the farthest of the nearest `neighbours`; `seen`: all that are nearer will be cut
+    /// by. More are looked for within widest_search().
+    ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen);
 
     /// Cuts off what is nearer to the neighbours in the layer low .. high; all `heights` are over the plane.
     void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer);
@@ -48,7 +48,7 @@ class ShareCell {
     float full_area() const;  ///< before it is shared with what is above and below
 
     TangentFrame frame_;
-    float reach_, widest_search_, rim_spacing_;
+    float reach_, known_, widest_search_, rim_spacing_;
     size_t coincident_ = 0;  ///< neighbours exactly above or below share the cell
     Nearness nearness_;      ///< one over how far it reaches
     float least_;            ///< of these
@@ -56,7 +56,8 @@ class ShareCell {
 
 /// Axes in the plane of a normal.
 TangentFrame tangent_frame(const glm::vec3& normal);
-/// Whether a point at an offset is low enough over the tangent plane to go on with the surface.
-bool goes_on(const glm::vec3& offset, const glm::vec3& normal);
+/// What goes on with the surface: its height over the tangent plane, over its distance along it, squared (14
+/// degrees).
+inline constexpr float kSlope2 = 0.25f * 0.25f;
 
 }  // namespace lucarne::octree

@@ -196,6 +196,15 @@ size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& fr
     return LUCARNE_CALL(cut_slope, tile, slope, frame, beyond2, nearness);
 }
 
+std::array<size_t, 4> nearest_by_quarter(const Patch& patch, const TangentFrame& frame, float slope2) {
+    return LUCARNE_CALL(nearest_in_quarters, patch, frame, slope2);
+}
+
+void distances_of(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
+                  std::array<double, kBoxes>& distance2) {
+    LUCARNE_CALL(box_distances, boxes, low, high, distance2);
+}
+
 float least_of(const Nearness& nearness) {
     return LUCARNE_CALL(least, nearness);
 }

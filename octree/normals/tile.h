@@ -86,6 +86,15 @@ struct Gap {
 };
 Gap gap_at(const std::vector<float>& heights, size_t count, const Range& range, float middle);
 
+/// Eight boxes, one array a side.
+inline constexpr size_t kBoxes = 8;
+struct Boxes {
+    std::array<std::array<double, kBoxes>, 3> low, high;
+};
+/// The squared distances of boxes from a box.
+void distances_of(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
+                  std::array<double, kBoxes>& distance2);
+
 /// Directions about a point in a plane. The first is turned by .2113 of a step, which is where a sum over
 /// directions integrates a function with kinks at multiples of 45 degrees (cells of a regular grid) to second
 /// order (the root of the second Bernoulli polynomial).
@@ -118,6 +127,10 @@ struct Slope {
 /// Cuts the cell by these; returns the nearest farther than the root of `beyond2`, or the tile's count.
 size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,
                     Nearness& nearness);
+
+/// The nearest points of a patch in each quarter of the plane that are low enough over it, the point itself
+/// left out; the patch's count where there is none.
+std::array<size_t, 4> nearest_by_quarter(const Patch& patch, const TangentFrame& frame, float slope2);
 
 float least_of(const Nearness& nearness);
 /// Of the distances 1 / nearness under `radius` squared; 0 where there are none.

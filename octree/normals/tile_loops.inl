@@ -234,6 +234,14 @@ LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y
     return sum;
 }
 
+/// The slot of the least of all lanes; of equal ones, the first slot.
+LUCARNE_INLINE size_t slot_of_least(const Lanes& least, const Words& slot) {
+    size_t best = 0;
+    for (size_t i = 1; i < kLanes; ++i)
+        if (least[i] < least[best] || (least[i] == least[best] && slot[i] < slot[best])) best = i;
+    return static_cast<size_t>(slot[best]);
+}
+
 [[gnu::noinline]] size_t cut_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame,
                                    float beyond2, Nearness& nearness) {
     Cuts cuts;
@@ -253,10 +261,47 @@ LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y
         cuts.take(chosen, u, v, length2, nearness);
     }
     cuts.apply(nearness);
-    size_t best = 0;
-    for (size_t i = 1; i < kLanes; ++i)
-        if (least[i] < least[best] || (least[i] == least[best] && slot[i] < slot[best])) best = i;
-    return static_cast<size_t>(slot[best]);
+    return slot_of_least(least, slot);
+}
+
+[[gnu::noinline]] std::array<size_t, 4> nearest_in_quarters(const Patch& patch, const TangentFrame& frame,
+                                                            float slope2) {
+    constexpr size_t kQuarters = 4;
+    Lanes least[kQuarters];
+    Words slot[kQuarters];
+    for (size_t q = 0; q < kQuarters; ++q) {
+        least[q] = std::numeric_limits<float>::max() - Lanes{};
+        slot[q] = static_cast<int32_t>(patch.count) - Words{};
+    }
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]),
+                    d2 = load<Lanes>(&patch.distance2[i]);
+        const Lanes h = along(frame.normal, x, y, z);
+        const Words low =
+            (h * h <= slope2 * (d2 - h * h)) & (d2 > 0.0f) & (kLane < static_cast<int32_t>(patch.count - i));
+        const Words right = along(frame.x, x, y, z) > 0.0f, up = along(frame.y, x, y, z) > 0.0f;
+        for (size_t q = 0; q < kQuarters; ++q) {
+            const Words nearer = low & (q & 1 ? right : ~right) & (q & 2 ? up : ~up) & (d2 < least[q]);
+            least[q] = nearer ? d2 : least[q];
+            slot[q] = nearer ? kLane + static_cast<int32_t>(i) : slot[q];
+        }
+    }
+    std::array<size_t, kQuarters> slots;
+    for (size_t q = 0; q < kQuarters; ++q) slots[q] = slot_of_least(least[q], slot[q]);
+    return slots;
+}
+
+[[gnu::noinline]] void box_distances(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
+                                     std::array<double, kBoxes>& distance2) {
+    Doubles sum{};
+    const Doubles none{};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const Doubles under = load<Doubles>(boxes.low[axis].data()) - high[static_cast<int>(axis)],
+                      over = low[static_cast<int>(axis)] - load<Doubles>(boxes.high[axis].data());
+        const Doubles most = under > over ? under : over, apart = most > none ? most : none;
+        sum += apart * apart;
+    }
+    store(distance2.data(), sum);
 }
 
 [[gnu::noinline]] float least(const Nearness& nearness) {
