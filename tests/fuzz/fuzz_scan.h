@@ -9,7 +9,7 @@
 
 #include "io/formats/scan.h"
 
-// What every fuzzer of a scan format does: open, read to the end, write what was read in both formats.
+// What every fuzzer of a scan format does: open, read to the end, write what was read in every format.
 namespace lucarne::io {
 
 inline void write_unfinished(const PointSource& source, std::span<const std::byte> records,
@@ -24,7 +24,7 @@ inline int fuzz_scan(std::string_view magic, const uint8_t* data, size_t size) {
     static const int file = memfd_create("lucarne-fuzz", MFD_CLOEXEC);
     if (size < magic.size() || ftruncate(file, 0) != 0) return -1;
     if (pwrite(file, data, size, 0) < 0 || pwrite(file, magic.data(), magic.size(), 0) < 0) return -1;
-    const auto source = open_scan("/proc/self/fd/" + std::to_string(file));
+    const auto source = open_scan("/proc/self/fd/" + std::to_string(file), {"", true});
     if (!source) return 0;
     const auto reader = (*source)->open();
     PointBatch batch;
@@ -35,6 +35,7 @@ inline int fuzz_scan(std::string_view magic, const uint8_t* data, size_t size) {
         const auto records = std::span<const std::byte>(batch.bytes).first(*got * (*source)->schema().stride);
         write_unfinished(**source, records, ".las");
         write_unfinished(**source, records, ".ply");
+        write_unfinished(**source, records, ".pcd");
     }
 }
 

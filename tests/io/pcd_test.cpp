@@ -206,7 +206,7 @@ TEST_F(Pcd, HeadersThatContradictThemselvesAreRejected) {
     EXPECT_THAT(reason("DATA ascii", "DATA huffman"), HasSubstr("unknown DATA 'huffman'"));
     EXPECT_THAT(reason("DATA ascii", "DATUM ascii"), HasSubstr("unknown entry 'DATUM'"));
     EXPECT_THAT(reason("DATA ascii\n1 2 3\n", ""), HasSubstr("without a DATA line"));
-    EXPECT_THAT(reason("1 2 3\n", "1 22222\n"), HasSubstr("line 11 on: it has 2 values"));
+    EXPECT_THAT(reason("1 2 3\n", "1 22222\n"), HasSubstr("line 12 on: it has 2 values"));
     EXPECT_THAT(reason("1 2 3\n", "1 2 3\n4 5 6\n"), HasSubstr("has 2 rows"));
 }
 
