@@ -42,7 +42,7 @@ TEST(BadScan, FilesThatAreNotWhatTheySayAreRejectedByEveryCommand) {
     las.said_old_points = 4'000'000'000;
     const std::vector<std::pair<std::string, std::string>> files = {
         {"", "is empty"},
-        {"What is this?", "no format that can be read"},
+        {"What is this?", "is named .las and has no such header"},
         {good.substr(0, 200), "ends inside its LAS header"},
         {good.substr(0, good.size() - 1), "1 are missing"},
         {las.bytes(), "promises 4000000000 points"},

@@ -101,6 +101,7 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
     io::testing::write_bytes(folder / "empty.las", "");
     io::testing::write_bytes(folder / "text.las", "this is no scan at all, whatever it is called");
     io::testing::write_bytes(folder / "taken.luc", "mine");
+    std::filesystem::create_directory(folder / "none");
     ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "ok.las")).code, 0);
     const auto ok = quoted(folder / "ok.las"), output = quoted(folder / "out.luc");
     struct Case {
@@ -110,9 +111,9 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
     };
     const Case cases[] = {
         {"convert " + quoted(folder / "absent.las") + " -o " + output, 3, "No such file"},
-        {"convert " + quoted(folder.path()) + " -o " + output, 3, "not a regular file"},
+        {"convert " + quoted(folder / "none") + " -o " + output, 3, "a folder without scans"},
         {"convert " + quoted(folder / "empty.las") + " -o " + output, 3, "is empty"},
-        {"convert " + quoted(folder / "text.las") + " -o " + output, 3, "no format that can be read"},
+        {"convert " + quoted(folder / "text.las") + " -o " + output, 3, "is named .las and has no such header"},
         {"convert " + ok + " -o " + quoted(folder / "taken.luc"), 1, "exists already"},
         {"convert " + ok + " -o " + quoted(folder / "no" / "where.luc"), 1, "does not exist"},
         {"convert " + ok + " -o " + output + " --memory lots", 2, "not an amount of memory"},
