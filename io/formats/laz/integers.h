@@ -4,6 +4,11 @@
 
 namespace lucarne::io::laz {
 
+/// Of a number of bits: every second one has a context of its own, up to a most.
+inline uint32_t even_up_to(uint32_t k, uint32_t most) {
+    return k < most ? k & ~1u : most;
+}
+
 /// Codes integers by how far they are from what was expected: the number k of bits of that, then its upper
 /// eight bits by a model for each k, and the rest plainly. (Isenburg 2013, "integer compressor".)
 class IntegerModel {

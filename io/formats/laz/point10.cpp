@@ -23,10 +23,6 @@ enum : uint32_t {
     kReturns = 32
 };
 
-uint32_t even_up_to(uint32_t k, uint32_t most) {
-    return k < most ? k & ~1u : most;
-}
-
 }  // namespace
 
 void Point10Decoder::start(const std::byte* first) {

@@ -41,10 +41,6 @@ constexpr uint8_t kReturnContext[16][16] = {
     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5}, {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5},
 };
 
-uint32_t even_up_to(uint32_t k, uint32_t most) {
-    return k < most ? k & ~1u : most;
-}
-
 /// 1: the first return, 2: the last, 3: both.
 uint32_t first_or_last(uint32_t number, uint32_t count) {
     return (number == 1 ? 1u : 0u) + (number >= count ? 2u : 0u);
