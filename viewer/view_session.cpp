@@ -149,7 +149,7 @@ bool ViewSession::take_navigation() {
 
 void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
-    const std::vector<int> keys = window_.take_pressed_keys();
+    const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard) run_actions(model_, keys);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
@@ -161,6 +161,7 @@ void ViewSession::take_input() {
 }
 
 void ViewSession::draw_panels() {
+    draw_menu_bar(model_);
     if (model_.show_panels) {
         draw_settings_panel(model_);
         draw_light_panel(model_);

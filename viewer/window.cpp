@@ -58,9 +58,10 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale;
     glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
         auto& pressed = static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_;
-        if (action == GLFW_PRESS && pressed.size() < kMostPressed) pressed.push_back(key);
+        if (action == GLFW_PRESS && pressed.size() < kMostPressed) 
+            pressed.push_back({key, modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT)});
     });
     ImGui_ImplGlfw_InitForOpenGL(window_, true);  // its callbacks call ours
     ImGui_ImplOpenGL3_Init("#version 450 core");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/core/options.h"
+#include "viewer/key_chord.h"
 #include "viewer/picture_worker.h"
 
 struct GLFWwindow;
@@ -35,9 +36,8 @@ class Window {
     /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
     void wait(double seconds);
     ImageSize framebuffer() const;  ///< pixels; 1x1 at least
-    /// Keys pressed since the last call, as GLFW numbers them: also those released again before a frame saw
-    /// them.
-    std::vector<int> take_pressed_keys() { return std::exchange(pressed_, {}); }
+    /// Keys pressed since the last call, also those released again before a frame saw them.
+    std::vector<KeyChord> take_pressed_keys() { return std::exchange(pressed_, {}); }
 
     /// From here ImGui and show() may be used, until draw().
     void begin_frame();
@@ -61,7 +61,7 @@ class Window {
     unsigned texture_ = 0;
     ImageSize texture_size_;
     uint64_t shown_ = 0;
-    std::vector<int> pressed_;
+    std::vector<KeyChord> pressed_;
 };
 
 }  // namespace lucarne::viewer

@@ -173,7 +173,7 @@ TEST_F(ViewerWindow, OrbitsAndMovesTheLightAndComesHome) {
     xdo("keyup shift");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *lamp) > 0.5; }))
         << "Shift and drag do not aim";
-    xdo("key Escape");
+    xdo("key ctrl+q");
     EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
     EXPECT_EQ(viewer_->code(), 0);
 }
@@ -215,7 +215,7 @@ TEST_F(ViewerWindow, ClosedWhileItConvertsItEndsWellAndLeavesNoHalfOfACache) {
     ASSERT_EQ(test::lucarne("generate nave --points 400k -o " + cache_).code, 0);
     start();
     ASSERT_TRUE(picture(lit));
-    xdo("key Escape");
+    xdo("key ctrl+q");
     ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
     EXPECT_EQ(viewer_->code(), 0);
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {

@@ -24,7 +24,7 @@ void draw_help(ViewModel& model) {
     if (ImGui::Begin("Keys and mouse", &model.show_help, flags) &&
         ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
         for (const Gesture& gesture : gestures()) row(gesture.gesture, gesture.what);
-        for (const Action& action : actions()) row(action.key_name, action.what);
+        for (const Action& action : actions()) row(key_text(action.chord).c_str(), action.name);
         ImGui::EndTable();
     }
     ImGui::End();

@@ -81,7 +81,7 @@ bool edit_light(gi::SceneLight& light, double scene_size) {
 
 void draw_light_panel(ViewModel& model) {
     const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos(ImVec2(8, font * 19), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos(ImVec2(8, font * 21), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(font * 22, 0), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Light")) {
         for (size_t i = 0; model.scene.lights.size() > 1 && i < model.scene.lights.size(); ++i) {

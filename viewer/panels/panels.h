@@ -4,6 +4,8 @@
 
 namespace lucarne::viewer {
 
+void draw_menu_bar(ViewModel& model);  ///< of the table of actions, with their keys
+
 // Each draws one ImGui window and writes the user's changes into the model.
 void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure
 void draw_light_panel(ViewModel& model);               ///< the selected spot

@@ -1,0 +1,37 @@
+#include <imgui.h>
+
+#include "viewer/actions.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// Opens the menus of a path from the outside in, calls `inside` in the innermost, and closes them. ImGui
+/// adds to a menu that was begun before in the frame.
+template <class Inside>
+void in_menu(std::string_view path, const Inside& inside) {
+    const size_t slash = path.find('/');
+    const std::string outer(path.substr(0, slash));
+    if (!ImGui::BeginMenu(outer.c_str())) return;
+    if (slash == std::string_view::npos)
+        inside();
+    else
+        in_menu(path.substr(slash + 1), inside);
+    ImGui::EndMenu();
+}
+
+}  // namespace
+
+void draw_menu_bar(ViewModel& model) {
+    if (!ImGui::BeginMainMenuBar()) return;
+    for (const Action& action : actions())
+        in_menu(action.menu, [&] {
+            const bool checked = action.checked && action.checked(model);
+            const bool enabled = !action.enabled || action.enabled(model);
+            if (ImGui::MenuItem(action.name, key_text(action.chord).c_str(), checked, enabled))
+                action.run(model);
+        });
+    ImGui::EndMainMenuBar();
+}
+
+}  // namespace lucarne::viewer
