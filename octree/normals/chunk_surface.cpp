@@ -37,8 +37,8 @@ class SiteEstimator {
         if (nearest.count < kLeastPoints) return 0;
         const bool whole_cloud = nearest.count < usual_;
         bool apart = false;
-        if (!whole_cloud && is_stray(nearest, usual_)) {
-            apart = is_near_enough(nearest) && fitter_.lies_in_plane_of_others(nearest);
+        if (!whole_cloud && is_stray(nearest, usual_, false)) {
+            apart = goes_on_with(nearest);
             if (!apart) return leave_out(site);
         }
         const float reach2 = nearest.distance2[nearest.count - 1], reach = std::sqrt(reach2);
@@ -54,12 +54,21 @@ class SiteEstimator {
             if (window_.count > nearest.count)
                 patch = improve(fit, fitter_.fit(window_, spacing), window_, *patch);
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
-            if (!(fit.deviation < kPoorDeviation) && window_.count < most) {  // nearly alone, or on a line
+            const bool cut_short = seen < kWindow * reach;  // by the many there are
+            if (window_.count >= most) {
+                further_.take_nearest(window_, most);
+            } else if (cut_short || !(fit.deviation < kPoorDeviation)) {  // or nearly alone, or on a line
                 around.nearest(most, further_);
                 const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
                 if (!around.knows(known)) return known;
-                if (further_.count == most && !apart && is_stray(further_, usual_)) return leave_out(site);
                 patch = improve(fit, fitter_.fit(further_, spacing), further_, *patch);
+            } else {
+                further_.clear();
+            }
+            // A few points in the air together have each other, and are seen to be alone by more.
+            if (further_.count == most && is_stray(further_, usual_, true)) {
+                apart = goes_on_with(further_);
+                if (!apart) return leave_out(site);
             }
         }
         connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, fit.normal);
@@ -91,6 +100,11 @@ class SiteEstimator {
 
  private:
     static constexpr size_t kLeastPoints = 4, kMostNearest = 128;
+
+    /// Whether a stray point is part of its neighbours' surface all the same.
+    bool goes_on_with(const Patch& others) {
+        return is_near_enough(others) && fitter_.lies_in_plane_of_others(others);
+    }
 
     double leave_out(uint32_t site) {
         surface_.areas[site] = kStrayArea;

@@ -24,6 +24,8 @@ constexpr float kIsolated = 0.75f;
 /// most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
 constexpr float kSparser = 7.0f;  // not one of 200,000 points of a random pattern
+/// ... where their plane is clear; where it is not, less will do.
+constexpr float kSparserInDoubt = 5.0f;
 /// But a sparse point beside a dense patch that lies in the patch's plane, within this share of its distance
 /// or this many deviations of the patch's own heights, goes on with its surface.
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
@@ -60,11 +62,14 @@ bool reaches_within(const Patch& near, size_t i, float limit2) {
 
 /// Whether the neighbourhood of the point is much sparser than those of its neighbours (as the local outlier
 /// factor compares them: Breunig et al. 2000), from the neighbours' distances among themselves. Within a
-/// surface the first neighbour asked ends it.
-bool stands_apart(const Patch& near) {
+/// surface the few that are asked first end it.
+bool stands_apart(const Patch& near, float sparser) {
     if (near.count <= kOwnRank) return false;
-    const float limit = near.distance2[kOwnRank] / (kSparser * kSparser);
-    if (!reaches_within(near, near.count - 1, limit) && !reaches_within(near, kOwnRank, limit)) return false;
+    const float limit = near.distance2[kOwnRank] / (sparser * sparser);
+    bool may_be = false;
+    for (size_t i = near.count - 1; !may_be && i >= kOwnRank; i -= kOwnRank)
+        may_be = reaches_within(near, i, limit);
+    if (!may_be) return false;
     size_t denser = 0;
     for (size_t i = 1; i < near.count; ++i) denser += reaches_within(near, i, limit);
     return 2 * denser >= near.count - 1;
@@ -135,11 +140,11 @@ bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch) {
            kInPlane * std::sqrt(patch.distance2[1]) + kInNoise * std::sqrt(plane.variances[0]);
 }
 
-bool is_stray(const Patch& nearest, size_t usual) {
+bool is_stray(const Patch& nearest, size_t usual, bool in_doubt) {
     const size_t near = std::min(nearest.count, usual);
     if (near <= kOwnRank) return false;
     const bool sees_from_afar = nearest.distance2[1] > kIsolated * kIsolated * nearest.distance2[near - 1];
-    return sees_from_afar || stands_apart(nearest);
+    return sees_from_afar || stands_apart(nearest, in_doubt ? kSparserInDoubt : kSparser);
 }
 
 float share_of_neighbours(const Patch& nearest) {
@@ -151,7 +156,8 @@ float share_of_neighbours(const Patch& nearest) {
 }
 
 bool is_near_enough(const Patch& nearest) {
-    return nearest.distance2[1] < kMostApart * kMostApart * share_of_neighbours(nearest);
+    return nearest.distance2[2] <  // the nearest may hang there with it
+           kMostApart * kMostApart * share_of_neighbours(nearest);
 }
 
 }  // namespace lucarne::octree

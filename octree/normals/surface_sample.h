@@ -52,8 +52,8 @@ class SurfaceFitter {
 
 /// Whether the point hangs in the air, away from all surfaces, as its neighbours, nearest first, tell: the
 /// nearest of the first `usual` is hardly nearer than the farthest, or the others stand much closer to each
-/// other.
-bool is_stray(const Patch& nearest, size_t usual);
+/// other. `in_doubt`: its normal is uncertain.
+bool is_stray(const Patch& nearest, size_t usual, bool in_doubt);
 /// The share of the surface that the neighbours of a point in the air have: what it is to be drawn with,
 /// having none of its own.
 float share_of_neighbours(const Patch& nearest);

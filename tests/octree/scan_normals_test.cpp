@@ -54,10 +54,12 @@ TEST(ScanNormals, FollowTheTruthIndoorsWithoutStations) {
 
 /// Mixed pixels are known by their distance from an even sampling of the scene, which is some millimetres
 /// dense.
+/// Those that are drawn must not be wide: such a disc hangs in the air for all to see.
 TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
     constexpr double kInTheAir = 0.05;
     for (const char* scene : {"two-rooms", "nave"}) {
-        const Scan scan = scan_of(scene, 400000);
+        // In the nave it is the dense walls behind that make points before them hard to tell.
+        const Scan scan = scan_of(scene, std::string(scene) == "nave" ? 3000000 : 400000);
         const Scan truth = scan_of(scene, 2000000, true);
         NormalOptions options;
         options.stations = scan.stations;
@@ -66,12 +68,13 @@ TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
         for (const auto& p : truth.cloud.points) surface.push_back(p);
         const auto index = make_flann_index(surface);
         size_t mixed = 0, mixed_drawn = 0, real = 0, real_left_out = 0;
+        double area = 0;  // of discs in the air, m^2
         for (size_t i = 0; i < scan.cloud.points.size(); ++i) {
             Neighbour nearest;
             index->merge_nearest(scan.cloud.points[i], std::span(&nearest, 1), 0, 0);
             const bool stray = found.normals[i] == glm::vec3(0.0f) && found.areas[i] <= kStrayArea;
             if (nearest.distance2 > kInTheAir * kInTheAir)
-                ++mixed, mixed_drawn += !stray;
+                ++mixed, mixed_drawn += !stray, area += found.areas[i];
             else
                 ++real, real_left_out += stray;
         }
@@ -79,10 +82,13 @@ TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
             static_cast<double>(mixed_drawn) / static_cast<double>(std::max<size_t>(1, mixed));
         const double lost =
             static_cast<double>(real_left_out) / static_cast<double>(std::max<size_t>(1, real));
-        std::printf("%s: of %zu points in the air %.3f are left out; of %zu on a surface %.5f\n", scene,
-                    mixed, 1 - drawn, real, lost);
+        std::printf(
+            "%s: of %zu points in the air %.3f are left out, the others have %.2f m^2; of %zu on a "
+            "surface %.5f are left out\n",
+            scene, mixed, 1 - drawn, area, real, lost);
         EXPECT_GT(mixed, 10u) << scene;
-        EXPECT_LT(drawn, 0.7) << scene;
+        EXPECT_LT(drawn, 0.4) << scene;
+        EXPECT_LT(area, 0.004 * static_cast<double>(mixed)) << scene;
         EXPECT_LT(lost, 0.002) << scene;
     }
 }
