@@ -13,7 +13,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kFocusCells = 32;  // the light cut's focus moves in steps of 1/32 of the root cube
+constexpr double kFocusCells = 48;  // the light cut's focus moves in steps of 1/48 of the extent
 constexpr int kStepsPerOctave = 64, kMostSteps = 20 * kStepsPerOctave;
 
 // Parts of the room that cuts keep to with those chosen before them. What the lights see comes first: where
@@ -72,13 +72,14 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
     };
     // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
     const auto& root = purpose.source.header().root;
-    const double cell = root.size / kFocusCells;
+    const double cell = std::max(purpose.extent, root.size * 1e-6) / kFocusCells;
     const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
     std::vector<glm::dvec3> lamps;
     for (const gi::SceneLight& lamp : purpose.lights)
         if (lamp.kind != gi::LightKind::directional) lamps.push_back(lamp.position);
     const auto light = [&](size_t, Points points) {
-        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light), lamps);
+        return octree::light_cut(purpose.source, focus, points.value_or(budgets.light), lamps,
+                                 purpose.extent);
     };
     const octree::View eye = octree_view(purpose.camera, purpose.size);
     const auto view = [&](size_t, Points points) {

@@ -29,6 +29,7 @@ struct CutPurpose {
     const std::vector<gi::SceneLight>& lights;
     uint32_t light_resolution;
     CutBudgets budgets;
+    double extent;  ///< of what is looked at, without far strays (octree/bulk.h); world units
 };
 
 /// What may be held of the nodes of all cuts together.

@@ -1,10 +1,12 @@
 #include "viewer/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <span>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "gi/post/accumulate.h"
 #include "gi/post/tone_map.h"
@@ -77,6 +79,7 @@ struct Pipeline::State {
 
     gi::Device& device;
     std::shared_ptr<const octree::NodeSource> source;
+    std::array<glm::dvec3, 2> bulk;  ///< of the source
     PipelineOptions options;
     gi::PassTimes times;
 
@@ -144,6 +147,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
                              "allow more");
     empty_pool();
     source = std::move(from);
+    bulk = octree::bulk_of(*source);
     const uint64_t capacity = pool_surfels();
     if (capacity > pool.capacity()) {
         pool = {};
@@ -171,8 +175,13 @@ void Pipeline::State::start_stream() {
 }
 
 void Pipeline::State::choose_cuts(const FrameRequest& request) {
-    const CutPurpose purpose{*source, request.camera, request.size, scene.lights, settings.light_resolution,
-                             budgets};
+    const CutPurpose purpose{*source,
+                             request.camera,
+                             request.size,
+                             scene.lights,
+                             settings.light_resolution,
+                             budgets,
+                             glm::distance(bulk[0], bulk[1])};
     const auto cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
     chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), cost});
     local = local_frame(request.camera.position, source->header().metres_per_unit);
@@ -348,8 +357,8 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.ahead_loads = streamed.ahead_loads;
     result.ahead_hits = streamed.ahead_hits;
     result.cut_share = chosen.share;
-    result.memory.host =
-        source->directory_bytes() + static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
+    result.memory.host = source->directory_bytes() +
+                         static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
     result.memory.device = device.memory_used();
     result.memory.resident = resident_memory();
     result.accumulated = std::max(accumulated, 1u);
@@ -369,8 +378,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     device.set_memory_cap(options.device_memory);
     LUCARNE_TRY(state.take_source(std::move(source)));
     state.fresh = false;  // there is no picture yet that half of one would spoil
-    const auto [low, high] = octree::bulk_of(*state.source);
-    state.scene = gi::default_scene(low, high, state.source->header().metres_per_unit);
+    state.scene = gi::default_scene(state.bulk[0], state.bulk[1], state.source->header().metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
     state.budgets = preset.budgets;

@@ -31,7 +31,7 @@ namespace {
 constexpr double kLeastFade = 1.25;
 /// Light cuts weigh against view cuts as a picture of this many pixels a radian would: coarser than a screen.
 constexpr double kLightPixelsPerRadian = 256;
-/// Share of the scene's diagonal around the centre of a light cut that is refined evenly.
+/// Share of the scene's extent around the centre of a light cut that is refined evenly.
 constexpr double kLightCoreShare = 1.0 / 16;
 /// The same around a lamp, as a share of that: what stands a hand's breadth before it counts.
 constexpr double kLampCoreShare = 1.0 / 16;
@@ -210,10 +210,10 @@ Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget,
 }
 
 Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
-              std::span<const glm::dvec3> lamps) {
+              std::span<const glm::dvec3> lamps, double extent) {
     const SourceHeader& header = source.header();
-    const double core =
-        kLightCoreShare * std::max(glm::length(header.max - header.min), header.root.size * 1e-6);
+    const double diagonal = extent > 0 ? extent : glm::length(header.max - header.min);
+    const double core = kLightCoreShare * std::max(diagonal, header.root.size * 1e-6);
     const Reach reach = [&](const Cube& cube, double) -> std::optional<double> {
         double nearest = std::max(core, distance_to(cube, centre));
         for (const glm::dvec3& lamp : lamps)

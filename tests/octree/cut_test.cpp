@@ -231,6 +231,18 @@ TEST(Cut, TheLightCutIsFineAtItsCentreCoarseFarAwayAndMissesNothing) {
         << "the far corner is behind any camera at the centre and there all the same";
 }
 
+/// A bird a hundred kilometres away makes the whole large, not what is looked at.
+TEST(Cut, TheLightCutIsFineWhereTheScanIsHoweverFarStraysAre) {
+    const PlaneSource source(8, 500, 1000.0);
+    const glm::dvec3 centre{200, 200, 2};
+    const auto levels = [&](double extent) {
+        const Cut cut = light_cut(source, centre, 100000, {}, extent);
+        return level_at(source, cut, 200, 200) - level_at(source, cut, 400, 400);
+    };
+    EXPECT_EQ(levels(100000), 0);
+    EXPECT_GT(levels(100), 1);
+}
+
 TEST(Cut, TheLightCutIsFineBeforeLampsToo) {
     const PlaneSource source(9, 500, 1000.0);
     const std::vector<glm::dvec3> lamps = {{900, 900, .5}, {900, 100, 2}};

@@ -25,7 +25,7 @@ class CutChoice : public testing::Test {
         lights[0].target = {32, 32, 0};
     }
 
-    CutPurpose purpose() const { return {source, camera, {640, 360}, lights, 512, CutBudgets{}}; }
+    CutPurpose purpose() const { return {source, camera, {640, 360}, lights, 512, CutBudgets{}, 100}; }
     static CutRoom room(uint64_t nodes) {
         return {nodes, [](const octree::NodeInfo&) { return uint64_t{1}; }};
     }
