@@ -66,6 +66,8 @@ Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipe
     picture->depth.reserve(pixels);
     for (const gi::GBufferTexel& texel : gbuffer.texels.download_all<gi::GBufferTexel>(pixels))
         picture->depth.push_back(texel.depth);
+    picture->ids = gbuffer.ids.download_all<uint32_t>(pixels);
+    picture->points = pipeline.points();
     picture->camera = pipeline.camera();
     picture->local_origin = pipeline.local_origin();
     picture->metres_per_unit = pipeline.source().header().metres_per_unit;

@@ -33,6 +33,8 @@ struct Picture {
     ImageSize size;
     std::vector<std::byte> rgba;  ///< row 0 on top
     std::vector<float> depth;     ///< m along the camera's forward axis; 0: nothing
+    std::vector<uint32_t> ids;    ///< of the surfels that are seen, gi::kNoSurfel where nothing is
+    std::shared_ptr<const gi::CutPoints> points;  ///< which points of the source they are
     gi::CameraView camera{};
     glm::dvec3 local_origin{0.0};
     double metres_per_unit = 1, exposure_ev = 0;

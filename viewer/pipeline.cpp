@@ -409,6 +409,9 @@ const gi::Scene& Pipeline::scene() const {
 const gi::GBuffer& Pipeline::gbuffer() const {
     return state_->gbuffer;
 }
+std::shared_ptr<const gi::CutPoints> Pipeline::points() const {
+    return state_->view.points();
+}
 const gi::CameraView& Pipeline::camera() const {
     return state_->camera;
 }

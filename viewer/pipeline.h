@@ -103,6 +103,7 @@ class Pipeline {
     std::vector<std::vector<glm::vec4>> layers() const;
     /// The last frame's G-buffer and how its coordinates are to be read, for picking and tools.
     const gi::GBuffer& gbuffer() const;
+    std::shared_ptr<const gi::CutPoints> points() const;  ///< behind the G-buffer's ids
     const gi::CameraView& camera() const;
     glm::dvec3 local_origin() const;
     /// The stops that the last picture was exposed by (measured where the scene leaves them open).

@@ -80,6 +80,16 @@ Surfel unpack(const std::vector<CutItem>& items, const CutItem& item, const Pack
 
 }  // namespace
 
+std::optional<PointPlace> CutPoints::find(uint32_t id) const {
+    const uint32_t block = id / kBlockSurfels;
+    const auto after = std::ranges::upper_bound(runs_, block, {}, &Run::first_block);
+    if (after == runs_.begin()) return std::nullopt;
+    const Run& run = *(after - 1);
+    const uint32_t index = id - run.first_block * kBlockSurfels;
+    if (index >= run.count) return std::nullopt;
+    return PointPlace{run.node, index};
+}
+
 void DeviceCut::bind() const {
     pool_->bind_texels(0, TexelView::four_words);
     items_.bind_texels(1, TexelView::four_words);
@@ -150,6 +160,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
     std::vector<CutItem> items;
     std::vector<CutBlock> blocks;
+    const auto cut_points = std::make_shared<CutPoints>();
     uint64_t surfels = 0;
     cut.fingerprint_ = 0;
     for (const CutEntry& entry : sorted) {
@@ -184,6 +195,8 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         const auto lod = [&](uint32_t points) {
             return area_code(stage_area(info, points, unit, item, above));
         };
+        if (item.count)
+            cut_points->runs_.push_back({static_cast<uint32_t>(blocks.size()), entry.node, item.count});
         for (uint32_t at = 0; at < item.count; at += kBlockSurfels) {
             const uint32_t count = std::min(item.count - at, kBlockSurfels);
             const uint32_t first =
@@ -203,6 +216,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     cut.surfels_ = static_cast<uint32_t>(surfels);  // at most the pool's capacity
     cut.blocks_ = static_cast<uint32_t>(blocks.size());
     cut.host_blocks_ = std::move(blocks);
+    cut.points_ = cut_points;
     cut.size_ = static_cast<float>(source.header().root.size * unit);
     return {};
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -30,6 +32,26 @@ struct CutEntry {
     uint32_t count = 0;  ///< prefix
 };
 
+/// A point of a source: the record `index` of what NodeSource::load gives for `node`.
+struct PointPlace {
+    uint32_t node = 0, index = 0;
+    bool operator==(const PointPlace&) const = default;
+};
+
+/// Which points the surfels of a cut are; outlives the cut.
+class CutPoints {
+ public:
+    /// The point behind an id of a G-buffer drawn of the cut; none for kNoSurfel and ids of no surfel.
+    std::optional<PointPlace> find(uint32_t id) const;
+
+ private:
+    friend class SurfelPool;
+    struct Run {
+        uint32_t first_block, node, count;
+    };
+    std::vector<Run> runs_;  ///< by first_block
+};
+
 /// A cut on the device, made by SurfelPool::make_cut; valid until a node of it is evicted or the pool goes.
 /// Bindings are fixed for every shader: see bind().
 class DeviceCut {
@@ -39,6 +61,7 @@ class DeviceCut {
     float size() const { return size_; }           ///< m, side of the source's root cube
     /// Of what the cut shows: equal for equal surfels at equal places.
     uint64_t fingerprint() const { return fingerprint_; }
+    std::shared_ptr<const CutPoints> points() const { return points_; }
     /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
     void bind() const;
 
@@ -51,6 +74,7 @@ class DeviceCut {
     uint32_t surfels_ = 0, blocks_ = 0;
     float size_ = 1;
     uint64_t fingerprint_ = 0;
+    std::shared_ptr<const CutPoints> points_;
 };
 
 /// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's

@@ -1,0 +1,147 @@
+#include "viewer/tools/pick.h"
+
+#include <semaphore>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/viewer/measured_scan.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using test::MeasuredScan;
+
+std::string field(const ExactPoint& point, std::string_view name) {
+    const auto found = std::ranges::find(point.fields, name, &PointField::name);
+    return found == point.fields.end() ? "missing" : found->value;
+}
+
+std::string in_thousandths(int64_t number) {
+    std::string digits = std::to_string(number);
+    return digits.insert(digits.size() - 3, ".");
+}
+
+class Pick : public testing::Test {
+ protected:
+    static void SetUpTestSuite() { scan_ = new MeasuredScan; }
+    static void TearDownTestSuite() { delete std::exchange(scan_, nullptr); }
+
+    /// The whole picture from a place relative to the front wall's corner.
+    std::shared_ptr<const Picture> look(const glm::dvec3& from, const glm::dvec3& to) {
+        std::counting_semaphore<> published(0);
+        const auto worker = PictureWorker::start({[] { return gi::Device::headless(); }, [] {}},
+                                                 scan_->source, {}, [&] { published.release(); });
+        if (!worker) return nullptr;
+        PictureRequest request;
+        request.engine = "direct";
+        const auto& header = scan_->source->header();
+        request.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
+        request.frame.camera.position = MeasuredScan::kCorner + from;
+        request.frame.camera.target = MeasuredScan::kCorner + to;
+        request.frame.size = {400, 300};
+        (*worker)->request(request);
+        for (;;) {
+            published.acquire();
+            if (!(*worker)->error()) return nullptr;
+            const auto picture = (*worker)->latest();
+            if (picture && picture->stats.nodes_pending == 0) return picture;
+        }
+    }
+    static MeasuredScan* scan_;
+    NodeCache cache_{scan_->source};
+};
+MeasuredScan* Pick::scan_ = nullptr;
+
+TEST_F(Pick, GivesTheVeryPointThatWasScannedWithItsLastDigitAndAllItsAttributes) {
+    const auto picture = look({2, -4, 1.5}, {2, 0, 1.5});
+    ASSERT_TRUE(picture);
+    int seen = 0;
+    for (uint64_t number = 0; number < MeasuredScan::kWall; number += 7) {
+        const glm::dvec3 position = MeasuredScan::position(number);
+        const auto projected = project(*picture, position);
+        if (!projected || projected->pixel.x < 5 || projected->pixel.y < 5 || projected->pixel.x > 395 ||
+            projected->pixel.y > 295 || MeasuredScan::window(position))
+            continue;
+        const glm::dvec2 place = projected->pixel / glm::dvec2(400, 300);
+        const auto picked = pick_point(*picture, place, cache_);
+        ASSERT_TRUE(picked);
+        ASSERT_TRUE(*picked) << number;
+        const ExactPoint& point = (*picked)->point;
+        ++seen;
+        ASSERT_EQ(field(point, "number"), std::to_string(number));
+        const glm::ivec3 integers = MeasuredScan::integers(number);
+        EXPECT_EQ(point.coordinates[0], in_thousandths(1'500'000'000 + int64_t{integers.x}));
+        EXPECT_EQ(point.coordinates[1], in_thousandths(200'000'000 + int64_t{integers.y}));
+        EXPECT_EQ(point.coordinates[2], in_thousandths(integers.z));
+        EXPECT_LE(glm::distance(point.position, position), 5e-10) << "a double's last bit at most";
+        EXPECT_EQ(field(point, "classification"), "6 building");
+        EXPECT_EQ(field(point, "intensity"), std::to_string(number % 1000));
+        EXPECT_EQ(field(point, "scan"), "walls.las");
+        EXPECT_EQ(std::stod(field(point, "gps_time")), 300'000'000.125 + 1e-6 * static_cast<double>(number));
+        EXPECT_NE(field(point, "normal (estimated)"), "missing");
+    }
+    EXPECT_GT(seen, 300);
+}
+
+TEST_F(Pick, NeverTakesAPointThatAWallHides) {
+    // Over a corner of the window, so that the edge of the wall runs through the picture.
+    const glm::dvec3 from(0.7, -3, 1.2);
+    const auto picture = look(from, {2.2, 0, 1.7});
+    ASSERT_TRUE(picture);
+    const glm::dvec3 eye = MeasuredScan::kCorner + from;
+    int front = 0, behind = 0;
+    for (int y = 2; y < 300; y += 5)
+        for (int x = 2; x < 400; x += 5) {
+            const auto picked = pick_point(*picture, {x / 400.0, y / 300.0}, cache_);
+            ASSERT_TRUE(picked);
+            if (!*picked) continue;
+            const glm::dvec3 p = (*picked)->point.position;
+            if (p.y - MeasuredScan::kCorner.y < 1) {
+                ++front;
+                continue;
+            }
+            ++behind;
+            // Where the sight line crosses the front wall there must be the window, or the wall's end.
+            const glm::dvec3 q = eye + (p - eye) * ((MeasuredScan::kCorner.y - eye.y) / (p.y - eye.y));
+            const glm::dvec3 at = q - MeasuredScan::kCorner;
+            const bool in_window = at.x > 1.45 && at.x < 2.55 && at.z > 0.95 && at.z < 2.05;
+            const bool beside = at.x < 0 || at.x > 4 || at.z < 0 || at.z > 3;
+            EXPECT_TRUE(in_window || beside) << at.x << " " << at.z;
+        }
+    EXPECT_GT(front, 500);
+    EXPECT_GT(behind, 200);
+}
+
+TEST_F(Pick, WhatWasPickedStandsWithinHalfAPixelOfItsPlace) {
+    const auto picture = look({1, -3, 2.5}, {2, 0, 1.5});
+    ASSERT_TRUE(picture);
+    int seen = 0;
+    for (int y = 3; y < 300; y += 13)
+        for (int x = 3; x < 400; x += 13) {
+            const auto world = picture->pick({(x + 0.5) / 400, (y + 0.5) / 300});
+            if (!world || !(picture->depth[static_cast<size_t>(y) * 400 + static_cast<size_t>(x)] > 0))
+                continue;
+            ++seen;
+            const auto back = project(*picture, *world);
+            ASSERT_TRUE(back);
+            EXPECT_LE(std::abs(back->pixel.x - (x + 0.5)), 0.5);
+            EXPECT_LE(std::abs(back->pixel.y - (y + 0.5)), 0.5);
+        }
+    EXPECT_GT(seen, 200);
+}
+
+TEST_F(Pick, WhereNothingIsSeenThereIsNoPoint) {
+    const auto picture = look({2, -4, 1.5}, {2, -8, 1.5});  // away from the walls
+    ASSERT_TRUE(picture);
+    for (const glm::dvec2 place :
+         {glm::dvec2(0.5, 0.5), glm::dvec2(0, 0), glm::dvec2(-1, 2), glm::dvec2(NAN, 0.5)}) {
+        const auto picked = pick_point(*picture, place, cache_);
+        ASSERT_TRUE(picked);
+        EXPECT_FALSE(*picked);
+    }
+    EXPECT_FALSE(project(*picture, MeasuredScan::kCorner)) << "behind the camera";
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

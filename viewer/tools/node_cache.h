@@ -1,0 +1,37 @@
+#pragma once
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "octree/source.h"
+
+namespace lucarne::viewer {
+
+/// The nodes of a source that were read last, so that neighbours of a point cost nothing. Thread-safe.
+class NodeCache {
+ public:
+    static constexpr uint64_t kMostBytes = uint64_t{32}
+                                           << 20;  ///< of records; the last node is kept in any case
+
+    NodeCache() = default;
+    explicit NodeCache(std::shared_ptr<const octree::NodeSource> source) : source_(std::move(source)) {}
+
+    const std::shared_ptr<const octree::NodeSource>& source() const { return source_; }
+    /// Errors: those of NodeSource::load.
+    Result<std::shared_ptr<const octree::NodeData>> node(uint32_t index);
+
+ private:
+    struct Kept {
+        uint32_t node;
+        std::shared_ptr<const octree::NodeData> data;
+    };
+    std::shared_ptr<const octree::NodeSource> source_;
+    std::mutex mutex_;
+    std::list<Kept> kept_;  ///< the last used first
+    std::unordered_map<uint32_t, std::list<Kept>::iterator> places_;
+    uint64_t bytes_ = 0;
+};
+
+}  // namespace lucarne::viewer

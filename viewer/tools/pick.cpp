@@ -1,0 +1,103 @@
+#include "viewer/tools/pick.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr int kReach = 5;               ///< pixels around the place
+constexpr size_t kMostCandidates = 12;  ///< surfels of which the points are read
+
+struct Candidate {
+    uint32_t id = 0;
+    int distance2 = 0;  ///< pixels^2, of its pixel nearest to the place
+};
+
+glm::dvec3 wide(const glm::vec4& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// What is seen at and around a pixel, the nearest first.
+std::vector<Candidate> candidates(const Picture& picture, const glm::ivec2& at) {
+    const int width = static_cast<int>(picture.size.width), height = static_cast<int>(picture.size.height);
+    std::vector<Candidate> found;
+    for (int y = std::max(at.y - kReach, 0); y <= std::min(at.y + kReach, height - 1); ++y)
+        for (int x = std::max(at.x - kReach, 0); x <= std::min(at.x + kReach, width - 1); ++x) {
+            const uint32_t id =
+                picture.ids[static_cast<size_t>(y) * picture.size.width + static_cast<size_t>(x)];
+            const int distance2 = (x - at.x) * (x - at.x) + (y - at.y) * (y - at.y);
+            if (id != gi::kNoSurfel && distance2 <= kReach * kReach) found.push_back({id, distance2});
+        }
+    std::ranges::sort(found, {}, [](const Candidate& c) { return std::pair(c.id, c.distance2); });
+    const auto again = std::ranges::unique(found, {}, &Candidate::id);
+    found.erase(again.begin(), again.end());
+    std::ranges::sort(found, {}, [](const Candidate& c) { return std::pair(c.distance2, c.id); });
+    if (found.size() > kMostCandidates) found.resize(kMostCandidates);
+    return found;
+}
+
+/// Whether the surfel is what the picture shows where its point is, give or take a pixel.
+bool shows(const Picture& picture, uint32_t id, const Projection& point) {
+    const int width = static_cast<int>(picture.size.width), height = static_cast<int>(picture.size.height);
+    const double most = 1e6;  // no int overflows
+    if (std::abs(point.pixel.x) > most || std::abs(point.pixel.y) > most) return false;
+    const int x = static_cast<int>(std::floor(point.pixel.x)),
+              y = static_cast<int>(std::floor(point.pixel.y));
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u)
+            if (picture.ids[static_cast<size_t>(v) * picture.size.width + static_cast<size_t>(u)] == id)
+                return true;
+    return false;
+}
+
+}  // namespace
+
+std::optional<Projection> project(const Picture& picture, const glm::dvec3& world) {
+    const gi::CameraView& view = picture.camera;
+    const glm::dvec3 offset = (world - picture.local_origin) * picture.metres_per_unit - wide(view.origin);
+    const glm::dvec3 right = wide(view.right), up = wide(view.up);
+    const double depth = glm::dot(offset, wide(view.forward));
+    if (!(depth > 0)) return std::nullopt;
+    const glm::dvec2 ndc(glm::dot(offset, right) / glm::dot(right, right) / depth,
+                         -glm::dot(offset, up) / glm::dot(up, up) / depth);
+    return Projection{(ndc + 1.0) / 2.0 * glm::dvec2(picture.size.width, picture.size.height), depth};
+}
+
+bool hidden(const Picture& picture, const Projection& point, double slack) {
+    const double width = picture.size.width, height = picture.size.height;
+    if (!(point.pixel.x >= 0 && point.pixel.x < width && point.pixel.y >= 0 && point.pixel.y < height))
+        return false;
+    const float shown = picture.depth[static_cast<size_t>(point.pixel.y) * picture.size.width +
+                                      static_cast<size_t>(point.pixel.x)];
+    return shown > 0 && shown < point.depth * (1 - slack);
+}
+
+Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm::dvec2& place,
+                                              NodeCache& cache) {
+    if (!(place.x >= 0 && place.x < 1 && place.y >= 0 && place.y < 1) || !picture.points) return std::nullopt;
+    const glm::dvec2 at(place.x * picture.size.width, place.y * picture.size.height);
+    std::optional<PickedPoint> best;
+    double nearest = INFINITY;
+    for (const Candidate& candidate : candidates(picture, glm::ivec2(at))) {
+        const auto found = picture.points->find(candidate.id);
+        if (!found) continue;
+        LUCARNE_ASSIGN(const auto data, cache.node(found->node));
+        if (found->index >= data->count) continue;
+        const size_t stride = picture.source->part_of(found->node).header.schema.stride;
+        ExactPoint point =
+            exact_point(*picture.source, found->node, data->records.data() + found->index * stride);
+        const auto projected = project(picture, point.position);
+        if (!projected || !shows(picture, candidate.id, *projected)) continue;
+        const double distance = candidate.distance2 == 0 ? -1 : glm::distance(projected->pixel, at);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        best = PickedPoint{*found, std::move(point)};
+        if (nearest < 0) break;  // the very pixel shows it
+    }
+    return best;
+}
+
+}  // namespace lucarne::viewer
