@@ -5,14 +5,12 @@
 #include <cstring>
 #include <string>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "gi/scene/scene.h"
 #include "gi/scene/surfel_pool.h"
 #include "octree/cache.h"
 #include "octree/cache_format.h"
 #include "octree/stream/cut.h"
+#include "tests/fuzz/fuzz.h"
 
 namespace lucarne::octree {
 namespace {
@@ -62,18 +60,16 @@ void use(const NodeSource& source) {
 }  // namespace
 }  // namespace lucarne::octree
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    using namespace lucarne;
-    static const int file = memfd_create("lucarne-fuzz", MFD_CLOEXEC);
-    if (size < octree::kFields) return -1;
-    std::vector<std::byte> bytes(octree::format::kFirstPayload + size - octree::kFields);
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
+    if (size < octree::kFields) return false;
+    std::string bytes(octree::format::kFirstPayload + size - octree::kFields, '\0');
     std::memcpy(bytes.data(), data, octree::kFields);
-    std::memcpy(bytes.data() + octree::format::kFirstPayload, data + octree::kFields, size - octree::kFields);
-    octree::reseal(bytes);
-    if (ftruncate(file, 0) != 0 || pwrite(file, bytes.data(), bytes.size(), 0) < 0) return -1;
-    const std::string path = "/proc/self/fd/" + std::to_string(file);
-    (void)octree::verify_cache(path, [](uint64_t) {});
-    const auto opened = octree::open_cache(path);
+    std::memcpy(&bytes[octree::format::kFirstPayload], data + octree::kFields, size - octree::kFields);
+    octree::reseal(std::as_writable_bytes(std::span(bytes)));
+    const auto path = memory_file(bytes);
+    if (!path) return false;
+    (void)octree::verify_cache(*path, [](uint64_t) {});
+    const auto opened = octree::open_cache(*path);
     if (opened) octree::use(**opened);
-    return 0;
+    return true;
 }

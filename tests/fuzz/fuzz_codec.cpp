@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "octree/codec/payload.h"
+#include "tests/fuzz/fuzz.h"
 
 namespace lucarne::octree::codec {
 namespace {
@@ -22,14 +23,14 @@ io::Schema schema_of(uint8_t kind) {
 }  // namespace
 }  // namespace lucarne::octree::codec
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    using namespace lucarne::octree::codec;
-    if (size < 3) return -1;
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
+    using namespace octree::codec;
+    if (size < 3) return false;
     const auto schema = schema_of(data[0]);
     const size_t count = 1 + (data[1] | data[2] << 8) % 4096, bytes = size - 3;
     std::vector<std::byte> payload(bytes + kReadAhead), records(count * schema.stride);
     if (bytes > 0) std::memcpy(payload.data(), data + 3, bytes);
     const auto columns = columns_of(schema);
     (void)PayloadDecoder(columns, schema.stride).decode(std::span(payload).first(bytes), records);
-    return 0;
+    return true;
 }

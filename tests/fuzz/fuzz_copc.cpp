@@ -3,25 +3,22 @@
 #include <cstring>
 #include <string>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "octree/copc/copc.h"
 #include "octree/stream/cut.h"
+#include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    using namespace lucarne;
-    static const int file = memfd_create("lucarne-fuzz", MFD_CLOEXEC);
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     constexpr size_t kFront = 589;
-    if (size < kFront) return -1;
+    if (size < kFront) return false;
     std::string bytes(reinterpret_cast<const char*>(data), size);
     std::memcpy(&bytes[0], "LASF", 4);
     std::memcpy(&bytes[24], "\x01\x04", 2);
     std::memcpy(&bytes[94], "\x77\x01", 2);  // a header of 375 bytes
     std::memcpy(&bytes[377], "copc\0\0\0\0\0\0\0\0\0\0\0\0\x01\0\xa0\0", 20);
-    if (ftruncate(file, 0) != 0 || pwrite(file, bytes.data(), size, 0) < 0) return -1;
-    const auto opened = octree::open_copc("/proc/self/fd/" + std::to_string(file));
-    if (!opened) return 0;
+    const auto path = memory_file(bytes);
+    if (!path) return false;
+    const auto opened = octree::open_copc(*path);
+    if (!opened) return true;
     const octree::NodeSource& source = **opened;
     for (uint32_t node = 0; node < source.nodes().size(); ++node) (void)source.load(node);
     octree::View view;
@@ -30,5 +27,5 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     (void)octree::view_cut(source, view, 1000);
     (void)octree::light_view_cut(source, view, 1000);
     (void)octree::light_cut(source, source.header().min, 1000);
-    return 0;
+    return true;
 }

@@ -1,13 +1,12 @@
 #include "tests/fuzz/fuzz_scan.h"
 #include "tests/io/e57_builder.h"
 
-using namespace lucarne::io;
-
 /// The input is an E57 file without checksums, which would stop every change. They are made here, and the
 /// header is put right, so that what is tried are lies and no accidents.
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
+    using namespace io;
     std::string logical(reinterpret_cast<const char*>(data), size);
-    if (size < e57::kHeaderBytes) return -1;
+    if (size < e57::kHeaderBytes) return false;
     std::string header("ASTM-E57\1\0\0\0\0\0\0\0", 16);
     testing::put(header, (size + e57::kPageContent - 1) / e57::kPageContent * e57::kPageBytes);
     logical.replace(0, header.size(), header);
@@ -17,6 +16,5 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         testing::put(place, uint64_t{size - xml});
         logical.replace(24, place.size(), place);
     }
-    const std::string file = testing::with_checksums(logical);
-    return fuzz_scan("", reinterpret_cast<const uint8_t*>(file.data()), file.size());
+    return scan(testing::with_checksums(logical));
 }

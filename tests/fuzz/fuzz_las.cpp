@@ -1,5 +1,5 @@
 #include "tests/fuzz/fuzz_scan.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    return lucarne::io::fuzz_scan("LASF", data, size);
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
+    return scan("LASF", data, size);
 }

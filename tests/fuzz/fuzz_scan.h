@@ -1,42 +1,48 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <string>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "io/formats/scan.h"
+#include "tests/fuzz/fuzz.h"
 
 // What every fuzzer of a scan format does: open, read to the end, write what was read in every format.
-namespace lucarne::io {
+namespace lucarne::fuzz {
 
-inline void write_unfinished(const PointSource& source, std::span<const std::byte> records,
+/// A reader that still gives points after so many refuses nothing, and a few KiB may well hold millions.
+inline constexpr size_t kMostPoints = 200'000;
+
+inline void write_unfinished(const io::PointSource& source, std::span<const std::byte> records,
                              const char* extension) {
     const auto path = std::filesystem::temp_directory_path() / (std::string("lucarne-fuzz") + extension);
-    const auto writer = create_scan(path, source.schema(), source.info(), {});
+    const auto writer = io::create_scan(path, source.schema(), source.info(), {});
     if (writer) (void)(*writer)->write(records);
 }
 
-/// `magic` replaces the first bytes, so that every input reaches the format's own parser.
-inline int fuzz_scan(std::string_view magic, const uint8_t* data, size_t size) {
-    static const int file = memfd_create("lucarne-fuzz", MFD_CLOEXEC);
-    if (size < magic.size() || ftruncate(file, 0) != 0) return -1;
-    if (pwrite(file, data, size, 0) < 0 || pwrite(file, magic.data(), magic.size(), 0) < 0) return -1;
-    const auto source = open_scan("/proc/self/fd/" + std::to_string(file), {"", true});
-    if (!source) return 0;
+/// Of a file of these bytes.
+inline bool scan(std::string_view bytes) {
+    const auto path = memory_file(bytes);
+    if (!path) return false;
+    const auto source = io::open_scan(*path, {"", true});
+    if (!source) return true;
     const auto reader = (*source)->open();
-    PointBatch batch;
-    for (bool first = true;; first = false) {
+    if (!reader) return true;
+    io::PointBatch batch;
+    for (size_t points = 0; points < kMostPoints; points += batch.count) {
         const auto got = (*reader)->read(batch, 1000);
-        if (!got || *got == 0) return 0;
-        if (!first) continue;
+        if (!got || *got == 0) break;
+        if (points > 0) continue;
         const auto records = std::span<const std::byte>(batch.bytes).first(*got * (*source)->schema().stride);
-        write_unfinished(**source, records, ".las");
-        write_unfinished(**source, records, ".ply");
-        write_unfinished(**source, records, ".pcd");
+        for (const char* extension : {".las", ".laz", ".ply", ".pcd"})
+            write_unfinished(**source, records, extension);
     }
+    return true;
 }
 
-}  // namespace lucarne::io
+/// `magic` replaces the first bytes, so that every input reaches the format's own parser.
+inline bool scan(std::string_view magic, const uint8_t* data, size_t size) {
+    if (size < magic.size()) return false;
+    std::string bytes(reinterpret_cast<const char*>(data), size);
+    return scan(bytes.replace(0, magic.size(), magic));
+}
+
+}  // namespace lucarne::fuzz

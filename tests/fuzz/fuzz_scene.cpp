@@ -1,8 +1,7 @@
-#include <string_view>
-
 #include "gi/scene/scene.h"
+#include "tests/fuzz/fuzz.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    (void)lucarne::gi::parse_scene({reinterpret_cast<const char*>(data), size}, "fuzz", "/nonexistent");
-    return 0;
+bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
+    (void)gi::parse_scene({reinterpret_cast<const char*>(data), size}, "fuzz", "/nonexistent");
+    return true;
 }

@@ -1,12 +1,9 @@
-// make_codec_seed FILE: a payload with every method of octree/codec in the form that fuzz_codec takes.
-#include <fstream>
-
+// A payload with every method of octree/codec in the form that fuzz_codec takes.
 #include "io/core/random.h"
 #include "octree/codec/payload.h"
+#include "tests/fuzz/seeds/seeds.h"
 
-int main(int count, char** arguments) {
-    using namespace lucarne;
-    if (count != 2) return 2;
+void lucarne::fuzz::codec_seeds(const Seeds& seeds) {
     constexpr uint16_t kPoints = 300;
     io::Schema schema;  // the one of kind 204 in fuzz_codec.cpp
     schema.position = io::PositionType::i32_scaled;
@@ -25,8 +22,7 @@ int main(int count, char** arguments) {
         passes[i] = static_cast<uint8_t>(random.next() % 8);
     }
     octree::codec::PayloadEncoder(schema).encode(records, passes, payload);
-    std::ofstream out(arguments[1], std::ios::binary);
-    for (const int byte : {204, (kPoints - 1) & 0xff, (kPoints - 1) >> 8}) out.put(static_cast<char>(byte));
-    out.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
-    return out.good() ? 0 : 1;
+    std::string bytes = {static_cast<char>(204), static_cast<char>((kPoints - 1) & 0xff), (kPoints - 1) >> 8};
+    bytes.append(reinterpret_cast<const char*>(payload.data()), payload.size());
+    seeds.add("all-methods", bytes);
 }

@@ -1,12 +1,11 @@
-// Writes small E57 files without checksums, one of each kind, for fuzz_e57.
-#include <filesystem>
-#include <fstream>
-
+// Small E57 files without checksums, one of each kind, as fuzz_e57 takes them.
+#include "tests/fuzz/seeds/seeds.h"
 #include "tests/io/e57_builder.h"
 
-using namespace lucarne::io::testing;
-
+namespace lucarne::fuzz {
 namespace {
+
+using namespace io::testing;
 
 std::string three(const std::string& name) {
     return integer_field(name + 'X', -1000, 1000) + integer_field(name + 'Y', 0, 1000) +
@@ -46,12 +45,30 @@ BuiltFile spherical() {
     return {{scan}};
 }
 
+/// Every width of integers, so many values that bits cross bytes, in packets of uneven lengths.
+BuiltFile widths() {
+    BuiltScan scan{kXyzFields, 6, ""};
+    std::vector<std::string> streams(3, std::string(48, '\x3f'));
+    for (const int bits : {0, 1, 3, 7, 8, 12, 16, 17, 31, 32, 48, 62}) {
+        scan.prototype += integer_field(fmt::format("width{}", bits), -1, -1 + ((int64_t{1} << bits) - 1));
+        streams.push_back(std::string(static_cast<size_t>(6 * bits + 7) / 8, '\x5b'));
+    }
+    scan.packets = other_packet('\2', 8) + data_packet(streams);
+    return {{scan}};
+}
+
 }  // namespace
 
-int main(int count, char** arguments) {
-    if (count != 2) return 2;
-    const std::filesystem::path folder(arguments[1]);
-    int number = 0;
-    for (const BuiltFile& file : {coloured(), posed(), spherical(), BuiltFile{}})
-        std::ofstream(folder / fmt::format("seed{}", number++), std::ios::binary) << file.logical();
+void e57_seeds(const Seeds& seeds) {
+    const auto add = [&](const std::string& name, const BuiltFile& file) {
+        seeds.add_scan(name, file.bytes());
+        seeds.add(name, file.logical());
+    };
+    add("coloured", coloured());
+    add("posed", posed());
+    add("spherical", spherical());
+    add("widths", widths());
+    add("empty", {});
 }
+
+}  // namespace lucarne::fuzz

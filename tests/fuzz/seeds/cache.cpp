@@ -1,14 +1,12 @@
-// make_cache_seed FILE: a cache of few points and several levels in the form that fuzz_cache takes. The
-// converter makes caches of one node of so few points.
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+// A cache of few points and several levels in the form that fuzz_cache takes. The converter makes caches of
+// one node of so few points.
+#include <stdexcept>
 #include <string>
 
 #include <glm/common.hpp>
 
 #include "octree/cache_writer.h"
+#include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::octree {
 namespace {
@@ -70,17 +68,11 @@ Result<void> write(const std::filesystem::path& path) {
 }  // namespace
 }  // namespace lucarne::octree
 
-int main(int count, char** arguments) {
-    if (count != 2) return 2;
-    const std::filesystem::path path = std::filesystem::absolute(arguments[1]);
-    const auto written = lucarne::octree::write(path);
-    if (!written) {
-        std::fputs((written.error().line() + "\n").c_str(), stderr);
-        return 1;
-    }
-    std::ifstream in(path, std::ios::binary);
-    std::string bytes(std::istreambuf_iterator<char>(in), {});
-    bytes.erase(88, lucarne::octree::format::kFirstPayload - 88);
-    std::ofstream(path, std::ios::binary) << bytes;
-    return 0;
+void lucarne::fuzz::cache_seeds(const Seeds& seeds) {
+    const auto path = seeds.folder() / "levels.luc";
+    const auto written = octree::write(path);
+    if (!written) throw std::runtime_error(written.error().line());
+    std::string bytes = Seeds::taken(path);
+    bytes.erase(88, octree::format::kFirstPayload - 88);
+    seeds.add("levels", bytes);
 }

@@ -1,0 +1,58 @@
+// The entry point of every fuzzer. libFuzzer's own limits are by the wall clock, which a busy machine
+// stretches; these are by the processor's.
+#include <csignal>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "tests/fuzz/fuzz.h"
+
+namespace lucarne::fuzz {
+namespace {
+
+/// A bad file is refused within a second, and AddressSanitizer with UndefinedBehaviorSanitizer makes the
+/// readers about five times slower (README.md).
+constexpr double kMostSeconds = 5;
+
+double cpu_seconds() {
+    timespec used{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+/// A finding of its own name in the report.
+[[noreturn]] void refused_too_late() {
+    std::abort();
+}
+
+/// LUCARNE_FUZZ_CPU: after so many seconds the fuzzer ends; 0 or unset: never.
+double whole_seconds() {
+    const char* text = std::getenv("LUCARNE_FUZZ_CPU");
+    return text ? std::strtod(text, nullptr) : 0;
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> memory_file(std::string_view bytes) {
+    static const int file = memfd_create("lucarne-fuzz", MFD_CLOEXEC);
+    if (ftruncate(file, 0) != 0) return std::nullopt;
+    if (pwrite(file, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+        return std::nullopt;
+    return "/proc/self/fd/" + std::to_string(file);
+}
+
+}  // namespace lucarne::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    using namespace lucarne::fuzz;
+    static const double whole = whole_seconds();
+    const double begin = cpu_seconds();
+    const bool useful = run(data, size);
+    const double end = cpu_seconds();
+    if (end - begin > kMostSeconds) refused_too_late();
+    if (whole > 0 && end > whole) std::raise(SIGUSR1);  // libFuzzer ends and prints its figures
+    return useful ? 0 : -1;
+}

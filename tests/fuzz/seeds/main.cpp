@@ -1,0 +1,83 @@
+// fuzz_seeds FOLDER: FOLDER/<target>/ full of small valid files, made by our own writers and by hand. Scenes
+// and camera paths are those of data/.
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "io/formats/scan.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/seeds/seeds.h"
+
+namespace lucarne::fuzz {
+
+Seeds::Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::create_directories(folder_);
+}
+
+void Seeds::add(std::string_view name, std::string_view bytes) const {
+    std::ofstream out(folder_ / name, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!out.flush())
+        throw std::runtime_error(fmt::format("{} cannot be written", (folder_ / name).string()));
+}
+
+void Seeds::add_scan(std::string_view name, std::string_view bytes) const {
+    add(name, bytes);
+    const auto refuse = [&](const std::string& why) {
+        throw std::runtime_error(fmt::format("the seed {} is refused: {}", (folder_ / name).string(), why));
+    };
+    const auto source = io::open_scan(folder_ / name, {"", true});
+    if (!source) return refuse(source.error().line());
+    const auto reader = (*source)->open();
+    if (!reader) return refuse(reader.error().line());
+    io::PointBatch batch;
+    for (;;) {
+        const auto got = (*reader)->read(batch, 1000);
+        if (!got) return refuse(got.error().line());
+        if (*got == 0) return;
+    }
+}
+
+std::string Seeds::taken(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(std::istreambuf_iterator<char>(in), {});
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+namespace {
+
+void make_all(const std::filesystem::path& folder) {
+    const std::filesystem::path data = LUCARNE_SOURCE_DIR "/data";
+    const auto copies = std::filesystem::copy_options::overwrite_existing;
+    std::filesystem::create_directories(folder);
+    std::filesystem::copy(data / "scenes", folder / "scene", copies);
+    std::filesystem::copy(data / "flythroughs", folder / "path", copies);
+    cache_seeds(Seeds(folder / "cache"));
+    codec_seeds(Seeds(folder / "codec"));
+    copc_seeds(Seeds(folder / "copc"));
+    e57_seeds(Seeds(folder / "e57"));
+    las_seeds(Seeds(folder / "las"));
+    laz_seeds(Seeds(folder / "laz"));
+    pcd_seeds(Seeds(folder / "pcd"));
+    picture_seeds(Seeds(folder / "exr"), Seeds(folder / "hdr"), Seeds(folder / "png"));
+    ply_seeds(Seeds(folder / "ply"));
+    text_seeds(Seeds(folder / "text"));
+}
+
+}  // namespace
+}  // namespace lucarne::fuzz
+
+int main(int count, char** arguments) {
+    if (count != 2) return 2;
+    try {
+        lucarne::fuzz::make_all(std::filesystem::absolute(arguments[1]));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "fuzz_seeds: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
