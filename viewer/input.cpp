@@ -91,7 +91,7 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
 }
 
 void add_input_options(CLI::App& command, InputOptions& options) {
-    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")->required();
+    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")->required(options.required);
     command.add_flag(
         "--no-cache", options.no_cache,
         "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
@@ -99,7 +99,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
     add_read_options(command, options.read);
 }
 
-Result<OpenInput> open_growing(const InputOptions& options) {
+Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening) {
     OpenInput open;
     if (has_octree(options.paths)) {
         LUCARNE_ASSIGN(open.source, open_inputs(options.paths));
@@ -112,6 +112,10 @@ Result<OpenInput> open_growing(const InputOptions& options) {
     octree::GrowingOptions growing;
     growing.build = std::move(scans.build);
     growing.build.memory = kMemoryBeside;
+    growing.sample_points = opening.sample_points;
+    growing.sampling = opening.sampling;
+    // A temporary folder goes with the program, and what is in it.
+    if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;
     LUCARNE_ASSIGN(open.build, GrowingBuild::open(std::move(scans.inputs), std::move(growing)));
     open.source = open.build->source();
     return open;

@@ -22,6 +22,7 @@ struct InputOptions {
     std::vector<std::string> paths;
     bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
     io::ReadOptions read;
+    bool required = true;  ///< at least one path
 };
 
 /// Declares what a user may know better than a scan file. `options` outlives the command.
@@ -46,6 +47,14 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
+/// How a window opens what it shows while it is being converted.
+struct Opening {
+    uint64_t sample_points = 400'000;  ///< of a scan without a cache
+    octree::Sampling sampling;         ///< told while they are read; may end it
+    /// A conversion that is stopped, or interrupted otherwise, leaves what the next one goes on from.
+    bool resumable = false;
+};
+
 /// What can be drawn of the input at once.
 struct OpenInput {
     std::shared_ptr<const octree::NodeSource> source;
@@ -55,7 +64,7 @@ struct OpenInput {
 
 /// Caches and COPC files as they are, or the one kept of these scans, or a sample of them and their build. Errors: those of the
 /// readers.
-Result<OpenInput> open_growing(const InputOptions& options);
+Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening = {});
 
 /// The same, waiting for a cache that is not there yet. Errors: those of the builder as well.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const InputOptions& options);

@@ -26,6 +26,7 @@ class Navigation {
     /// `scene_size`: the scene's diagonal, world units; sets the first flying speed.
     explicit Navigation(double scene_size) : speed_(scene_size / 20) {}
 
+    void set_scene_size(double scene_size) { speed_ = scene_size / 20; }
     NavigationMode mode() const { return mode_; }
     void set_mode(NavigationMode mode) { mode_ = mode; }
     double speed() const { return speed_; }  ///< world units a second

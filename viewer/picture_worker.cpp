@@ -12,6 +12,13 @@ namespace {
 constexpr uint32_t kMostAccumulated = 256;  ///< pictures averaged at rest before the worker rests too
 constexpr int kPickRadius = 4;              ///< pixels
 
+/// What the pipeline was last told, so that only changes are handed on: each starts its average again.
+struct Told {
+    uint64_t request = 0;
+    std::string engine;
+    uint64_t scene_version = UINT64_MAX;
+};
+
 }  // namespace
 
 struct PictureWorker::State {
@@ -19,7 +26,8 @@ struct PictureWorker::State {
     std::condition_variable changed;
     PictureRequest wanted;
     uint64_t wanted_number = 0;
-    std::shared_ptr<const octree::NodeSource> next_source;  ///< to be drawn from instead
+    std::optional<std::shared_ptr<const octree::NodeSource>>
+        next_source;  ///< to be drawn from instead; or nothing
     std::shared_ptr<const Picture> latest;
     Result<void> error;
     gi::DeviceInfo device;
@@ -27,20 +35,20 @@ struct PictureWorker::State {
     std::function<void()> published;
     std::thread thread;
 
-    void work(const WorkerDevice& device_of, const std::shared_ptr<const octree::NodeSource>& source,
-              const PipelineOptions& options, std::promise<Result<void>> started);
-    void make_pictures(gi::Device& gl, Pipeline& pipeline, std::shared_ptr<const octree::NodeSource> first);
+    // Of the worker's thread:
+    PipelineOptions options;
+    std::unique_ptr<Pipeline> pipeline;  ///< none without a source
+    std::shared_ptr<const octree::NodeSource> shown;
+    Told told;
+
+    void work(const WorkerDevice& device_of, std::shared_ptr<const octree::NodeSource> source,
+              std::promise<Result<void>> started);
+    Result<void> take_source(gi::Device& gl, std::shared_ptr<const octree::NodeSource> other);
+    void make_pictures(gi::Device& gl);
     void publish(Result<std::shared_ptr<Picture>> made, uint64_t request);
 };
 
 namespace {
-
-/// What the pipeline was last told, so that only changes are handed on: each starts its average again.
-struct Told {
-    uint64_t request = 0;
-    std::string engine;
-    uint64_t scene_version = UINT64_MAX;
-};
 
 Result<void> tell(Pipeline& pipeline, const PictureRequest& request, uint64_t number, Told& told) {
     if (told.request == number) return {};
@@ -118,36 +126,57 @@ void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64
     published();
 }
 
-void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline,
-                                         std::shared_ptr<const octree::NodeSource> first) {
-    Told told;
+/// Another source, or none, in place of what is drawn from.
+Result<void> PictureWorker::State::take_source(gi::Device& gl,
+                                               std::shared_ptr<const octree::NodeSource> other) {
+    const std::shared_ptr<const octree::NodeSource> source = std::exchange(shown, nullptr);
+    if (!other) {
+        pipeline.reset();
+        const std::lock_guard lock(mutex);
+        latest = nullptr;
+        return {};
+    }
+    if (pipeline) {
+        if (auto taken = pipeline->set_source(other); !taken) {
+            pipeline.reset();  // which may have let go of parts by then
+            return taken;
+        }
+    } else {
+        told = {};
+        LUCARNE_ASSIGN(pipeline, Pipeline::open(gl, other, options));
+    }
+    shown = std::move(other);
+    return {};
+}
+
+void PictureWorker::State::make_pictures(gi::Device& gl) {
     uint64_t made_of = 0, number = 0;
     bool again = false;
-    std::shared_ptr<const octree::NodeSource> shown = std::move(first);
     for (;;) {
         PictureRequest request;
         uint64_t request_number = 0;
-        std::shared_ptr<const octree::NodeSource> other;
+        std::optional<std::shared_ptr<const octree::NodeSource>> other;
         {
             std::unique_lock lock(mutex);
-            changed.wait(lock, [&] {
-                return stop || again || wanted_number != made_of || (next_source && wanted_number != 0);
-            });
+            changed.wait(
+                lock, [&] { return stop || next_source || (shown && (again || wanted_number != made_of)); });
             if (stop) return;
-            other = std::exchange(next_source, nullptr);
+            other = std::exchange(next_source, std::nullopt);
             request = wanted;
             request_number = wanted_number;
         }
-        made_of = request_number;
         Result<std::shared_ptr<Picture>> made = [&]() -> Result<std::shared_ptr<Picture>> {
             try {
-                if (other) LUCARNE_TRY(pipeline.set_source(shown = other));
-                LUCARNE_TRY(tell(pipeline, request, request_number, told));
-                return make_picture(gl, pipeline, request);
+                if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
+                if (!shown || request_number == 0) return nullptr;
+                LUCARNE_TRY(tell(*pipeline, request, request_number, told));
+                return make_picture(gl, *pipeline, request);
             } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
                 return failed("picture", problem.what());
             }
         }();
+        if (made && !*made) continue;
+        made_of = request_number;
         again = made && worth_another(request, (*made)->stats);
         if (made) {
             (*made)->number = ++number;
@@ -159,19 +188,19 @@ void PictureWorker::State::make_pictures(gi::Device& gl, Pipeline& pipeline,
 }
 
 void PictureWorker::State::work(const WorkerDevice& device_of,
-                                const std::shared_ptr<const octree::NodeSource>& source,
-                                const PipelineOptions& options, std::promise<Result<void>> started) {
+                                std::shared_ptr<const octree::NodeSource> source,
+                                std::promise<Result<void>> started) {
     {
         auto gl = device_of.make();
-        auto pipeline =
-            gl ? Pipeline::open(**gl, source, options) : tl::make_unexpected(std::move(gl).error());
-        if (!pipeline) {
-            started.set_value(tl::make_unexpected(std::move(pipeline).error()));
-        } else {
-            device = (*gl)->info();
-            started.set_value({});
-            make_pictures(**gl, **pipeline, source);
-        }
+        Result<void> ready;
+        if (!gl) ready = tl::make_unexpected(std::move(gl).error());
+        if (ready && source) ready = take_source(**gl, std::move(source));
+        const bool go = ready.has_value();
+        if (go) device = (*gl)->info();
+        started.set_value(std::move(ready));
+        if (go) make_pictures(**gl);
+        pipeline.reset();  // before its device
+        shown.reset();
     }
     device_of.release();
 }
@@ -186,10 +215,11 @@ Result<std::unique_ptr<PictureWorker>> PictureWorker::start(WorkerDevice device,
     std::promise<Result<void>> promise;
     auto started = promise.get_future();
     worker->state_->published = std::move(published);
+    worker->state_->options = options;
     worker->state_->thread =
         std::thread([state = worker->state_.get(), device = std::move(device), source = std::move(source),
-                     options, promise = std::move(promise)]() mutable {
-            state->work(device, source, options, std::move(promise));
+                     promise = std::move(promise)]() mutable {
+            state->work(device, std::move(source), std::move(promise));
         });
     LUCARNE_TRY(started.get());
     return worker;

@@ -57,7 +57,8 @@ struct WorkerDevice {
 /// are on their way or samples are being averaged, and then rests.
 class PictureWorker {
  public:
-    /// `published` is called on the worker's thread after each picture and each error.
+    /// `published` is called on the worker's thread after each picture and each error. Without a `source`
+    /// there is nothing to make pictures of yet.
     static Result<std::unique_ptr<PictureWorker>> start(WorkerDevice device,
                                                         std::shared_ptr<const octree::NodeSource> source,
                                                         const PipelineOptions& options,
@@ -68,9 +69,9 @@ class PictureWorker {
 
     /// Replaces the request before; returns its number.
     uint64_t request(PictureRequest request);
-    /// Pictures are of this source from the next one on.
+    /// Pictures are of this source from the next one on; null: there are none until there is another.
     void set_source(std::shared_ptr<const octree::NodeSource> source);
-    std::shared_ptr<const Picture> latest() const;  ///< null before the first
+    std::shared_ptr<const Picture> latest() const;  ///< null before the first, and without a source
     /// The newest request's error, if making its picture failed; it is not tried again.
     Result<void> error() const;
     const gi::DeviceInfo& device() const;

@@ -25,6 +25,10 @@ bool is_scan(const fs::path& path) {
 
 }  // namespace
 
+std::span<const std::string_view> scan_extensions() {
+    return kExtensions;
+}
+
 Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& inputs) {
     std::vector<std::string> files;
     for (const std::string& input : inputs) {

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/core/error.h"
 
 namespace lucarne::viewer {
+
+/// Of the files that may be scans: ".las", in lower case.
+std::span<const std::string_view> scan_extensions();
 
 /// The files that are meant: a folder stands for the scans in it and below (by their extension: .las .laz
 /// .e57 .ply .pcd .ptx .pts .xyz .asc), sorted by name; anything else for itself. Errors: folders that cannot

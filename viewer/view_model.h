@@ -8,6 +8,7 @@
 #include "viewer/navigation.h"
 #include "viewer/picture_worker.h"
 #include "viewer/presets.h"
+#include "viewer/shell/shell.h"
 
 namespace lucarne::viewer {
 
@@ -29,6 +30,8 @@ struct ViewModel {
     CutBudgets budgets;
     double frame_time = 0.1;  ///< s: what a picture should take while something moves
     PipelineOptions caps;
+
+    Shell shell;  ///< the open scans and what stands around the picture
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

@@ -1,5 +1,7 @@
 #include "viewer/view_session.h"
 
+#include <algorithm>
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -53,6 +55,16 @@ std::filesystem::path free_name(const std::filesystem::path& folder) {
     return folder / "lucarne.png";
 }
 
+std::string scans_title(const std::vector<ScanRow>& rows) {
+    if (rows.empty()) return "nothing is open";
+    std::string title = rows.front().name();
+    if (rows.size() > 1) title += fmt::format(" and {} more", rows.size() - 1);
+    for (const ScanRow& row : rows)
+        if (row.state == ScanState::converting)
+            title += fmt::format(" - {} {:.0f} %", row.stage, 100 * row.share);
+    return title;
+}
+
 }  // namespace
 
 double ViewSession::seconds_at_rest() const {
@@ -68,48 +80,53 @@ void ViewSession::take_picture() {
         budget_.observe(latest->stats, latest->size);
     }
     model_.scale = quality_.scale();
-    const bool last_source = !input_.build || (input_.build->finished() && latest->source == input_.source);
+    const bool last_source = scans_.settled() && latest->source == scans_.source();
     if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source)
         ++whole_pictures_;
 }
 
-/// Light and camera as they would be had the whole been known at once, unless the user has changed them.
+/// Light and camera as they would be had all scans been known at once, unless the user has changed them.
 void ViewSession::take_extent() {
-    if (model_.scene_version != own_scene_) return;
-    auto start = input_.start(*input_.source);
+    const auto& start = scans_.start();
     if (!start) return;
-    if (start->camera.position == model_.home.position && start->camera.target == model_.home.target) return;
+    model_.scene_size = start->scene_size;
+    const bool first = !std::exchange(placed_, true);
+    if (first) model_.navigation.set_scene_size(start->scene_size);
+    if (!first && model_.scene_version != own_scene_) return;
+    if (!first && start->camera.position == model_.home.position &&
+        start->camera.target == model_.home.target)
+        return;
     const auto camera = model_.rig.camera();
-    const bool at_home = CameraRig(model_.home).camera().position == camera.position &&
-                         CameraRig(model_.home).camera().target == camera.target;
-    model_.scene = std::move(start->scene);
+    const bool at_home = first || (CameraRig(model_.home).camera().position == camera.position &&
+                                   CameraRig(model_.home).camera().target == camera.target);
+    model_.scene = start->scene;
     model_.home = start->camera;
     if (at_home) model_.rig = CameraRig(model_.home);
     model_.scene_changed();
     own_scene_ = model_.scene_version;
 }
 
-/// The build begins once there is something to see, and what it has finished is drawn from then on.
-void ViewSession::follow_build() {
-    if (!input_.build) return;
-    if (!begun_) {
-        if (!model_.picture || model_.picture->stats.nodes_pending > 0) return;
-        begun_ = true;
+/// What is open is drawn as it is, and converted one scan after another once there is something to see.
+void ViewSession::follow_scans() {
+    if (scans_.update()) {
+        take_extent();
+        worker_.set_source(scans_.source());
+        if (!scans_.source()) model_.picture = nullptr;
+        whole_pictures_ = 0;
+    }
+    const bool seen = model_.picture && model_.picture->stats.nodes_pending == 0;
+    if (seen && !std::exchange(first_told_, true))
         log::info("first picture after {:.2f} s: {} points", seconds_since_start(),
                   model_.picture->stats.view_points);
-        input_.build->begin(&Window::wake);
-    }
-    if (auto source = input_.build->source(); source != input_.source) {
-        input_.source = source;
-        take_extent();
-        worker_.set_source(std::move(source));
-    }
-    const octree::BuildProgress progress = input_.build->progress();
-    const auto error = input_.build->error();
-    if (!error) model_.message = "the cache was not finished: " + error.error().line();
-    window_.set_title(progress.stage.empty() ? input_.title
-                                             : fmt::format("{} - {} {:.0f} %", input_.title, progress.stage,
-                                                           100 * progress.share));
+    if (seen || (!scans_.source() && scans_.settled())) scans_.convert_next();
+    window_.set_title("Lucarne - " + scans_title(scans_.rows()));
+}
+
+/// Files that were dropped on the window or chosen in it.
+void ViewSession::take_files() {
+    std::vector<std::string> files = window_.take_dropped_files();
+    std::ranges::move(std::exchange(model_.shell.to_open, {}), std::back_inserter(files));
+    if (!files.empty()) scans_.open(std::move(files));
 }
 
 /// Shift and the mouse are the light's.
@@ -162,14 +179,16 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_menu_bar(model_);
-    if (model_.show_panels) {
+    draw_scans_panel(model_);
+    if (scans_.rows().empty()) draw_start_page(model_);
+    if (model_.show_panels && !scans_.rows().empty()) {
         draw_settings_panel(model_);
         draw_light_panel(model_);
         draw_statistics_panel(model_);
     }
     if (model_.show_help) draw_help(model_);
     if (const auto error = worker_.error(); !error) model_.message = error.error().line();
-    draw_message(model_, !model_.picture || model_.picture->request != sent_number_);
+    draw_message(model_, scans_.source() && (!model_.picture || model_.picture->request != sent_number_));
 }
 
 void ViewSession::send_request() {
@@ -220,14 +239,17 @@ Result<void> ViewSession::run() {
         take_picture();
         window_.begin_frame();
         if (model_.picture) window_.show(*model_.picture);
-        follow_build();
+        take_files();
+        follow_scans();
         take_input();
         draw_panels();
         window_.draw();
         LUCARNE_TRY(save());
         window_.swap();
         send_request();
-        if (shot_) LUCARNE_TRY(worker_.error());
+        if (!shot_) continue;
+        LUCARNE_TRY(worker_.error());
+        LUCARNE_TRY(scans_.error());
     }
     window_.hide();
     return {};

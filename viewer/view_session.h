@@ -5,10 +5,10 @@
 #include <functional>
 #include <optional>
 
-#include "octree/quick/growing_build.h"
 #include "viewer/cost_model.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
+#include "viewer/shell/scan_set.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
 
@@ -22,42 +22,29 @@ struct ScriptedShot {
     bool overwrite = false;
 };
 
-/// Where the view begins, and in what light.
-struct StartingView {
-    gi::Scene scene;
-    gi::SceneCamera camera;
-};
-
-/// What is looked at.
-struct ViewedInput {
-    std::string title;                                 ///< of the window
-    std::shared_ptr<const octree::NodeSource> source;  ///< that the worker was started with
-    octree::GrowingBuild* build = nullptr;             ///< begun with the first picture; none: the source is whole
-    /// For a cloud: what is known of the whole from a sample is not quite so.
-    std::function<Result<StartingView>(const octree::NodeSource&)> start;
-};
-
 /// The loop of the window: input into the model, the model into requests, pictures onto the screen.
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
-                ViewedInput input)
+                ScanSet& scans)
         : window_(window),
           worker_(worker),
           model_(model),
           shot_(std::move(shot)),
-          input_(std::move(input)),
+          scans_(scans),
           quality_(model.frame_time),
           budget_(model.frame_time) {}
 
-    /// Until the window is closed. Errors: the scripted shot cannot be made or written.
+    /// Until the window is closed. Errors: the scripted shot cannot be made or written, or is not of all
+    /// scans.
     Result<void> run();
 
  private:
     using Clock = std::chrono::steady_clock;
 
     void take_picture();
-    void follow_build();
+    void follow_scans();
+    void take_files();
     void take_extent();
     void take_input();
     void take_light_gesture();
@@ -71,8 +58,9 @@ class ViewSession {
     PictureWorker& worker_;
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
-    ViewedInput input_;
-    bool begun_ = false;
+    ScanSet& scans_;
+    bool placed_ = false;  ///< there has been a view to begin with
+    bool first_told_ = false;
     MovingQuality quality_;
     FrameBudget budget_;
     PictureRequest sent_;

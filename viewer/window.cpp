@@ -15,6 +15,7 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostPressed = 64;  ///< keys kept between two frames
+constexpr size_t kMostDropped = 1000; ///< files
 
 /// GLFW's last complaint, without its habit of several sentences.
 std::string glfw_reason() {
@@ -62,6 +63,10 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
         auto& pressed = static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_;
         if (action == GLFW_PRESS && pressed.size() < kMostPressed) 
             pressed.push_back({key, modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT)});
+    });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+        auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
+        for (int i = 0; i < count && dropped.size() < kMostDropped; ++i) dropped.emplace_back(paths[i]);
     });
     ImGui_ImplGlfw_InitForOpenGL(window_, true);  // its callbacks call ours
     ImGui_ImplOpenGL3_Init("#version 450 core");

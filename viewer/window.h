@@ -39,6 +39,9 @@ class Window {
     /// Keys pressed since the last call, also those released again before a frame saw them.
     std::vector<KeyChord> take_pressed_keys() { return std::exchange(pressed_, {}); }
 
+    /// Files dropped on the window since the last call.
+    std::vector<std::string> take_dropped_files() { return std::exchange(dropped_, {}); }
+
     /// From here ImGui and show() may be used, until draw().
     void begin_frame();
     /// Fills the window with a picture, scaled without changing its shape. Uploads it when its number is new.
@@ -62,6 +65,7 @@ class Window {
     ImageSize texture_size_;
     uint64_t shown_ = 0;
     std::vector<KeyChord> pressed_;
+    std::vector<std::string> dropped_;
 };
 
 }  // namespace lucarne::viewer

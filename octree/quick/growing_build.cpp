@@ -105,7 +105,7 @@ Result<void> GrowingBuild::State::take_first() {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
     schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
 
-    LUCARNE_ASSIGN(sample.points, take_sample(*unifier, options.sample_points));
+    LUCARNE_ASSIGN(sample.points, take_sample(*unifier, options.sample_points, options.sampling));
     ScanFacts facts{.points = sample.points.points, .min = sample.points.min, .max = sample.points.max};
     LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
     header = header_of(*unifier, facts, schema);
@@ -225,8 +225,12 @@ Result<std::unique_ptr<GrowingBuild>> GrowingBuild::open(Inputs inputs, GrowingO
 }
 
 GrowingBuild::~GrowingBuild() {
-    state_->stop = true;
+    stop();
     wait();
+}
+
+void GrowingBuild::stop() {
+    state_->stop = true;
 }
 
 void GrowingBuild::begin(std::function<void()> changed) {
@@ -251,6 +255,11 @@ BuildProgress GrowingBuild::progress() const {
 bool GrowingBuild::finished() const {
     const std::lock_guard lock(state_->mutex);
     return state_->done;
+}
+
+bool GrowingBuild::stopped() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->stop && state_->problem;
 }
 
 Result<void> GrowingBuild::error() const {

@@ -7,6 +7,7 @@
 
 #include "io/points.h"
 #include "octree/build/build.h"
+#include "octree/quick/sample.h"
 #include "octree/source.h"
 
 namespace lucarne::octree {
@@ -20,6 +21,7 @@ struct BuildProgress {
 struct GrowingOptions {
     BuildOptions build;                ///< inputs: empty, they are given on their own
     uint64_t sample_points = 400'000;  ///< of the first picture
+    Sampling sampling;                 ///< told while the sample is taken; may end it
     double seconds_between = 1.5;      ///< at the least, between two sources that a running build gives
 };
 
@@ -32,7 +34,8 @@ class GrowingBuild {
 
     /// Takes the sample. Errors: unreadable inputs, inputs that do not fit together, no points.
     static Result<std::unique_ptr<GrowingBuild>> open(Inputs inputs, GrowingOptions options);
-    /// Stops the build at its next step and waits for it; a cache that is not finished leaves nothing.
+    /// Stops the build at its next step and waits for it. A cache that is not finished leaves nothing, but for what
+    /// `build.resume` asks for.
     ~GrowingBuild();
     GrowingBuild(const GrowingBuild&) = delete;
     GrowingBuild& operator=(const GrowingBuild&) = delete;
@@ -40,12 +43,15 @@ class GrowingBuild {
     /// Starts converting in the background; `changed` is called from there with every new source and at the
     /// end.
     void begin(std::function<void()> changed);
+    /// Ends the build at its next step; returns at once. The source stays what it is.
+    void stop();
     /// Blocks until the build has ended.
     void wait();
 
     std::shared_ptr<const NodeSource> source() const;  ///< the newest
     BuildProgress progress() const;
     bool finished() const;  ///< the source is the cache
+    bool stopped() const;   ///< it has ended because of stop(): error() says no more than that
     /// Why the build ended without a cache; the last source stays.
     Result<void> error() const;
 

@@ -1,6 +1,7 @@
 #include "octree/quick/sample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include <glm/common.hpp>
@@ -23,7 +24,22 @@ uint64_t index_of(uint64_t rank, uint64_t count, uint64_t wanted) {
     return first + mix64(rank) % run;
 }
 
-Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_t wanted) {
+/// What has been read of all inputs.
+class Steps {
+ public:
+    Steps(const Sampling& told, uint64_t total) : told_(told), total_(total) {}
+    Result<void> add(uint64_t points) {
+        if (!told_ || told_(done_ += points, total_)) return {};
+        return failed("the sample", "was stopped");
+    }
+
+ private:
+    const Sampling& told_;
+    uint64_t total_;
+    std::atomic<uint64_t> done_{0};
+};
+
+Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_t wanted, Steps& steps) {
     const io::PointSource& source = inputs.source(input);
     const uint64_t count = source.info().declared_points;
     wanted = std::min(wanted, count);
@@ -37,6 +53,8 @@ Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_
         std::vector<std::byte> storage;
         if (auto done = source.pick(indices, batch); !done)
             return error.report(first, std::move(done).error());
+        if (auto on = steps.add((last - first) * count / wanted); !on)
+            return error.report(first, std::move(on).error());
         const auto records = inputs.convert(input, batch, storage);
         picked[first / kPiece].assign(records.begin(), records.end());
     });
@@ -47,7 +65,7 @@ Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_
 }
 
 /// Every 2^k-th point of one pass, k as small as `wanted` allows: a file's length is known at its end only.
-Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input, uint64_t wanted) {
+Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input, uint64_t wanted, Steps& steps) {
     LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());
     const size_t stride = inputs.schema().stride;
     std::vector<std::byte> kept, storage;
@@ -56,6 +74,7 @@ Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input,
     for (;;) {
         LUCARNE_ASSIGN(const size_t count, reader->read(batch, size_t{1} << 16));
         if (count == 0) return kept;
+        LUCARNE_TRY(steps.add(count));
         const auto records = inputs.convert(input, batch, storage);
         for (size_t i = 0; i < count; ++i, ++seen) {
             if (seen % step != 0) continue;
@@ -71,15 +90,16 @@ Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input,
 
 }  // namespace
 
-Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most) {
+Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling) {
     QuickSample sample;
     for (size_t i = 0; i < inputs.inputs(); ++i) sample.points += inputs.source(i).info().declared_points;
+    Steps steps(sampling, sample.points);
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         const double share = static_cast<double>(inputs.source(i).info().declared_points) /
                              static_cast<double>(std::max<uint64_t>(1, sample.points));
         const auto wanted = std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
-        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable() ? pick(inputs, i, wanted)
-                                                                       : read_through(inputs, i, wanted));
+        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable() ? pick(inputs, i, wanted, steps)
+                                                                       : read_through(inputs, i, wanted, steps));
         sample.records.insert(sample.records.end(), records.begin(), records.end());
     }
     const size_t stride = inputs.schema().stride, count = sample.records.size() / stride;

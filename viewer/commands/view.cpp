@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <future>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +12,6 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
-#include "viewer/inputs.h"
 #include "viewer/view_session.h"
 
 namespace lucarne::viewer {
@@ -27,21 +26,26 @@ struct ViewOptions {
     bool overwrite = false;
 };
 
+/// Where the view of what is open begins. On a thread: it reads.
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
     LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
+    const auto [low, high] = octree::bulk_of(source);
+    start.scene_size = std::max(glm::distance(low, high), 1e-6);
     return start;
 }
 
-Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing,
-                              const octree::NodeSource& source) {
-    const auto [low, high] = octree::bulk_of(source);
-    ViewModel model(std::max(glm::distance(low, high), 1e-6));
-    LUCARNE_ASSIGN(StartingView start, starting_view(options, source));
-    model.scene = std::move(start.scene);
-    model.home = start.camera;
-    model.rig = CameraRig(model.home);
+/// What is wrong with the scene is said at once, and not in a window.
+Result<void> check_scene(const ViewOptions& options) {
+    if (options.drawing.scene.empty()) return {};
+    LUCARNE_ASSIGN(const gi::Scene scene, gi::load_scene(options.drawing.scene));
+    if (!scene.cameras.empty()) LUCARNE_TRY(find_camera(scene, options.camera));
+    return {};
+}
+
+ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
+    ViewModel model(1.0);
     model.engine = options.drawing.engine;
     model.preset = drawing.preset.name;
     model.settings = drawing.preset.engine;
@@ -53,29 +57,39 @@ Result<ViewModel> first_model(const ViewOptions& options, const Drawing& drawing
 
 Result<void> view(const ViewOptions& options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
+    LUCARNE_TRY(check_scene(options));
     std::optional<ScriptedShot> shot;
     if (!options.screenshot.empty()) {
+        if (options.input.paths.empty())
+            return bad_arguments("--screenshot", "there is nothing to look at", "name an INPUT");
         LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
-    const std::string title = "Lucarne - " + inputs_text(options.input.paths);
-    auto opening = std::async(std::launch::async, [&] { return open_growing(options.input); });
-    LUCARNE_ASSIGN(const auto window,
-                   Window::open(drawing.size, title));  // starts while the input is looked at
-    LUCARNE_ASSIGN(const OpenInput input, opening.get());
-    LUCARNE_ASSIGN(ViewModel model, first_model(options, drawing, *input.source));
+    std::atomic<bool> awake{false};
+    ScanSet scans(
+        options.input, [&](const octree::NodeSource& source) { return starting_view(options, source); },
+        [&] {
+            if (awake) Window::wake();
+        });
+    scans.open(options.input.paths, true);  // while the window starts
+    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne"));
+    awake = true;
     LUCARNE_ASSIGN(const auto worker,
-                   PictureWorker::start(window->worker_device(), input.source, drawing.caps, &Window::wake));
+                   PictureWorker::start(window->worker_device(), nullptr, drawing.caps, &Window::wake));
+    ViewModel model = first_model(options, drawing);
     model.device = worker->device();
-    const auto start = [&](const octree::NodeSource& source) { return starting_view(options, source); };
-    return ViewSession(*window, *worker, model, shot, {title, input.source, input.build.get(), start}).run();
+    model.shell.scans = &scans;
+    auto done = ViewSession(*window, *worker, model, shot, scans).run();
+    awake = false;
+    return done;
 }
 
 }  // namespace
 
 void add_view(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<ViewOptions>();
-    auto* command = app.add_subcommand("view", "Look around in a cache or a scan, lit by its own surfaces");
+    auto* command = app.add_subcommand("view", "Look around in caches and scans, lit by their own surfaces");
+    options->input.required = false;
     add_input_options(*command, options->input);
     add_drawing_options(*command, options->drawing);
     command->add_option("--camera", options->camera, "Start with this camera of the scene");

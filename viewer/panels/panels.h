@@ -6,6 +6,9 @@ namespace lucarne::viewer {
 
 void draw_menu_bar(ViewModel& model);  ///< of the table of actions, with their keys
 
+void draw_start_page(ViewModel& model);   ///< with nothing open
+void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how far loads and conversions are
+
 // Each draws one ImGui window and writes the user's changes into the model.
 void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure
 void draw_light_panel(ViewModel& model);               ///< the selected spot

@@ -53,8 +53,8 @@ void exposure(ViewModel& model) {
 
 void draw_settings_panel(ViewModel& model) {
     const float width = ImGui::GetFontSize() * 22;
-    const ImVec2 corner = ImGui::GetMainViewport()->WorkPos;  // below the menu bar
-    ImGui::SetNextWindowPos(ImVec2(corner.x + 8, corner.y + 8), ImGuiCond_FirstUseEver);
+    const float top = ImGui::GetFrameHeight() + 8;  // below the menu bar
+    ImGui::SetNextWindowPos(ImVec2(8, top), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(width, 0), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Picture")) {
         engine_choice(model);

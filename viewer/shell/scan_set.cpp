@@ -1,0 +1,391 @@
+#include "viewer/shell/scan_set.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+#include "octree/open.h"
+#include "octree/stream/joined_source.h"
+#include "viewer/scan_list.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using Source = std::shared_ptr<const octree::NodeSource>;
+
+constexpr uint64_t kSamplePoints = 400'000;      ///< of all scans that are opened at once
+constexpr uint64_t kLeastSamplePoints = 20'000;  ///< of one
+/// Each holds a file or two open, and processes may have 1024.
+constexpr size_t kMostScans = 400;
+
+/// What opening takes part in, from both sides.
+struct Watch {
+    std::atomic<bool> cancelled{false};
+    std::atomic<double> share{0};
+};
+
+bool is_folder(const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored);
+}
+
+/// Paths that are rows of their own after all: folders' files, and octrees among what was to be one cache.
+Result<std::vector<std::string>> expanded(const std::vector<std::string>& paths) {
+    LUCARNE_ASSIGN(auto files, expand_folders(paths));
+    if (files.size() > kMostScans)
+        return rejected(paths.front(),
+                        fmt::format("holds {} scans, {} can be open", files.size(), kMostScans),
+                        "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
+    return files;
+}
+
+}  // namespace
+
+std::string ScanRow::name() const {
+    if (paths.empty()) return {};
+    const std::filesystem::path first(paths.front());
+    std::string name = first.filename().string();
+    if (name.empty()) name = paths.front();
+    return paths.size() == 1 ? name : fmt::format("{} and {} more", name, paths.size() - 1);
+}
+
+/// What belongs to a row; the window does not see it.
+struct ScanSet::Item {
+    std::shared_ptr<Watch> watch = std::make_shared<Watch>();
+    OpenInput input;
+    Source source;       ///< the newest
+    bool going = false;  ///< the build has begun
+};
+
+/// A row's files, open; or what is to be opened in its place.
+struct Opened {
+    uint64_t id = 0;
+    Result<OpenInput> input;
+    std::vector<std::string> instead;
+    bool together = false;  ///< `instead` is one row
+};
+
+struct ScanSet::Joined {
+    Source source;
+    Result<StartingView> start;
+};
+
+/// Where the threads put what they have done.
+struct ScanSet::Shared {
+    std::mutex mutex;
+    std::vector<Opened> opened;
+    std::optional<Result<Joined>> joined;
+    std::function<void()> changed;
+
+    void report(Opened one) {
+        {
+            const std::lock_guard lock(mutex);
+            opened.push_back(std::move(one));
+        }
+        changed();
+    }
+};
+
+namespace {
+
+Opened open_paths(uint64_t id, bool together, InputOptions how, Watch& watch, uint64_t sample_points) {
+    if (watch.cancelled) return {id, failed("opening", "was stopped"), {}, false};
+    try {
+        if (std::ranges::any_of(how.paths, is_folder)) {
+            auto files = expanded(how.paths);
+            if (!files) return {id, tl::make_unexpected(std::move(files).error()), {}, false};
+            return {id, OpenInput{}, std::move(*files), together};
+        }
+        if (how.paths.size() > 1 &&
+            std::ranges::any_of(how.paths, [](const auto& p) { return octree::is_octree(p); }))
+            return {id, OpenInput{}, how.paths, false};
+        Opening opening;
+        opening.resumable = true;
+        opening.sample_points = sample_points;
+        opening.sampling = [&watch](uint64_t done, uint64_t total) {
+            watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
+            return !watch.cancelled;
+        };
+        return {id, open_growing(how, opening), {}, false};
+    } catch (const std::exception& problem) {  // out of memory
+        return {id, failed(how.paths.front(), problem.what()), {}, false};
+    }
+}
+
+}  // namespace
+
+ScanSet::ScanSet(InputOptions how, StartOf start, std::function<void()> changed)
+    : how_(std::move(how)), start_of_(std::move(start)), shared_(std::make_shared<Shared>()) {
+    how_.paths.clear();
+    shared_->changed = std::move(changed);
+}
+
+ScanSet::~ScanSet() {
+    for (auto& [id, item] : items_) {
+        item.watch->cancelled = true;
+        if (item.input.build) item.input.build->stop();
+    }
+}
+
+void ScanSet::open(std::vector<std::string> paths, bool together) {
+    if (together) return open_one(std::move(paths), true);
+    for (std::string& path : paths) open_one({std::move(path)}, false);
+}
+
+void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t instead_of) {
+    if (paths.empty()) return;
+    const uint64_t id = next_id_++;
+    ScanRow row;
+    row.id = id;
+    row.stage = "opening";
+    row.paths = paths;
+    const auto place = std::ranges::find(rows_, instead_of, &ScanRow::id);
+    const bool full = rows_.size() >= kMostScans;
+    if (full) {
+        row.state = ScanState::failed;
+        row.error =
+            Error{ErrorKind::failed, row.paths.front(),
+                  fmt::format("{} scans are open, which is the most", kMostScans), "close some first"};
+    }
+    rows_.insert(place, std::move(row));
+    if (full) return;
+    const auto waiting =
+        static_cast<uint64_t>(std::ranges::count(rows_, ScanState::opening, &ScanRow::state));
+    const uint64_t sample = std::max(kLeastSamplePoints, kSamplePoints / std::max<uint64_t>(waiting, 1));
+    InputOptions how = how_;
+    how.paths = std::move(paths);
+    opener_.push([shared = shared_, watch = items_[id].watch, how = std::move(how), id, together, sample] {
+        shared->report(open_paths(id, together, how, *watch, sample));
+    });
+}
+
+ScanRow* ScanSet::row_of(uint64_t id) {
+    const auto row = std::ranges::find(rows_, id, &ScanRow::id);
+    return row == rows_.end() ? nullptr : &*row;
+}
+
+/// A build is waited for where that does no harm.
+void ScanSet::retire(Item& item) {
+    item.watch->cancelled = true;
+    if (!item.input.build) return;
+    item.input.build->stop();
+    opener_.push(
+        [input = std::make_shared<OpenInput>(std::exchange(item.input, {}))]() mutable { input.reset(); });
+}
+
+void ScanSet::remove(uint64_t id) {
+    if (const auto item = items_.find(id); item != items_.end()) {
+        retire(item->second);
+        items_.erase(item);
+    }
+    std::erase_if(rows_, [&](const ScanRow& row) { return row.id == id; });
+    stale_ = true;
+}
+
+void ScanSet::set_visible(uint64_t id, bool visible) {
+    ScanRow* row = row_of(id);
+    if (!row || row->visible == visible) return;
+    row->visible = visible;
+    stale_ = true;
+}
+
+void ScanSet::stop(uint64_t id) {
+    ScanRow* row = row_of(id);
+    if (!row) return;
+    if (row->state == ScanState::opening) return remove(id);
+    Item& item = items_[id];
+    if (row->state == ScanState::converting && item.input.build) item.input.build->stop();
+    if (row->state == ScanState::sample) row->state = ScanState::stopped;
+}
+
+void ScanSet::go_on(uint64_t id) {
+    ScanRow* row = row_of(id);
+    if (!row || row->state != ScanState::stopped) return;
+    Item& item = items_[id];
+    row->error.reset();
+    if (!item.going) {
+        row->state = ScanState::sample;  // it had not begun
+        return;
+    }
+    retire(item);  // before the new one is opened: they have one name
+    item.watch = std::make_shared<Watch>();
+    item.going = false;
+    row->state = ScanState::opening;
+    row->stage = "opening";
+    row->share = 0;
+    InputOptions how = how_;
+    how.paths = row->paths;
+    opener_.push([shared = shared_, watch = item.watch, how = std::move(how), id] {
+        shared->report(open_paths(id, true, how, *watch, kSamplePoints));
+    });
+}
+
+void ScanSet::convert_next() {
+    if (std::ranges::any_of(rows_, [](const auto& row) { return row.state == ScanState::converting; }))
+        return;
+    const auto next = std::ranges::find(rows_, ScanState::sample, &ScanRow::state);
+    if (next == rows_.end()) return;
+    Item& item = items_[next->id];
+    item.going = true;
+    next->state = ScanState::converting;
+    item.input.build->begin(shared_->changed);
+}
+
+/// What its source says.
+void ScanSet::describe(const Item& item, ScanRow& row) const {
+    const octree::SourceHeader& header = item.source->header();
+    row.points = header.points;
+    row.memory = item.source->directory_bytes();
+    row.file_bytes = 0;
+    row.of_path.clear();
+    uint64_t declared = 0;
+    for (const io::ScanInfo& scan : header.scans) {
+        row.file_bytes += scan.file_bytes;
+        declared += scan.declared_points;
+        row.of_path.push_back(scan.declared_points);
+    }
+    // What the source has of it is a sample until it is whole.
+    if (row.state != ScanState::whole) row.points = std::max(row.points, declared);
+    if (row.of_path.size() != row.paths.size()) row.of_path.clear();
+}
+
+void ScanSet::take_opened() {
+    std::vector<Opened> opened;
+    {
+        const std::lock_guard lock(shared_->mutex);
+        opened.swap(shared_->opened);
+    }
+    for (Opened& one : opened) {
+        ScanRow* row = row_of(one.id);
+        if (!row) continue;  // removed meanwhile; a build that has not begun goes at once
+        if (!one.instead.empty()) {
+            if (one.together) {
+                open_one(std::move(one.instead), true, one.id);
+            } else {
+                for (std::string& path : one.instead) open_one({std::move(path)}, false, one.id);
+            }
+            remove(one.id);
+            continue;
+        }
+        Item& item = items_[one.id];
+        row->stage.clear();
+        if (!one.input) {
+            row->state = item.source ? ScanState::stopped : ScanState::failed;
+            row->error = std::move(one.input).error();
+            log::warn("{}", row->error->line());
+            continue;
+        }
+        item.input = std::move(*one.input);
+        item.source = item.input.source;
+        row->state = item.input.build ? ScanState::sample : ScanState::whole;
+        describe(item, *row);
+        stale_ = true;
+    }
+}
+
+void ScanSet::take_builds() {
+    for (ScanRow& row : rows_) {
+        const auto found = items_.find(row.id);
+        if (found == items_.end()) continue;
+        Item& item = found->second;
+        if (row.state == ScanState::opening) row.share = item.watch->share;
+        if (!item.input.build || row.state != ScanState::converting) continue;
+        octree::GrowingBuild& build = *item.input.build;
+        const octree::BuildProgress progress = build.progress();
+        row.stage = progress.stage;
+        row.share = progress.share;
+        const bool finished = build.finished();
+        const auto error = build.error();
+        if (auto source = build.source(); source != item.source) {
+            item.source = std::move(source);
+            stale_ |= row.visible;
+        }
+        if (finished) {
+            row.state = ScanState::whole;
+            item.input.build.reset();  // its thread has nothing left to do
+        } else if (!error) {
+            row.state = ScanState::stopped;
+            if (!build.stopped()) row.error = error.error();
+            if (row.error) log::warn("the cache was not finished: {}", row.error->line());
+        }
+        describe(item, row);
+    }
+}
+
+/// On a thread: the directories of all are copied, and the start looks at some nodes.
+void ScanSet::join_visible() {
+    if (!stale_ || joining_) return;
+    stale_ = false;
+    std::vector<Source> visible;
+    for (const ScanRow& row : rows_)
+        if (const auto item = items_.find(row.id); row.visible && item != items_.end() && item->second.source)
+            visible.push_back(item->second.source);
+    joining_ = true;
+    joiner_.push([shared = shared_, visible = std::move(visible), start_of = start_of_]() mutable {
+        auto joined = [&]() -> Result<Joined> {
+            try {
+                if (visible.empty()) return Joined{};
+                LUCARNE_ASSIGN(Source source, octree::join_sources(std::move(visible)));
+                auto start = start_of(*source);
+                return Joined{std::move(source), std::move(start)};
+            } catch (const std::exception& problem) {
+                return failed("the open scans", problem.what());
+            }
+        }();
+        {
+            const std::lock_guard lock(shared->mutex);
+            shared->joined = std::move(joined);
+        }
+        shared->changed();
+    });
+}
+
+void ScanSet::take_joined() {
+    std::optional<Result<Joined>> joined;
+    {
+        const std::lock_guard lock(shared_->mutex);
+        joined = std::exchange(shared_->joined, std::nullopt);
+    }
+    if (!joined) return;
+    joining_ = false;
+    problem_.reset();
+    if (!*joined) {
+        problem_ = std::move(*joined).error();
+        return;
+    }
+    source_ = std::move((*joined)->source);
+    start_.reset();
+    if (!source_) return;
+    if ((*joined)->start)
+        start_ = std::move(*(*joined)->start);
+    else
+        problem_ = std::move((*joined)->start).error();
+}
+
+bool ScanSet::update() {
+    const Source before = source_;
+    take_opened();
+    take_builds();
+    take_joined();
+    join_visible();
+    return source_ != before;
+}
+
+bool ScanSet::converting() const {
+    return std::ranges::any_of(rows_, [](const auto& row) { return row.state == ScanState::converting; });
+}
+
+bool ScanSet::settled() const {
+    return !stale_ && !joining_ && std::ranges::none_of(rows_, &ScanRow::busy);
+}
+
+Result<void> ScanSet::error() const {
+    for (const ScanRow& row : rows_)
+        if (row.error) return tl::make_unexpected(*row.error);
+    if (problem_) return tl::make_unexpected(*problem_);
+    return {};
+}
+
+}  // namespace lucarne::viewer
