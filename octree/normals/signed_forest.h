@@ -50,26 +50,22 @@ class SignedForest {
     std::vector<Link> links_;
 };
 
-/// Votes of many weak witnesses on how pairs of nodes are turned, and the maximum spanning forest of the
-/// outcome.
+/// Votes of many weak witnesses on how pairs of nodes are turned, and what follows from them all.
 class SignVotes {
  public:
     /// `weight` > 0.
     void add(uint32_t a, uint32_t b, bool opposite, double weight) {
-        votes_[static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b)] += opposite ? -weight : weight;
+        votes_[key(a, b)] += opposite ? -weight : weight;
     }
-    /// Joins nodes by their votes, the clearest first.
-    void unite(SignedForest& forest) const {
-        std::vector<std::pair<uint64_t, double>> votes(votes_.begin(), votes_.end());
-        std::sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-            const double x = std::abs(a.second), y = std::abs(b.second);
-            return x != y ? x > y : a.first < b.first;
-        });
-        for (const auto& [pair, vote] : votes)
-            forest.unite(static_cast<uint32_t>(pair >> 32), static_cast<uint32_t>(pair), vote < 0);
-    }
+    /// Joins nodes by their votes: along the maximum spanning forest, the clearest first; then each link is
+    /// asked whether all votes between the two sides that it joins say the same, as one false link between
+    /// two halves of a room turns one of them inside out.
+    void unite(SignedForest& forest) const;
 
  private:
+    static uint64_t key(uint32_t a, uint32_t b) {
+        return static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+    }
     std::unordered_map<uint64_t, double> votes_;
 };
 

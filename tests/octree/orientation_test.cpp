@@ -54,6 +54,41 @@ Cloud room(size_t count) {
     return cloud;
 }
 
+/// Random groups whose halves agree by many votes, and one strong vote between the halves that is false.
+TEST(Orientation, ManyVotesBetweenTwoHalvesOutdoAStrongFalseOne) {
+    constexpr uint32_t kHalf = 200;
+    Random random(7);
+    for (int round = 0; round < 20; ++round) {
+        std::vector<bool> turned(2 * kHalf);
+        for (auto&& t : turned) t = random.uniform() < 0.5;
+        const auto node = [&](uint32_t half) {
+            return half * kHalf + static_cast<uint32_t>(random.uniform() * kHalf);
+        };
+        SignVotes votes;
+        const auto vote = [&](uint32_t a, uint32_t b, bool right, double weight) {
+            if (a != b) votes.add(a, b, (turned[a] != turned[b]) == right, weight);
+        };
+        for (uint32_t half = 0; half < 2; ++half) {
+            for (uint32_t i = 1; i < kHalf; ++i)  // a chain, so that the tree is deep
+                vote(half * kHalf + i - 1, half * kHalf + i, true, 20 + random.uniform());
+            for (uint32_t i = 0; i < 3 * kHalf; ++i)
+                vote(node(half), node(half), random.uniform() < 0.9, random.uniform());
+        }
+        vote(node(0), node(1), false, 10);
+        for (int i = 0; i < 30; ++i) vote(node(0), node(1), true, 1);
+        SignedForest forest(2 * kHalf);
+        votes.unite(forest);
+        size_t wrong = 0;
+        const auto first = forest.find(0);
+        for (uint32_t i = 0; i < 2 * kHalf; ++i) {
+            const auto root = forest.find(i);
+            ASSERT_EQ(root.node, first.node);
+            wrong += (root.opposite != first.opposite) != (turned[i] != turned[0]);
+        }
+        EXPECT_EQ(wrong, 0u) << round;
+    }
+}
+
 TEST(Orientation, SignedForestKeepsRelativeSigns) {
     Random random(1);
     constexpr uint32_t kNodes = 2000;
