@@ -12,6 +12,7 @@
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
 #include "gi/scene/environment.h"
+#include "gi/scene/look.h"
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/light.h"
@@ -70,6 +71,7 @@ struct Frame {
     Bounds bounds{};                                 ///< of the whole cloud, m
     bool moving = false;  ///< one of a motion: what the frame before knew may serve
     Progress* progress = nullptr;                    ///< of engines that report it; or none
+    Unlit unlit{};                                   ///< of the engine without light
 };
 
 struct EngineInfo {
@@ -78,6 +80,7 @@ struct EngineInfo {
     /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
     std::span<const std::string_view> layers = {};
     bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
+    bool unlit = false;  ///< knows no light: its colours are shown as they are, without exposure or tone curve
 };
 
 /// A way to light a G-buffer. `info / prepare / render / stats`; one folder an engine.

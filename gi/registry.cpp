@@ -6,15 +6,18 @@
 
 #include "gi/direct/direct.h"
 #include "gi/reference/reference.h"
+#include "gi/unlit/unlit.h"
 #include "gi/vpl/vpl.h"
 
 namespace lucarne::gi {
 
 std::span<const EngineEntry> engines() {
-    static const std::array<EngineEntry, 3> all = {{
+    static const std::array<EngineEntry, 4> all = {{
         {{"direct", "direct light with shadow maps"}, make_direct_engine},
         {{"vpl", "virtual point lights with imperfect shadow maps"}, make_vpl_engine},
         {{"reference", "path tracing over the same surfels: slow, and the truth"}, make_reference_engine},
+        {{"unlit", "the points' colours without light: flat, eye-dome lighting or ambient occlusion"},
+         make_unlit_engine},
     }};
     return all;
 }

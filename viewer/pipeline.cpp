@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <numeric>
 #include <span>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "gi/post/accumulate.h"
+#include "gi/post/backdrop.h"
 #include "gi/post/tone_map.h"
 #include "gi/registry.h"
+#include "gi/scene/colouring.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "octree/bulk.h"
@@ -60,6 +63,7 @@ struct Pipeline::State {
     State(gi::Device& on, const PipelineOptions& how) : device(on), options(how), times(on) {}
 
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
+    Result<void> colour_anew();
     void empty_pool();
     void start_stream();
     void choose_cuts(const FrameRequest& request);
@@ -69,7 +73,7 @@ struct Pipeline::State {
     Result<void> apply(std::span<const ResidencyEvent> events);
     uint64_t pool_surfels() const;
     uint64_t least_stride() const;
-    Result<void> build_cut(const octree::Cut& cut, gi::DeviceCut& target);
+    Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
     Result<void> finish(const FrameRequest& request);
@@ -83,7 +87,10 @@ struct Pipeline::State {
     PipelineOptions options;
     gi::PassTimes times;
 
+    std::shared_ptr<SurfelPreparation> preparation;
     std::unique_ptr<octree::Residency> residency;
+    bool repack = true;  // what the surfels hold of scene and look has changed
+    std::optional<gi::ValueRange> range;  // of the values that are shown
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
 
@@ -117,8 +124,13 @@ struct Pipeline::State {
 
 /// What the caps allow, and no more than the whole cloud.
 uint64_t Pipeline::State::pool_surfels() const {
-    uint64_t whole = 0;
-    for (const octree::NodeInfo& node : source->nodes()) whole += pool_bytes(node.count);
+    uint64_t whole = 0, largest = 0;
+    for (const octree::NodeInfo& node : source->nodes()) {
+        whole += pool_bytes(node.count);
+        largest = std::max(largest, pool_bytes(node.count));
+    }
+    // Nodes that come in other colours find room before the old ones go.
+    whole += (options.load_threads + 1) * largest;
     const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(options.device_memory));
     const uint64_t bytes = std::min({whole, share, device.info().max_texel_bytes});
     return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
@@ -169,9 +181,30 @@ void Pipeline::State::start_stream() {
                                         static_cast<double>(stride + sizeof(gi::PackedSurfel)));
     how.threads = options.load_threads;
     how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
-    how.prepare = prepare_surfels(source, scene);
+    preparation = std::make_shared<SurfelPreparation>(source, scene);
+    how.prepare = [packing = preparation](uint32_t node, octree::NodeData&& data) {
+        return packing->pack(node, std::move(data));
+    };
+    repack = true;
     residency = std::make_unique<octree::Residency>(*source, how);
     cuts_stale = true;
+}
+
+/// Materials and colours are packed into the surfels: all that are held come again, one by one, while the old
+/// ones are shown.
+Result<void> Pipeline::State::colour_anew() {
+    repack = false;
+    range = scene.look.range;
+    if (!range) {
+        LUCARNE_ASSIGN(range, gi::measured_range(*source, scene.look));
+    }
+    gi::Scene shown = scene;
+    shown.look.range = range;
+    preparation->set_scene(shown);
+    std::vector<uint32_t> all(source->nodes().size());
+    std::iota(all.begin(), all.end(), 0u);
+    residency->renew(all);
+    return {};
 }
 
 void Pipeline::State::choose_cuts(const FrameRequest& request) {
@@ -239,19 +272,21 @@ Result<void> Pipeline::State::stream(bool wait) {
     return {};
 }
 
-Result<void> Pipeline::State::build_cut(const octree::Cut& cut, gi::DeviceCut& target) {
+Result<void> Pipeline::State::build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target) {
     std::vector<gi::CutEntry> entries;
     entries.reserve(cut.nodes.size());
     for (const auto& node : cut.nodes) entries.push_back({node.node, node.count});
-    return pool.make_cut(device, *source, entries, local.origin, target);
+    return pool.make_cut(device, *source, entries, local.origin, target, clip);
 }
 
 Result<void> Pipeline::State::build_cuts() {
-    LUCARNE_TRY(build_cut(chosen.view, view));
-    LUCARNE_TRY(build_cut(chosen.light, light_cut));
+    const gi::Clip& clip = scene.look.clip;
+    const gi::Clip lights_clip = clip.casts ? gi::Clip{} : clip;
+    LUCARNE_TRY(build_cut(chosen.view, clip, view));
+    LUCARNE_TRY(build_cut(chosen.light, lights_clip, light_cut));
     light_views.resize(chosen.light_views.size());
     for (size_t i = 0; i < light_views.size(); ++i)
-        LUCARNE_TRY(build_cut(chosen.light_views[i], light_views[i]));
+        LUCARNE_TRY(build_cut(chosen.light_views[i], lights_clip, light_views[i]));
     cuts_stale = false;
     return {};
 }
@@ -261,7 +296,9 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(sample, pixels * sizeof(glm::vec4), "the picture's radiance"));
     times.begin("G-buffer");
-    LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer));
+    const gi::PointSize size{static_cast<float>(scene.look.point_size),
+                             static_cast<float>(scene.look.point_pixels)};
+    LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer, size));
     times.end();
     gi::FrameCuts cuts{&view, {}, &light_cut};
     std::vector<gi::Light> lights;
@@ -287,7 +324,8 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                     scene.environment,
                     {local.to_local(header.min), local.to_local(header.max)},
                     request.moving,
-                    request.progress};
+                    request.progress,
+                    scene.look.unlit};
     LUCARNE_TRY(engine->prepare(frame));
     return engine->render(frame);
 }
@@ -304,12 +342,17 @@ Result<void> Pipeline::State::finish(const FrameRequest& request) {
     }
     const gi::Buffer& radiance = averaged ? mean : sample;
     exposure_ev = 0;
-    if (scene.exposure_ev) {
+    const bool unlit = engine->info().unlit;
+    if (unlit) {
+        // Its colours are the screen's already.
+    } else if (scene.exposure_ev) {
         exposure_ev = *scene.exposure_ev;
     } else {
         LUCARNE_ASSIGN(exposure_ev, gi::automatic_exposure(device, radiance, pixels));
     }
-    LUCARNE_TRY(gi::tone_map(device, radiance, pixels, scene.tone_map, exposure_ev, picture));
+    const gi::ToneMap curve = unlit ? gi::ToneMap::none : scene.tone_map;
+    LUCARNE_TRY(gi::tone_map(device, radiance, pixels, curve, exposure_ev, picture));
+    LUCARNE_TRY(gi::draw_backdrop(device, gbuffer, scene.look.backdrop, picture));
     times.end();
     return {};
 }
@@ -418,6 +461,9 @@ const gi::CameraView& Pipeline::camera() const {
 glm::dvec3 Pipeline::local_origin() const {
     return state_->local.origin;
 }
+std::optional<gi::ValueRange> Pipeline::value_range() const {
+    return state_->range;
+}
 double Pipeline::exposure_ev() const {
     return state_->exposure_ev;
 }
@@ -448,11 +494,11 @@ void Pipeline::set_budgets(const CutBudgets& budgets) {
 }
 
 void Pipeline::set_scene(gi::Scene scene) {
-    // Which material a point has is packed into its surfel.
-    const bool repack = !same_assignments(scene.materials, state_->scene.materials);
+    // Which material and colour a point has is packed into its surfel.
+    state_->repack |= !same_assignments(scene.materials, state_->scene.materials) ||
+                      !gi::same_colours(scene.look, state_->scene.look);
     state_->scene = std::move(scene);
     state_->changed = true;
-    if (repack) state_->start_stream();
 }
 
 Result<FrameStats> Pipeline::render(const FrameRequest& request) {
@@ -460,6 +506,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     const auto start = std::chrono::steady_clock::now();
     state.times.clear();
     if (!state.engine) LUCARNE_TRY(set_engine(kDefaultEngine));
+    if (state.repack) LUCARNE_TRY(state.colour_anew());
     state.times.begin("cuts");
     if (state.changed || !same_view(request, state.last)) {
         state.choose_cuts(request);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -82,8 +83,8 @@ class Pipeline {
     Result<void> set_engine(std::string_view name);
     void set_settings(const gi::EngineSettings& settings);
     void set_budgets(const CutBudgets& budgets);
-    /// Lights, materials, exposure. Moving a light is cheap; assigning materials to other points sends every
-    /// surfel to the device again.
+    /// Lights, materials, exposure, look. Moving a light is cheap; other materials or colours for the points send
+    /// every surfel to the device again, without `wait` one node after another while the old ones are shown.
     void set_scene(gi::Scene scene);
 
     const gi::EngineInfo& engine() const;
@@ -106,6 +107,9 @@ class Pipeline {
     std::shared_ptr<const gi::CutPoints> points() const;  ///< behind the G-buffer's ids
     const gi::CameraView& camera() const;
     glm::dvec3 local_origin() const;
+    /// Of the values that the last picture's colours stand for: the look's, or measured; none where the colours
+    /// have no range or no point has the attribute.
+    std::optional<gi::ValueRange> value_range() const;
     /// The stops that the last picture was exposed by (measured where the scene leaves them open).
     double exposure_ev() const;
 

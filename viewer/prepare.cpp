@@ -11,6 +11,11 @@ namespace {
 gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) {
     gi::Scene own;
     own.materials = scene.materials;
+    own.look = scene.look;
+    if (own.look.range && own.look.colour == gi::ColourBy::elevation) {
+        own.look.range->low /= part.scale;
+        own.look.range->high /= part.scale;
+    }
     for (gi::SceneMaterial& material : own.materials) {
         if (material.scan) *material.scan -= static_cast<int>(part.first_scan);
         if (material.box) {
@@ -23,17 +28,30 @@ gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) 
 
 }  // namespace
 
-std::function<octree::NodeData(uint32_t, octree::NodeData&&)> prepare_surfels(
-    std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene) {
-    std::vector<gi::Scene> scenes;
-    for (const uint32_t root : source->roots()) scenes.push_back(scene_of_part(scene, source->part_of(root)));
-    return [source = std::move(source), scenes = std::move(scenes)](uint32_t node, octree::NodeData&& data) {
-        const octree::SourcePart part = source->part_of(node);
-        const auto surfels = gi::pack_surfels(part.header, source->nodes()[node], data, scenes[part.index]);
-        const auto bytes = std::as_bytes(std::span(surfels));
-        data.records.assign(bytes.begin(), bytes.end());
-        return std::move(data);
-    };
+SurfelPreparation::SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene)
+    : source_(std::move(source)) {
+    set_scene(scene);
+}
+
+void SurfelPreparation::set_scene(const gi::Scene& scene) {
+    auto scenes = std::make_shared<std::vector<gi::Scene>>();
+    for (const uint32_t root : source_->roots()) scenes->push_back(scene_of_part(scene, source_->part_of(root)));
+    const std::lock_guard lock(mutex_);
+    scenes_ = std::move(scenes);
+}
+
+octree::NodeData SurfelPreparation::pack(uint32_t node, octree::NodeData&& data) const {
+    std::shared_ptr<const std::vector<gi::Scene>> scenes;
+    {
+        const std::lock_guard lock(mutex_);
+        scenes = scenes_;
+    }
+    const octree::SourcePart part = source_->part_of(node);
+    const auto surfels =
+        gi::pack_surfels(part.header, source_->nodes()[node], data, (*scenes)[part.index], part.first_scan);
+    const auto bytes = std::as_bytes(std::span(surfels));
+    data.records.assign(bytes.begin(), bytes.end());
+    return std::move(data);
 }
 
 std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data) {

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <vector>
 
 #include "gi/scene/scene.h"
 #include "gi/scene/surfel_pool.h"
@@ -11,12 +12,24 @@
 
 namespace lucarne::viewer {
 
-/// For octree::ResidencyOptions::prepare: packs nodes into surfels on the loading threads, by each part's own
-/// schema and unit. `scene` says which materials points have; its boxes and scans are of the whole source.
-std::function<octree::NodeData(uint32_t, octree::NodeData&&)> prepare_surfels(
-    std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene);
+/// Packs nodes into surfels on the loading threads, by each part's own schema and unit.
+class SurfelPreparation {
+ public:
+    /// `scene` says which materials and colours points have; its boxes, scans and elevations are of the whole
+    /// source.
+    SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene);
+    /// For nodes from now on. Thread-safe.
+    void set_scene(const gi::Scene& scene);
+    /// For octree::ResidencyOptions::prepare. Thread-safe.
+    octree::NodeData pack(uint32_t node, octree::NodeData&& data) const;
 
-/// What prepare_surfels made of a node.
+ private:
+    std::shared_ptr<const octree::NodeSource> source_;
+    mutable std::mutex mutex_;
+    std::shared_ptr<const std::vector<gi::Scene>> scenes_;  ///< one a part
+};
+
+/// What it made of a node.
 std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data);
 
 }  // namespace lucarne::viewer

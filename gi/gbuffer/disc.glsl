@@ -9,6 +9,8 @@ uniform vec4 view_forward;  // unit; w: near plane, m
 uniform vec4 view_origin;
 uniform uint view_width;
 uniform uint view_height;
+uniform float point_scale;   // of the radii
+uniform float point_pixels;  // over 0: the diameter of all points
 
 struct Disc {
     vec3 centre;
@@ -29,8 +31,12 @@ vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz)
 // False where no part of the disc is before the near plane, and for stray points.
 bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
-    disc.radius = cut_surfel_radius(item, surfel);
+    disc.radius = point_scale * cut_surfel_radius(item, surfel);
     if (!(disc.radius > 0.0)) return false;
+    if (point_pixels > 0.0) {
+        vec2 pixels = pixels_per_tangent();
+        disc.radius = 0.5 * point_pixels * max(disc.centre.z, 0.0) / min(pixels.x, pixels.y);
+    }
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
     // Outside a side plane of the view: without this a disc that stands beside the eye would ask every pixel.
     vec2 side = vec2(view_right.w, view_down.w);
@@ -39,7 +45,8 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     float distance2 = dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
     disc.push = kRimPush * disc.radius * toward.z;  // so far along the ray
-    disc.normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : toward;
+    bool lies = surfel_has_normal(surfel) && !(point_pixels > 0.0);
+    disc.normal = lies ? to_view(surfel_normal(surfel)) : toward;
     disc.extent = disc.radius * sqrt(max(1.0 - disc.normal.z * disc.normal.z, 0.0));
     return disc.centre.z + disc.extent > view_forward.w;
 }

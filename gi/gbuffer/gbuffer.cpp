@@ -11,7 +11,7 @@
 namespace lucarne::gi {
 namespace {
 
-void set_view(const Program& program, const CameraView& view) {
+void set_view(const Program& program, const CameraView& view, const PointSize& size) {
     const auto axis = [&](std::string_view name, const glm::vec3& v, float w) {
         const std::array<float, 4> values = {v.x, v.y, v.z, w};
         program.set_block(name, values);
@@ -24,6 +24,8 @@ void set_view(const Program& program, const CameraView& view) {
     axis("view_origin", {view.origin.x, view.origin.y, view.origin.z}, 0.0f);
     program.set("view_width", view.width);
     program.set("view_height", view.height);
+    program.set("point_scale", size.scale);
+    program.set("point_pixels", size.pixels);
 }
 
 const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
@@ -38,11 +40,11 @@ Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& targ
     return hold(target.candidates, places * sizeof(uint32_t));
 }
 
-Result<void> draw_large(Device& device, const CameraView& view, const GBuffer& target,
+Result<void> draw_large(Device& device, const CameraView& view, const PointSize& size, const GBuffer& target,
                         const Defines& defines) {
     LUCARNE_ASSIGN(const Program* queued, device.program("gi/gbuffer/splat_large.comp", defines));
     LUCARNE_ASSIGN(const Program* overflow, device.program("gi/gbuffer/splat_overflow.comp", defines));
-    for (const Program* program : {queued, overflow}) set_view(*program, view);
+    for (const Program* program : {queued, overflow}) set_view(*program, view, size);
     queued->dispatch_indirect(target.queues, offsetof(QueueHeader, large_groups));
     overflow->dispatch_indirect(target.queues, offsetof(QueueHeader, overflow_groups));
     return {};
@@ -50,7 +52,8 @@ Result<void> draw_large(Device& device, const CameraView& view, const GBuffer& t
 
 }  // namespace
 
-Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target) {
+Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target,
+                       const PointSize& size) {
     const size_t pixels = size_t{view.width} * view.height;
     const uint32_t places = cut.blocks() * kBlockSurfels;
     target.width = view.width;
@@ -70,13 +73,13 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     target.queues.bind(5);
     target.texels.bind(6);
     target.candidates.bind(7);
-    for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view);
+    for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view, size);
     plan->set("blocks", cut.blocks());
     splat->dispatch(places);
     plan->dispatch(1);
-    LUCARNE_TRY(draw_large(device, view, target, {}));
+    LUCARNE_TRY(draw_large(device, view, size, target, {}));
     splat_ids->dispatch_indirect(target.queues, offsetof(QueueHeader, candidate_groups));
-    LUCARNE_TRY(draw_large(device, view, target, kIdPass));
+    LUCARNE_TRY(draw_large(device, view, size, target, kIdPass));
     resolve->dispatch(static_cast<uint32_t>(pixels));
     return {};
 }

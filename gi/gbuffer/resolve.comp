@@ -15,7 +15,9 @@ void main() {
     GBufferTexel texel = GBufferTexel(0.0, 0u, 0u, 0u);
     if (id != kNoSurfel && cut_surfel(id, item, surfel) && view_disc(item, surfel, disc)) {
         vec3 ray = vec3(pixel_tangent(vec2(at % view_width, at / view_width)), 1.0);
-        vec3 normal = dot(disc.normal, ray) > 0.0 ? -disc.normal : disc.normal;
+        // Points of a fixed size are drawn facing the eye, but are lit as they lie.
+        vec3 normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : disc.normal;
+        if (dot(normal, ray) > 0.0) normal = -normal;
         vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;
         texel.depth = disc_depth(disc, ray.xy);
         texel.normal = encode_octahedral(world);

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/scene/environment.h"
+#include "gi/scene/look.h"
 #include "io/core/error.h"
 
 namespace lucarne::gi {
@@ -61,6 +62,7 @@ struct Scene {
     glm::dvec3 background{0.0};  ///< radiance where no surfel is; seen by the camera only
     std::shared_ptr<const Environment>
         environment;  ///< lights, and is seen in the place of `background`; or none
+    Look look;        ///< of the points, whatever lights them
 };
 
 /// Errors name the file and the place: the line for syntax, the JSON pointer for a wrong or unknown key.

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "gi/scene/look_file.h"
 #include "gi/scene/scene.h"
 #include "gi/scene/scene_lights.h"
 #include "gi/scene/scene_limits.h"
@@ -109,6 +110,10 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
         scene.lights.push_back(std::move(light));
     }
     LUCARNE_TRY(read_materials(root, scene));
+    LUCARNE_ASSIGN(const auto look, root.object("look"));
+    if (look) {
+        LUCARNE_ASSIGN(scene.look, read_look(*look));
+    }
     LUCARNE_ASSIGN(const auto cameras, root.objects("cameras", kMostCameras));
     std::set<std::string> names;
     for (const JsonObject& object : cameras) {

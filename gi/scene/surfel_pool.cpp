@@ -152,7 +152,7 @@ uint32_t SurfelPool::capacity() const {
 
 Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& source,
                                   std::span<const CutEntry> entries, const glm::dvec3& local_origin,
-                                  DeviceCut& cut) const {
+                                  DeviceCut& cut, const Clip& clip) const {
     const auto nodes = source.nodes();
     const double unit = source.header().metres_per_unit;
     std::vector<CutEntry> sorted(entries.begin(), entries.end());
@@ -195,21 +195,29 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         const auto lod = [&](uint32_t points) {
             return area_code(stage_area(info, points, unit, item, above));
         };
-        if (item.count)
-            cut_points->runs_.push_back({static_cast<uint32_t>(blocks.size()), entry.node, item.count});
-        for (uint32_t at = 0; at < item.count; at += kBlockSurfels) {
-            const uint32_t count = std::min(item.count - at, kBlockSurfels);
+        const Kept seen = clip.active() ? kept(clip, cube) : Kept::all;
+        item.clip = seen == Kept::some;  // its place follows
+        const uint32_t drawn = seen == Kept::none ? 0 : item.count;
+        if (drawn) cut_points->runs_.push_back({static_cast<uint32_t>(blocks.size()), entry.node, drawn});
+        for (uint32_t at = 0; at < drawn; at += kBlockSurfels) {
+            const uint32_t count = std::min(drawn - at, kBlockSurfels);
             const uint32_t first =
                 resident->second.pages[at / kPageSurfels] * kPageSurfels + at % kPageSurfels;
             blocks.push_back({index, first, count, lod(at) | lod(at + count) << 16});
         }
-        surfels += item.count;
+        surfels += drawn;
         items.push_back(item);
     }
-    LUCARNE_TRY(device.reserve(cut.items_, items.size() * sizeof(CutItem), "cut"));
+    cut.clip_ = device_clip(clip, local_origin, unit);
+    for (CutItem& item : items)
+        if (item.clip) item.clip = static_cast<uint32_t>(items.size());
+    const size_t item_bytes = items.size() * sizeof(CutItem);
+    LUCARNE_TRY(device.reserve(cut.items_, item_bytes + cut.clip_.shapes.size() * sizeof(ClipShape), "cut"));
     LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(CutBlock), "cut"));
     cut.fingerprint_ = mix64(cut.fingerprint_, hash(std::span<const CutItem>(items)));
+    cut.fingerprint_ = mix64(cut.fingerprint_, hash(std::span<const ClipShape>(cut.clip_.shapes)));
     cut.items_.upload_all(items);
+    cut.items_.upload(item_bytes, std::as_bytes(std::span(cut.clip_.shapes)));
     cut.blocks_buffer_.upload_all(blocks);
     cut.pool_ = &buffer_;
     cut.host_items_ = std::move(items);
@@ -228,8 +236,11 @@ std::vector<Surfel> SurfelPool::download(const DeviceCut& cut) const {
     for (const CutBlock& block : cut.host_blocks_) {
         buffer_.download(size_t{block.first} * sizeof(PackedSurfel),
                          std::as_writable_bytes(std::span(packed).first(block.count)));
-        for (uint32_t i = 0; i < block.count; ++i)
-            surfels.push_back(unpack(cut.host_items_, cut.host_items_[block.item], packed[i]));
+        const CutItem& item = cut.host_items_[block.item];
+        for (uint32_t i = 0; i < block.count; ++i) {
+            const Surfel surfel = unpack(cut.host_items_, item, packed[i]);
+            if (!item.clip || cut.clip_.keeps(surfel.position)) surfels.push_back(surfel);
+        }
     }
     return surfels;
 }

@@ -22,9 +22,11 @@ inline constexpr double kMostSurface = 64;
 /// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB
 /// (.5 linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The
 /// material is the last one in the scene whose conditions all hold ([0], the default, has none); those beyond
-/// 256 are not used.
+/// 256 are not used. Colours are what the scene's look asks for (`first_scan` counts the records' scans from
+/// there); points of hidden classes become strays.
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
-                                       const octree::NodeData& data, const Scene& scene);
+                                       const octree::NodeData& data, const Scene& scene,
+                                       uint32_t first_scan = 0);
 
 /// One node of a cut as the stream chose it.
 struct CutEntry {
@@ -56,7 +58,7 @@ class CutPoints {
 /// Bindings are fixed for every shader: see bind().
 class DeviceCut {
  public:
-    uint32_t surfels() const { return surfels_; }  ///< points drawn
+    uint32_t surfels() const { return surfels_; }  ///< points drawn, with those that are tested and clipped
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
     float size() const { return size_; }           ///< m, side of the source's root cube
     /// Of what the cut shows: equal for equal surfels at equal places.
@@ -71,6 +73,7 @@ class DeviceCut {
     Buffer items_, blocks_buffer_;
     std::vector<CutItem> host_items_;
     std::vector<CutBlock> host_blocks_;
+    DeviceClip clip_;
     uint32_t surfels_ = 0, blocks_ = 0;
     float size_ = 1;
     uint64_t fingerprint_ = 0;
@@ -94,9 +97,9 @@ class SurfelPool {
 
     /// Builds a cut from resident nodes (entries must be ancestor-closed; those that are not resident are
     /// left out with their descendants). `local_origin` in world units; everything on the device is metres
-    /// relative to it.
+    /// relative to it. Surfels that `clip` does not keep are not there for anything that reads the cut.
     Result<void> make_cut(Device& device, const octree::NodeSource& source, std::span<const CutEntry> entries,
-                          const glm::dvec3& local_origin, DeviceCut& cut) const;
+                          const glm::dvec3& local_origin, DeviceCut& cut, const Clip& clip = {}) const;
 
     /// The cut's surfels with their footprints, decoded on the host by the same rules, in the order of their
     /// ids without the gaps: what the reference engine traces.

@@ -4,6 +4,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "gi/scene/colouring.h"
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/attributes.h"
@@ -23,8 +24,12 @@ glm::dvec3 vector_at(const Attribute& attribute, const std::byte* record) {
 /// Reads one layout of records; attributes of an unexpected shape count as absent.
 class Packer {
  public:
-    Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene)
-        : header_(header), scene_(scene), cube_(header.root.of(node.key)) {
+    Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene,
+           uint32_t first_scan)
+        : header_(header),
+          scene_(scene),
+          cube_(header.root.of(node.key)),
+          colouring_(header.schema, scene.look, first_scan) {
         color_ = find(io::names::color, 3);
         normal_ = find(io::names::normal, 3);
         normal_oct_ = find(io::names::normal_oct, 3);
@@ -51,9 +56,12 @@ class Packer {
                             fraction(position.z - cube_.min.z));
         PackedSurfel surfel;
         surfel.a = at.x | at.y << 16;
-        surfel.b = at.z | area(record) << 16 | material(position, record, scan) << 24;
-        surfel.d = albedo(record, scan);
-        const glm::vec3 n = normal(record);
+        // A hidden point is one that hangs in the air: not drawn, and no share of any surface.
+        const bool hidden = is_hidden(record);
+        surfel.b = at.z | (hidden ? kStrayArea : area(record)) << 16 | material(position, record, scan) << 24;
+        const glm::vec3 n = hidden ? glm::vec3(0.0f) : normal(record);
+        const auto shown = colouring_.colour(record, position.z, scan, n);
+        surfel.d = shown ? *shown : albedo(record, scan);
         const bool has_normal = n != glm::vec3(0.0f);
         surfel.c = has_normal ? encode_octahedral(n) : 0u;
         if (has_normal) surfel.d |= kSurfelHasNormal;
@@ -67,6 +75,12 @@ class Packer {
     }
     static double scalar(const Attribute* attribute, const std::byte* record) {
         return io::scalar_at(attribute->type, record + attribute->offset);
+    }
+
+    bool is_hidden(const std::byte* record) const {
+        if (!classification_ || scene_.look.hidden_classes.none()) return false;
+        const double number = scalar(classification_, record);
+        return number >= 0 && number < 256 && scene_.look.hidden_classes[static_cast<size_t>(number)];
     }
 
     uint32_t fraction(double offset) const {
@@ -110,10 +124,7 @@ class Packer {
         constexpr double kDefault = 0.5;  // of a scan without colour, linear
         glm::dvec3 srgb(linear_to_srgb(static_cast<float>(kDefault)));
         if (color_) srgb = vector_at(*color_, record) / white(scan);
-        const auto ten_bits = [](double v) {
-            return v > 0 ? static_cast<uint32_t>(std::lround(std::min(v, 1.0) * 1023)) : 0u;
-        };
-        return ten_bits(srgb.x) | ten_bits(srgb.y) << 10 | ten_bits(srgb.z) << 20;
+        return pack_colour(srgb);
     }
 
     /// Unit, or zero. The file's own normals come before estimated ones.
@@ -134,6 +145,7 @@ class Packer {
     const octree::SourceHeader& header_;
     const Scene& scene_;
     const octree::Cube cube_;
+    const Colouring colouring_;
     const Attribute *color_, *normal_, *normal_oct_, *area_, *classification_, *scan_;
 };
 
@@ -154,10 +166,11 @@ void limit_areas(std::vector<PackedSurfel>& surfels) {
 }  // namespace
 
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
-                                       const octree::NodeData& data, const Scene& scene) {
+                                       const octree::NodeData& data, const Scene& scene,
+                                       uint32_t first_scan) {
     const size_t stride = header.schema.stride;
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
-    Packer packer(header, node, scene);
+    Packer packer(header, node, scene, first_scan);
     packer.drop_empty_colours(data);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
     limit_areas(surfels);

@@ -1,32 +1,13 @@
 // The surfels of a cut and what reads them. DeviceCut::bind binds pool, items and blocks, as texels of four words:
 // see Buffer::bind_texels for why.
 #include "octree/footprint.h"
+#include "gi/shared/clip.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
 layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
-layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (-, count, floor, inner), children
+layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (clip, count, floor, inner), children; then ClipShape
 layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
-
-// Finds surfel `id` of the cut; false where the id lies in the gap behind a block's last surfel. Workgroups of
-// kBlockSurfels invocations, one a block, meet one item each.
-bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
-    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
-    uint place = id % kBlockSurfels;
-    item = block.x;
-    if (place >= block.z) return false;
-    uvec4 words = texelFetch(cut_pool, int(block.y + place));
-    surfel = PackedSurfel(words.x, words.y, words.z, words.w);
-    return true;
-}
-
-// See CutBlock.
-float lod_area(uint code) { return exp2(float(code) / 512.0 - 64.0); }
-float surfel_lod_area(uint id) {
-    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
-    float along = (float(id % kBlockSurfels) + 0.5) / float(max(block.z, 1u));
-    return 1.0 / mix(1.0 / lod_area(block.w & 0xffffu), 1.0 / lod_area(block.w >> 16), min(along, 1.0));
-}
 
 // The item's cube: origin, and its side (m).
 vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int(4u * item))); }
@@ -35,6 +16,44 @@ vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int
 vec3 surfel_position(uint item, PackedSurfel surfel) {
     vec4 cube = cut_item_cube(item);
     return cube.xyz + cube.w * surfel_fractions(surfel.a, surfel.b);
+}
+
+// Whether the item's clip keeps the surfel.
+bool surfel_kept(uint item, PackedSurfel surfel) {
+    int at = 4 * int(texelFetch(cut_items, int(4u * item + 1u)).x);
+    if (at == 0) return true;
+    vec3 p = surfel_position(item, surfel);
+    vec4 kind = uintBitsToFloat(texelFetch(cut_items, at + 3));
+    int end = at + 4 * int(kind.y);
+    uint known = kClipUntold;
+    for (; at < end; at += 4) {
+        kind = uintBitsToFloat(texelFetch(cut_items, at + 3));
+        known = clip_fold(known, p, uintBitsToFloat(texelFetch(cut_items, at)),
+                          uintBitsToFloat(texelFetch(cut_items, at + 1)),
+                          uintBitsToFloat(texelFetch(cut_items, at + 2)), kind.x);
+    }
+    return clip_kept(known);
+}
+
+// Finds surfel `id` of the cut; false where the id lies in the gap behind a block's last surfel, and where it is
+// clipped. Workgroups of
+// kBlockSurfels invocations, one a block, meet one item each.
+bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
+    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
+    uint place = id % kBlockSurfels;
+    item = block.x;
+    if (place >= block.z) return false;
+    uvec4 words = texelFetch(cut_pool, int(block.y + place));
+    surfel = PackedSurfel(words.x, words.y, words.z, words.w);
+    return surfel_kept(item, surfel);
+}
+
+// See CutBlock.
+float lod_area(uint code) { return exp2(float(code) / 512.0 - 64.0); }
+float surfel_lod_area(uint id) {
+    uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
+    float along = (float(id % kBlockSurfels) + 0.5) / float(max(block.z, 1u));
+    return 1.0 / mix(1.0 / lod_area(block.w & 0xffffu), 1.0 / lod_area(block.w >> 16), min(along, 1.0));
 }
 
 bool surfel_has_normal(PackedSurfel surfel) { return (surfel.d & kSurfelHasNormal) != 0u; }

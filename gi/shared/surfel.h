@@ -28,7 +28,7 @@ const uint kSurfelHasNormal = 0x40000000u;
 struct CutItem {
     vec3 origin;
     float size;
-    uint unused;
+    uint clip;         // place behind the items of the shapes that its surfels are tested against, see clip.h; 0: none
     uint count;        // prefix in use
     float area_floor;  // m^2, at that prefix
     uint inner;        // 1: some octant is to be looked up, 0: area_floor holds for all its surfels

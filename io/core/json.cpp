@@ -153,6 +153,24 @@ Result<size_t> JsonObject::choice(std::string_view key, const std::vector<std::s
     return wrong_or_missing(key, fmt::format("one of {}", fmt::join(choices, ", ")));
 }
 
+Result<std::vector<int64_t>> JsonObject::integers(std::string_view key, int64_t least, int64_t most,
+                                                  size_t most_of_them) {
+    std::vector<int64_t> numbers;
+    const nlohmann::json* value = take(key);
+    if (!value) return numbers;
+    if (!value->is_array() || value->size() > most_of_them)
+        return wrong(fmt::format("must be an array of at most {} integers", most_of_them), key);
+    for (const nlohmann::json& element : *value) {
+        // Whole numbers beyond 64 bits are floats to the parser.
+        const bool whole = element.is_number_integer();
+        const auto number = whole ? element.get<int64_t>() : int64_t{0};
+        if (!whole || number < least || number > most)
+            return wrong(fmt::format("must hold integers from {} to {}", least, most), key);
+        numbers.push_back(number);
+    }
+    return numbers;
+}
+
 Result<std::vector<JsonObject>> JsonObject::objects(std::string_view key, size_t most) {
     std::vector<JsonObject> objects;
     const nlohmann::json* value = take(key);

@@ -40,6 +40,9 @@ class JsonObject {
     /// [x, y, z], every component within the range.
     Result<glm::dvec3> vector(std::string_view key, JsonRange range = {},
                               std::optional<glm::dvec3> otherwise = {});
+    /// An array of at most `most_of_them` integers; empty where the key is missing.
+    Result<std::vector<int64_t>> integers(std::string_view key, int64_t least, int64_t most,
+                                          size_t most_of_them);
     /// One of `choices`; its index.
     Result<size_t> choice(std::string_view key, const std::vector<std::string_view>& choices,
                           std::optional<size_t> otherwise = {});

@@ -47,6 +47,9 @@ struct LitOptions {
     EngineSettings settings;
     bool moving = false;
     std::shared_ptr<const Environment> environment = nullptr;
+    Unlit unlit{};
+    PointSize size{};
+    Clip clip{};
 };
 
 /// One cut, the whole cloud, serves as view cut, light-view cuts and light cut.
@@ -58,9 +61,14 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
         ADD_FAILURE() << loaded.error().line();
         return lit;
     }
-    const DeviceCut& cut = (*loaded)->cut;
+    DeviceCut& cut = (*loaded)->cut;
+    if (options.clip.active()) {
+        const auto made =
+            (*loaded)->pool.make_cut(device, cloud, cloud.whole(), glm::dvec3(0.0), cut, options.clip);
+        EXPECT_TRUE(made) << made.error().line();
+    }
     GBuffer gbuffer;
-    auto drawn = rasterize(device, cut, camera, gbuffer);
+    auto drawn = rasterize(device, cut, camera, gbuffer, options.size);
     EXPECT_TRUE(drawn) << drawn.error().line();
     const size_t pixels = size_t{camera.width} * camera.height;
     auto radiance = device.buffer(pixels * sizeof(glm::vec4), "radiance");
@@ -82,6 +90,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 times,
                 options.environment};
     frame.moving = options.moving;
+    frame.unlit = options.unlit;
     frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
     const auto prepared = engine.prepare(frame);
     EXPECT_TRUE(prepared) << prepared.error().line();

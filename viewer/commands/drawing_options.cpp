@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
+#include "gi/scene/colouring.h"
 #include "io/core/log.h"
 #include "octree/bulk.h"
 
@@ -92,6 +93,7 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
         ->type_name("SIZE");
     command.add_flag("--no-prefetch", options.no_prefetch,
                      "Load nothing ahead of a camera that moves (for measuring)");
+    add_look_options(command, options.look);
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
 }
 
@@ -130,6 +132,8 @@ Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::No
         if (scene.cameras.empty()) scene.cameras = cameras;
     }
     if (options.exposure) scene.exposure_ev = options.exposure;
+    LUCARNE_TRY(apply(options.look, scene.look));
+    LUCARNE_TRY(gi::check_attribute(source, scene.look));
     return scene;
 }
 

@@ -8,6 +8,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/source.h"
+#include "viewer/commands/look_options.h"
 #include "viewer/pipeline.h"
 
 namespace CLI {
@@ -29,12 +30,14 @@ struct DrawingOptions {
     std::optional<uint64_t> points, seed;
     std::optional<double> exposure;
     std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
+    LookOptions look;
     bool best_candidate = false, no_reuse = false, no_prefetch = false;
 };
 
 /// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
 /// --samples
-/// --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch. `options` outlives the command.
+/// --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch, and those of
+/// add_look_options(). `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
 
 /// The same, looked up and checked.
@@ -46,7 +49,8 @@ struct Drawing {
 /// Errors (ErrorKind::arguments): an unknown preset or engine, a size or an amount of memory that is none.
 Result<Drawing> resolve(const DrawingOptions& options);
 
-/// The scene file, or the default scene for this cloud; the first camera is there in any case.
+/// The scene file, or the default scene for this cloud; the first camera is there in any case. Errors: the
+/// file's; ErrorKind::arguments where no point has the attribute that colours are asked of.
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
 
 /// Errors (ErrorKind::arguments): no camera of that name; the message lists those there are. Empty: the

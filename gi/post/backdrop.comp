@@ -1,0 +1,16 @@
+// What is seen where no point is, from one colour on top to another at the bottom.
+layout(local_size_x = 64) in;
+
+layout(binding = 3) uniform usamplerBuffer gbuffer_texels;
+layout(std430, binding = 1) buffer Picture { uint picture[]; };
+uniform vec4 top;  // sRGB
+uniform vec4 bottom;
+uniform uint width;
+uniform uint height;
+
+void main() {
+    uint at = gl_GlobalInvocationID.x;
+    if (at >= width * height || texelFetch(gbuffer_texels, int(at)).x != 0u) return;
+    float down = (float(at / width) + 0.5) / float(height);
+    picture[at] = packUnorm4x8(mix(top, bottom, down));
+}

@@ -1,0 +1,25 @@
+#include "gi/post/backdrop.h"
+
+#include <array>
+
+namespace lucarne::gi {
+
+Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Backdrop& backdrop,
+                           Buffer& picture) {
+    if (backdrop.kind == Backdrop::Kind::scene) return {};
+    LUCARNE_ASSIGN(const Program* program, device.program("gi/post/backdrop.comp"));
+    gbuffer.texels.bind_texels(3, TexelView::four_words);
+    picture.bind(1);
+    const auto set = [&](std::string_view uniform, const glm::dvec3& colour) {
+        const glm::vec3 c(colour);
+        program->set_block(uniform, std::array<float, 4>{c.x, c.y, c.z, 1.0f});
+    };
+    set("top", backdrop.top);
+    set("bottom", backdrop.kind == Backdrop::Kind::gradient ? backdrop.bottom : backdrop.top);
+    program->set("width", gbuffer.width);
+    program->set("height", gbuffer.height);
+    program->dispatch(gbuffer.width * gbuffer.height);
+    return {};
+}
+
+}  // namespace lucarne::gi

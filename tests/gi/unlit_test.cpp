@@ -1,0 +1,245 @@
+// The engine without light, and clips as every engine meets them.
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "gi/registry.h"
+#include "gi/scene/clip.h"
+#include "tests/gi/lit_scene.h"
+#include "tests/gi/on_device.h"
+#include "tests/gi/surfel_scenes.h"
+
+namespace lucarne::gi {
+namespace {
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+constexpr uint32_t kWidth = 96, kHeight = 64;
+
+class UnlitTest : public OnDevice {
+ protected:
+    Lit draw(const std::vector<Surfel>& surfels, const CameraView& camera, Shading shading,
+             const LitOptions& with = {}) {
+        const auto engine = make_engine("unlit");
+        EXPECT_TRUE(engine);
+        LitOptions options = with;
+        options.unlit.shading = shading;
+        return light_up(*device, **engine, SurfelCloud(surfels), camera, options);
+    }
+};
+
+/// A wall across the view at y = `at`, from x = `from` on.
+void add_wall(std::vector<Surfel>& surfels, float at, float from, const glm::vec3& albedo) {
+    scenes::add_rectangle(surfels, {from, at, -3}, (4.0f - from) * kX, 6.0f * kZ, 120, albedo);
+}
+CameraView ahead() {
+    return look({0, -4, 0}, {0, 1, 0}, kWidth, kHeight);
+}
+
+TEST_F(UnlitTest, FlatColoursAreThePointsOwnWhateverTheLights) {
+    std::vector<Surfel> surfels;
+    add_wall(surfels, 0, -4, {0.2f, 0.5f, 0.8f});
+    LitOptions options;
+    options.lights = {make_spot({0, -4, 0}, {0, 0, 0}, 0.2f, 1000)};
+    options.materials = {make_material(1, 0, 1, 7)};
+    const Lit flat = draw(surfels, ahead(), Shading::flat, options);
+    for (const glm::vec4& pixel : flat.radiance)
+        EXPECT_LT(glm::distance(glm::vec3(pixel), glm::vec3(0.2f, 0.5f, 0.8f)), 0.003f);
+}
+
+TEST_F(UnlitTest, WhereNoPointIsTheBackgroundShows) {
+    LitOptions options;
+    options.background = {0.1f, 0.2f, 0.3f};
+    for (const Shading shading : {Shading::flat, Shading::eye_dome, Shading::occlusion}) {
+        const Lit empty = draw({{{0, 5, 0}, {0, -1, 0}, kX, .001f, 1e-6f, 0}}, ahead(), shading, options);
+        EXPECT_LT(glm::distance(empty.at(3, 3), glm::vec3(0.1f, 0.2f, 0.3f)), 1e-6f);
+    }
+}
+
+TEST_F(UnlitTest, EyeDomeLeavesAWallAsItIsAndDrawsADarkEdgeBehindAStep) {
+    std::vector<Surfel> surfels;
+    add_wall(surfels, 0, -4, glm::vec3(0.5f));
+    const Lit plane = draw(surfels, ahead(), Shading::eye_dome);
+    for (const glm::vec4& pixel : plane.radiance) EXPECT_NEAR(pixel.x, 0.5f, 0.01f);
+
+    add_wall(surfels, -1, 0, glm::vec3(0.5f));  // the right half comes nearer
+    const Lit step = draw(surfels, ahead(), Shading::eye_dome);
+    for (uint32_t y = 2; y < kHeight - 2; ++y) {
+        uint32_t edge = 0;
+        while (edge < kWidth && step.texels[y * kWidth + edge].depth > 3.5f) ++edge;
+        ASSERT_GT(edge, 8u);
+        ASSERT_LT(edge, kWidth - 8);
+        EXPECT_LT(step.at(edge - 1, y).x, 0.2f) << "behind the edge, row " << y;
+        EXPECT_NEAR(step.at(edge + 2, y).x, 0.5f, 0.01f) << "before it";
+        EXPECT_NEAR(step.at(edge - 6, y).x, 0.5f, 0.01f) << "away from it";
+    }
+}
+
+TEST_F(UnlitTest, OcclusionDarkensACornerAndLeavesAnOpenFloorBright) {
+    for (const bool normals : {true, false}) {
+        std::vector<Surfel> surfels;
+        scenes::add_rectangle(surfels, {-4, -4, -1}, 8.0f * kX, 8.0f * kY, 200, glm::vec3(0.5f));
+        scenes::add_rectangle(surfels, {-4, 2, -1}, 8.0f * kX, 4.0f * kZ, 200, glm::vec3(0.5f));
+        if (!normals)
+            for (Surfel& s : surfels) s.normal = glm::vec3(0.0f);
+        const CameraView camera = look({0, -3, 1}, {0, 1.6f, -0.6f}, kWidth, kHeight);
+        LitOptions options;
+        options.unlit.occlusion_reach = 12;
+        const Lit lit = draw(surfels, camera, Shading::occlusion, options);
+        float corner = 1, floor = 0;
+        for (uint32_t y = 4; y < kHeight - 4; ++y) {
+            const glm::vec3 p = lit.position(kWidth / 2, y);
+            if (std::abs(p.y - 2) < 0.1f && std::abs(p.z + 1) < 0.1f)
+                corner = std::min(corner, lit.at(kWidth / 2, y).x);
+            if (p.z < -0.95f && p.y < 1) floor = std::max(floor, lit.at(kWidth / 2, y).x);
+        }
+        EXPECT_LT(corner, 0.38f) << "with normals: " << normals;
+        EXPECT_GT(floor, 0.46f) << "with normals: " << normals;
+    }
+}
+
+TEST_F(UnlitTest, PointsOfAFixedSizeCoverThatManyPixels) {
+    std::vector<Surfel> one = {{{0, 0, 0}, {0, -1, 0}, glm::vec3(1.0f), .01f, 1e-4f, 0}};
+    LitOptions options;
+    options.size.pixels = 9;
+    const Lit drawn = draw(one, ahead(), Shading::flat, options);
+    const auto lit = std::ranges::count_if(drawn.texels, [](const auto& t) { return t.depth > 0; });
+    EXPECT_NEAR(static_cast<double>(lit), 3.1416 * 4.5 * 4.5, 8);
+    for (const GBufferTexel& texel : drawn.texels)
+        if (texel.depth > 0) EXPECT_GT(decode_octahedral(texel.normal).y, -1.01f);
+}
+
+/// A random clip of up to three boxes and two planes.
+Clip random_clip(std::mt19937& random) {
+    std::uniform_real_distribution<double> place(-3, 3), length(0.5, 4), turn(-3, 3);
+    std::uniform_int_distribution<int> coin(0, 1), few(0, 3);
+    Clip clip;
+    for (int i = few(random); i > 0; --i) {
+        const glm::dvec3 low(place(random), place(random), place(random));
+        clip.boxes.push_back({low, low + glm::dvec3(length(random), length(random), length(random)),
+                              turn(random), coin(random) == 1});
+    }
+    for (int i = few(random) / 2; i > 0; --i)
+        clip.planes.push_back({{place(random), place(random), place(random)},
+                               {turn(random), turn(random), turn(random) + 4},
+                               coin(random) == 1});
+    return clip;
+}
+
+/// As data/README.md says it, in doubles.
+bool keeps(const Clip& clip, const glm::dvec3& p) {
+    bool asked = false, inside_one = false;
+    for (const ClipBox& box : clip.boxes) {
+        const glm::dvec3 middle = (box.min + box.max) / 2.0, d = p - middle, half = (box.max - box.min) / 2.0;
+        const double c = std::cos(box.rotation), s = std::sin(box.rotation);
+        const bool inside = std::abs(c * d.x + s * d.y) <= half.x && std::abs(-s * d.x + c * d.y) <= half.y &&
+                            std::abs(d.z) <= half.z;
+        if (box.inverted && inside) return false;
+        asked |= !box.inverted;
+        inside_one |= !box.inverted && inside;
+    }
+    for (const ClipPlane& plane : clip.planes)
+        if ((glm::dot(plane.normal, p - plane.position) < 0) != plane.inverted) return false;
+    return !asked || inside_one;
+}
+
+std::vector<Surfel> cloud_of_points(std::mt19937& random) {
+    std::uniform_real_distribution<float> place(-4, 4);
+    std::vector<Surfel> surfels;
+    for (int i = 0; i < 20000; ++i)
+        surfels.push_back(
+            {{place(random), place(random), place(random)}, {0, -1, 0}, glm::vec3(0.5f), .05f, .004f, 0});
+    return surfels;
+}
+
+TEST_F(UnlitTest, NoPixelShowsAClippedPointAndEveryKeptPointStays) {
+    std::mt19937 random(5);
+    const SurfelCloud cloud(cloud_of_points(random), {{-8, -8, -8}, 16}, 64);
+    auto loaded = load_cloud(*device, cloud);
+    ASSERT_TRUE(loaded);
+    const auto all = (*loaded)->pool.download((*loaded)->cut);
+    for (int trial = 0; trial < 40; ++trial) {
+        const Clip clip = random_clip(random);
+        DeviceCut cut;
+        const glm::dvec3 origin(0.25, -0.5, 0.125);
+        ASSERT_TRUE((*loaded)->pool.make_cut(*device, cloud, cloud.whole(), origin, cut, clip));
+        const auto kept = (*loaded)->pool.download(cut);
+        size_t expected = 0;
+        for (const Surfel& s : all) expected += keeps(clip, glm::dvec3(s.position));
+        EXPECT_NEAR(static_cast<double>(kept.size()), static_cast<double>(expected), 2) << "but for rounding";
+        for (const Surfel& s : kept) {
+            const glm::dvec3 p = glm::dvec3(s.position) + origin;
+            bool close = keeps(clip, p);
+            for (int corner = 0; corner < 8 && !close; ++corner)  // or within a float's rounding of it
+                close = keeps(clip, p + 1e-5 * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1,
+                                                          corner & 4 ? 1 : -1));
+            EXPECT_TRUE(close);
+        }
+        // The device holds to the same rule: the depths seen are those of kept points.
+        GBuffer seen;
+        const CameraView camera = look({-0.25f, -7.5f, -0.125f}, {0, 0, 0}, 160, 120);
+        PointSize pixels;
+        pixels.pixels = 1;
+        ASSERT_TRUE(rasterize(*device, cut, camera, seen, pixels));
+        std::set<float> depths;
+        for (const Surfel& s : kept)
+            depths.insert(glm::dot(s.position - glm::vec3(camera.origin), glm::vec3(camera.forward)));
+        for (const GBufferTexel& texel : seen.texels.download_all<GBufferTexel>(160 * 120)) {
+            if (!(texel.depth > 0)) continue;
+            const auto next = depths.lower_bound(texel.depth - 1e-4f);
+            EXPECT_TRUE(next != depths.end() && *next < texel.depth + 1e-4f) << trial << ": " << texel.depth;
+        }
+    }
+}
+
+TEST_F(UnlitTest, CubesAreNeverSaidToBeWhollyKeptOrGoneWhenTheyAreNot) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> place(-4, 4), share(0, 1);
+    for (int trial = 0; trial < 2000; ++trial) {
+        const Clip clip = random_clip(random);
+        const octree::Cube cube{{place(random), place(random), place(random)}, 0.1 + 2 * share(random)};
+        const Kept said = kept(clip, cube);
+        for (int i = 0; i < 50; ++i) {
+            const bool keeps_it =
+                keeps(clip, cube.min + cube.size * glm::dvec3(share(random), share(random), share(random)));
+            if (said == Kept::all) EXPECT_TRUE(keeps_it);
+            if (said == Kept::none) EXPECT_FALSE(keeps_it);
+        }
+    }
+}
+
+TEST_F(UnlitTest, ALampBehindAClippedWallLightsTheRoomInEveryEngine) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, {-2, -2, -1}, 4.0f * kX, 4.0f * kY, 100, glm::vec3(0.5f));
+    std::vector<Surfel> open = surfels;
+    scenes::add_rectangle(surfels, {-2, -2, 1}, 4.0f * kX, 4.0f * kY, 100,
+                          glm::vec3(0.5f));  // a lid under the lamp
+    Clip clip;
+    clip.planes = {{{0, 0, 0.5}, {0, 0, -1}, false}};
+    LitOptions options;
+    options.lights = {make_spot({0, 0, 2}, {0, 0, -1}, 0.5f, 30)};
+    options.settings.bounces = 0;
+    const CameraView camera = look({0, -3, 0.4f}, {0, 0, -1}, kWidth, kHeight);
+    const auto mean = [&](const Lit& lit) {
+        double sum = 0;
+        for (const glm::vec4& pixel : lit.radiance) sum += pixel.x;
+        return sum / static_cast<double>(lit.radiance.size());
+    };
+    for (const char* name : {"direct", "vpl", "reference"}) {
+        const auto draw_with = [&](const std::vector<Surfel>& scene, const Clip& by) {
+            const auto engine = make_engine(name);
+            LitOptions clipped = options;
+            clipped.clip = by;
+            return mean(light_up(*device, **engine, SurfelCloud(scene), camera, clipped));
+        };
+        const double dark = draw_with(surfels, {}), lit = draw_with(surfels, clip),
+                     truth = draw_with(open, {});
+        EXPECT_GT(truth, 0.1) << name;
+        EXPECT_LT(dark, 0.01 * truth) << name;
+        EXPECT_NEAR(lit / truth, 1, 0.02) << name;
+    }
+}
+
+}  // namespace
+}  // namespace lucarne::gi

@@ -1,0 +1,187 @@
+#include "viewer/commands/look_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+/// "1,2.5,-3" as so many finite numbers; their separator is `between`.
+Result<std::vector<double>> parse_numbers(std::string_view option, std::string_view text, char between,
+                                          size_t count) {
+    std::vector<double> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (bool more = true; more;) {
+        double number = 0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        more = next != end && *next == between;
+        at = more ? next + 1 : next;
+    }
+    if (at == end && numbers.size() == count) return numbers;
+    return bad_arguments(std::string(option),
+                         fmt::format("'{}' is not {} numbers with '{}' between them", text, count, between));
+}
+
+/// The index of `name`.
+Result<size_t> find_name(std::string_view option, const std::string& name,
+                         std::span<const std::string_view> names) {
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return i;
+    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
+                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
+}
+
+Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
+    LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', 6));
+    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, 0, inverted};
+    if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
+        return bad_arguments(std::string(option),
+                             fmt::format("'{}' has its second corner below its first", text),
+                             "give x0,y0,z0,x1,y1,z1 with the smaller ones first");
+    return box;
+}
+
+/// "scene", "r,g,b" or "r,g,b:r,g,b".
+Result<gi::Backdrop> parse_background(const std::string& text) {
+    gi::Backdrop backdrop;
+    if (text == "scene") return backdrop;
+    const size_t colon = text.find(':');
+    const auto colour = [](const std::string& part) -> Result<glm::dvec3> {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--background", part, ',', 3));
+        for (const double v : n)
+            if (v < 0 || v > 1) return bad_arguments("--background", fmt::format("{} is not from 0 to 1", v));
+        return glm::dvec3(n[0], n[1], n[2]);
+    };
+    backdrop.kind = gi::Backdrop::Kind::colour;
+    LUCARNE_ASSIGN(backdrop.top, colour(text.substr(0, colon)));
+    if (colon == std::string::npos) return backdrop;
+    backdrop.kind = gi::Backdrop::Kind::gradient;
+    LUCARNE_ASSIGN(backdrop.bottom, colour(text.substr(colon + 1)));
+    return backdrop;
+}
+
+Result<void> apply_colours(const LookOptions& options, gi::Look& look) {
+    if (options.colour.starts_with("attribute:")) {
+        look.colour = gi::ColourBy::attribute;
+        look.attribute = options.colour.substr(std::string_view("attribute:").size());
+    } else if (!options.colour.empty()) {
+        LUCARNE_ASSIGN(const size_t by, find_name("--colour", options.colour, gi::colour_names()));
+        look.colour = static_cast<gi::ColourBy>(by);
+        if (look.colour == gi::ColourBy::attribute)
+            return bad_arguments("--colour", "no attribute is named", "give attribute:NAME");
+    }
+    if (!options.map.empty()) {
+        LUCARNE_ASSIGN(const size_t map, find_name("--colour-map", options.map, gi::colour_map_names()));
+        look.map = static_cast<gi::ColourMap>(map);
+    }
+    look.reversed |= options.reversed;
+    if (!options.range.empty()) {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--range", options.range, ':', 2));
+        look.range = gi::ValueRange{n[0], n[1]};
+    }
+    for (const int number : options.hidden_classes) look.hidden_classes.set(static_cast<size_t>(number));
+    return {};
+}
+
+Result<void> apply_clip(const LookOptions& options, gi::Clip& clip) {
+    for (const auto& text : options.clip_boxes) {
+        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-box", text, false));
+        clip.boxes.push_back(box);
+    }
+    for (const auto& text : options.clip_outside) {
+        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-outside", text, true));
+        clip.boxes.push_back(box);
+    }
+    for (const auto& text : options.clip_planes) {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--clip-plane", text, ',', 6));
+        const gi::ClipPlane plane{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+        if (!(glm::length(plane.normal) > 0))
+            return bad_arguments("--clip-plane", "the normal points nowhere");
+        clip.planes.push_back(plane);
+    }
+    clip.casts |= options.clip_casts;
+    if (clip.boxes.size() + clip.planes.size() > gi::kMostClips)
+        return bad_arguments("--clip-box", fmt::format("more than {} boxes and planes", gi::kMostClips));
+    return {};
+}
+
+}  // namespace
+
+void add_look_options(CLI::App& command, LookOptions& options) {
+    const auto names = [](std::span<const std::string_view> all) {
+        return fmt::format("{}", fmt::join(all, ", "));
+    };
+    command
+        .add_option("--colour,--color", options.colour,
+                    "What the points' colours say: " + names(gi::colour_names()) + ":NAME")
+        ->type_name("WHAT");
+    command.add_option("--colour-map,--color-map", options.map, names(gi::colour_map_names()))
+        ->type_name("NAME");
+    command.add_flag("--reverse-map", options.reversed, "The colour map from its other end");
+    command
+        .add_option("--range", options.range,
+                    "Values that the colour map's ends stand for; where most points lie when not given")
+        ->type_name("LOW:HIGH");
+    command.add_option("--shading", options.shading, "Of the engine unlit: " + names(gi::shading_names()))
+        ->type_name("NAME");
+    command.add_option("--shading-strength", options.shading_strength, "0: none, 1: usual")
+        ->check(CLI::Range(0.0, 10.0))
+        ->type_name("X");
+    command.add_option("--point-size", options.point_size, "Scale of the points' own size")
+        ->check(CLI::Range(0.05, 20.0))
+        ->type_name("X");
+    command.add_option("--point-pixels", options.point_pixels, "The same size for all points, in pixels")
+        ->check(CLI::Range(0.0, 64.0))
+        ->type_name("N");
+    command
+        .add_option("--background", options.background,
+                    "Behind the points: scene, one colour, or one from top to bottom (sRGB, 0 to 1)")
+        ->type_name("R,G,B[:R,G,B]");
+    command.add_option("--hide-class", options.hidden_classes, "Points of these classes are not there")
+        ->check(CLI::Range(0, 255))
+        ->delimiter(',')
+        ->type_name("N,...");
+    command
+        .add_option("--clip-box", options.clip_boxes, "Only points inside are there (several: inside any)")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+    command.add_option("--clip-outside", options.clip_outside, "Only points outside are there")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+    command
+        .add_option("--clip-plane", options.clip_planes,
+                    "Only points on the side that the normal points to are there")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("PX,PY,PZ,NX,NY,NZ");
+    command.add_flag("--clip-casts", options.clip_casts,
+                     "What is clipped is out of sight, but still blocks and bounces light");
+}
+
+Result<void> apply(const LookOptions& options, gi::Look& look) {
+    LUCARNE_TRY(apply_colours(options, look));
+    LUCARNE_TRY(apply_clip(options, look.clip));
+    if (!options.shading.empty()) {
+        LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
+        look.unlit.shading = static_cast<gi::Shading>(shading);
+    }
+    look.unlit.strength = options.shading_strength.value_or(look.unlit.strength);
+    look.point_size = options.point_size.value_or(look.point_size);
+    look.point_pixels = options.point_pixels.value_or(look.point_pixels);
+    if (!options.background.empty()) {
+        LUCARNE_ASSIGN(look.backdrop, parse_background(options.background));
+    }
+    return {};
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gi/scene/look.h"
+#include "io/core/error.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lucarne::viewer {
+
+/// How points are shown, over what the scene file's `look` says.
+struct LookOptions {
+    std::string colour, map, range, shading, background;
+    std::optional<double> point_size, point_pixels, shading_strength;
+    std::vector<std::string> clip_boxes, clip_planes, clip_outside;
+    std::vector<int> hidden_classes;
+    bool reversed = false, clip_casts = false;
+};
+
+/// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size
+/// --point-pixels
+/// --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts. `options` outlives the
+/// command.
+void add_look_options(CLI::App& command, LookOptions& options);
+
+/// Errors (ErrorKind::arguments): a text that is none of what its option takes.
+Result<void> apply(const LookOptions& options, gi::Look& look);
+
+}  // namespace lucarne::viewer
