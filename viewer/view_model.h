@@ -9,6 +9,7 @@
 #include "viewer/picture_worker.h"
 #include "viewer/presets.h"
 #include "viewer/shell/shell.h"
+#include "viewer/tools/measure_model.h"
 
 namespace lucarne::viewer {
 
@@ -32,6 +33,7 @@ struct ViewModel {
     PipelineOptions caps;
 
     Shell shell;  ///< the open scans and what stands around the picture
+    MeasureModel measure;
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

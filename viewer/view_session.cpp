@@ -168,6 +168,7 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard) run_actions(model_, keys);
+    measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
     if (at_light && !io.WantCaptureMouse) {
@@ -179,6 +180,7 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_menu_bar(model_);
+    measure_.draw(model_);
     draw_scans_panel(model_);
     if (scans_.rows().empty()) draw_start_page(model_);
     if (model_.show_panels && !scans_.rows().empty()) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "viewer/cost_model.h"
+#include "viewer/measure_session.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
 #include "viewer/shell/scan_set.h"
@@ -63,6 +64,7 @@ class ViewSession {
     bool first_told_ = false;
     MovingQuality quality_;
     FrameBudget budget_;
+    MeasureSession measure_{&Window::wake};
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the version that is no user's

@@ -12,6 +12,7 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
+#include "viewer/tools/measure_file.h"
 #include "viewer/view_session.h"
 
 namespace lucarne::viewer {
@@ -19,7 +20,7 @@ namespace {
 
 struct ViewOptions {
     InputOptions input;
-    std::string camera, screenshot;
+    std::string camera, screenshot, measurements;
     DrawingOptions drawing;
     uint32_t frames = 1;
     double frame_time_ms = 100;
@@ -52,12 +53,17 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     model.budgets = drawing.preset.budgets;
     model.frame_time = options.frame_time_ms * 1e-3;
     model.caps = drawing.caps;
+    if (!options.measurements.empty()) {
+        model.measure.file = options.measurements;
+        model.measure.wish = MeasureModel::FileWish::load;
+    }
     return model;
 }
 
 Result<void> view(const ViewOptions& options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
+    if (!options.measurements.empty()) LUCARNE_TRY(load_measurements(options.measurements, std::nullopt));
     std::optional<ScriptedShot> shot;
     if (!options.screenshot.empty()) {
         if (options.input.paths.empty())
@@ -99,6 +105,8 @@ void add_view(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(1.0, 1e5))
         ->capture_default_str()
         ->type_name("MS");
+    command->add_option("--measurements", options->measurements, "Show these measurements, as the window saves them")
+        ->type_name("FILE.json");
     command->add_option("--screenshot", options->screenshot,
                         "Save the window as this PNG once it is whole, and close");
     command->add_option("--frames", options->frames, "Whole pictures to wait for with --screenshot")

@@ -13,6 +13,8 @@ void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how f
 void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure
 void draw_light_panel(ViewModel& model);               ///< the selected spot
 void draw_statistics_panel(ViewModel& model);          ///< the last picture's figures
+void draw_measure_panel(ViewModel& model);             ///< tools, measurements, points
+void draw_measurements(ViewModel& model);              ///< over the picture
 void draw_help(ViewModel& model);                      ///< every action and gesture
 void draw_message(const ViewModel& model, bool busy);  ///< one line at the bottom
 

@@ -1,0 +1,143 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "io/core/file.h"
+#include "io/core/log.h"
+#include "viewer/commands/commands.h"
+#include "viewer/inputs.h"
+#include "viewer/tools/measure_file.h"
+#include "viewer/tools/nearest.h"
+#include "viewer/tools/section.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct Options {
+    std::vector<std::string> inputs;
+    std::string measurements, output, sections, unit = "m";
+    std::vector<std::vector<double>> at;
+    std::string json_file;
+    uint64_t section_points = kMostSectionPoints;
+    bool snap = false, overwrite = false;
+};
+
+/// The points of the scan nearest to the places asked for, as measurements of single points.
+Result<std::vector<Measurement>> points_at(const Options& options, NodeCache& cache) {
+    std::vector<Measurement> all;
+    for (const std::vector<double>& place : options.at) {
+        if (place.size() != 3) return bad_arguments("--at", "takes three numbers", "give X,Y,Z");
+        LUCARNE_ASSIGN(auto found, nearest_point(cache, {place[0], place[1], place[2]}, INFINITY));
+        if (!found) return rejected("--at", "the scan has no points");
+        Measurement point;
+        point.name = fmt::format("Point {}", all.size() + 1);
+        point.points.push_back(std::move(*found));
+        all.push_back(std::move(point));
+    }
+    return all;
+}
+
+Result<void> snap(std::vector<Measurement>& all, NodeCache& cache) {
+    for (Measurement& measurement : all)
+        for (ExactPoint& point : measurement.points) {
+            LUCARNE_ASSIGN(auto found, nearest_point(cache, point.position, INFINITY));
+            if (found) point = std::move(*found);
+        }
+    return {};
+}
+
+Result<void> write_text(const std::filesystem::path& path, std::string_view text, bool overwrite) {
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(text));
+    return file.commit();
+}
+
+/// section-1.csv and section-1.svg, and so on, in the order of the measurements.
+Result<void> write_sections(const Options& options, const std::vector<Measurement>& all,
+                            const UnitChoice& units, NodeCache& cache) {
+    size_t number = 0;
+    for (const Measurement& measurement : all) {
+        if (measurement.kind != MeasureKind::section) continue;
+        LUCARNE_ASSIGN(const Section section,
+                       read_section(*cache.source(), Slice::of(measurement), options.section_points,
+                                    [](const Section&, bool) { return true; }));
+        const auto path = std::filesystem::path(options.sections) / fmt::format("section-{}", ++number);
+        LUCARNE_TRY(write_section(path, section, measurement.name, units, cache, options.overwrite));
+        log::info("{}.csv and .svg: {} points of {}{}", path.string(), section.points.size(),
+                  measurement.name,
+                  section.complete ? "" : ", a sample: there are more than --section-points");
+    }
+    return {};
+}
+
+Result<void> measure(const Options& options) {
+    if (options.measurements.empty() && options.at.empty())
+        return bad_arguments("measure", "there is nothing to measure",
+                             "give a file of measurements or --at X,Y,Z");
+    LUCARNE_ASSIGN(auto source, open_inputs(options.inputs));
+    const double metres_per_unit = source->header().metres_per_unit;
+    NodeCache cache(std::move(source));
+    const UnitChoice units{options.unit == "m", metres_per_unit};
+    LUCARNE_ASSIGN(std::vector<Measurement> all, points_at(options, cache));
+    if (!options.measurements.empty()) {
+        LUCARNE_ASSIGN(auto loaded, load_measurements(options.measurements, metres_per_unit));
+        if (options.snap) LUCARNE_TRY(snap(loaded, cache));
+        all.insert(all.end(), std::make_move_iterator(loaded.begin()), std::make_move_iterator(loaded.end()));
+    }
+    if (options.output.empty())
+        fmt::print("{}", measurements_text(all, units));
+    else
+        LUCARNE_TRY(save_measurements(options.output, all, units, options.overwrite));
+    if (!options.json_file.empty())
+        LUCARNE_TRY(
+            write_text(options.json_file, measurements_json(all, metres_per_unit), options.overwrite));
+    return options.sections.empty() ? Result<void>{} : write_sections(options, all, units, cache);
+}
+
+}  // namespace
+
+void add_measure(CLI::App& app, Command& chosen) {
+    auto options = std::make_shared<Options>();
+    auto* command =
+        app.add_subcommand("measure", "Measure as the window does: points, distances, areas, sections");
+    command->add_option("INPUT", options->inputs, "Caches or scan files, as one cloud")
+        ->required()
+        ->expected(1, -1);
+    command
+        ->add_option("--measurements", options->measurements,
+                     "What to measure, as the window saves it (data/README.md)")
+        ->type_name("FILE.json");
+    command
+        ->add_option("--at", options->at,
+                     "Say all of the scan's point nearest to this place; may be repeated")
+        ->delimiter(',')
+        ->type_name("X,Y,Z");
+    command->add_flag("--snap", options->snap,
+                      "Move the measurements' points to the nearest ones of the scan first");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Write a table (.csv) or the measurements again (.json); else they are printed")
+        ->type_name("FILE");
+    command->add_option("--json", options->json_file, "Write the results there as well, for machines")
+        ->type_name("FILE");
+    command->add_option("--unit", options->unit, "Results in metres or in the scan file's own unit")
+        ->check(CLI::IsMember({"m", "file"}))
+        ->capture_default_str();
+    command
+        ->add_option("--sections", options->sections,
+                     "Write every section into this folder, as points and as a drawing")
+        ->type_name("FOLDER");
+    command->add_option("--section-points", options->section_points, "The most points of a section")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
+        ->capture_default_str();
+    command->add_flag("--overwrite", options->overwrite, "Replace outputs that exist");
+    command->callback([options, &chosen] { chosen = [options] { return measure(*options); }; });
+}
+
+}  // namespace lucarne::viewer

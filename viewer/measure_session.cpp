@@ -1,0 +1,97 @@
+#include "viewer/measure_session.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/panels/panels.h"
+#include "viewer/tools/measure_file.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kClickReach = 4;  ///< pixels: what moves further between press and release is a drag
+constexpr int kMostFiles = 10000;
+
+/// The first name of the kind section-0001 that is free.
+std::filesystem::path free_section(const std::filesystem::path& folder) {
+    for (int number = 1; number < kMostFiles; ++number) {
+        auto base = folder / fmt::format("section-{:04}", number);
+        std::error_code ignored;
+        if (!std::filesystem::exists(base.string() + ".csv", ignored) &&
+            !std::filesystem::exists(base.string() + ".svg", ignored))
+            return base;
+    }
+    return folder / "section";
+}
+
+}  // namespace
+
+void MeasureSession::take_results(ViewModel& model) {
+    MeasureModel& measure = model.measure;
+    for (MeasureWorker::Pick& pick : worker_.take_picks()) {
+        if (!pick)
+            measure.message = pick.error().line();
+        else if (!*pick)
+            measure.message = "no point is seen there";
+        else
+            measure.take(std::move((*pick)->point));
+    }
+    if (auto message = worker_.take_message()) measure.message = std::move(*message);
+}
+
+void MeasureSession::follow_section(ViewModel& model) {
+    MeasureModel& measure = model.measure;
+    const Measurement* one = measure.selected_one();
+    const bool shown = one && one->kind == MeasureKind::section && model.picture;
+    if (shown) worker_.read(model.picture->source, Slice::of(*one));
+    measure.section = shown ? worker_.section() : nullptr;
+    if (!measure.save_section) return;
+    measure.save_section = false;
+    if (shown) worker_.save_section(free_section(model.pictures), one->name, measure.units());
+}
+
+void MeasureSession::files(ViewModel& model) {
+    MeasureModel& measure = model.measure;
+    if (measure.wish == MeasureModel::FileWish::none || !model.picture)
+        return;  // the first picture tells the unit
+    const auto wish = std::exchange(measure.wish, MeasureModel::FileWish::none);
+    const auto path = model.pictures / measure.file;
+    if (wish == MeasureModel::FileWish::save) {
+        const auto saved = save_measurements(path, measure.list.all(), measure.units(), path == own_file_);
+        if (saved) own_file_ = path;
+        measure.message = saved ? "saved " + path.string() : saved.error().line();
+        return;
+    }
+    auto loaded = load_measurements(path, measure.metres_per_unit);
+    measure.message = loaded ? fmt::format("{} measurements loaded", loaded->size()) : loaded.error().line();
+    if (!loaded) return;
+    own_file_ = path;
+    measure.list.replace(std::move(*loaded));
+    measure.selected.reset();
+    measure.show_panel = true;
+}
+
+void MeasureSession::take_input(ViewModel& model) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool click = ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.WantCaptureMouse &&
+                       !io.KeyShift &&
+                       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClickReach * kClickReach;
+    if (click && model.measure.tool && model.picture) {
+        const ImVec2 at = io.MouseClickedPos[ImGuiMouseButton_Left];
+        worker_.pick(model.picture, {at.x / io.DisplaySize.x, at.y / io.DisplaySize.y});
+    }
+    if (model.picture) model.measure.set_unit(model.picture->metres_per_unit);
+    if (!(model.measure.thickness > 0)) model.measure.thickness = model.scene_size / 100;
+    take_results(model);
+    follow_section(model);
+    files(model);
+    if (!model.measure.message.empty()) model.message = std::exchange(model.measure.message, {});
+}
+
+void MeasureSession::draw(ViewModel& model) {
+    draw_measurements(model);
+    draw_measure_panel(model);
+    section_panel_.draw(model);
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "viewer/panels/section_panel.h"
+#include "viewer/tools/measure_worker.h"
+#include "viewer/view_model.h"
+
+namespace lucarne::viewer {
+
+/// Measuring in the window: clicks become points, wishes are fulfilled, panels and labels drawn.
+class MeasureSession {
+ public:
+    explicit MeasureSession(std::function<void()> wake) : worker_(std::move(wake)) {}
+
+    /// Between the window's begin_frame and draw.
+    void take_input(ViewModel& model);
+    void draw(ViewModel& model);
+
+ private:
+    void take_results(ViewModel& model);
+    void follow_section(ViewModel& model);
+    void files(ViewModel& model);
+
+    MeasureWorker worker_;
+    SectionPanel section_panel_;
+    std::filesystem::path own_file_;  ///< saved or loaded before: may be written over
+};
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,86 @@
+// The selected section as a drawing: along the line to the right, height upward, both to the same scale.
+#include "viewer/panels/section_panel.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kDot = 2;  ///< pixels of a cell's side
+constexpr ImU32 kGrid = IM_COL32(90, 90, 90, 255), kText = IM_COL32(200, 200, 200, 255);
+
+void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, const ImVec2& size,
+          const UnitChoice& units) {
+    const double unit = units.convert(1, Dimension::length),
+                 pixels = raster.scale * kDot / unit;  // a shown unit
+    const double left = raster.left * unit, bottom = raster.bottom * unit;
+    const double step = axis_step(size.x / pixels, 8);
+    for (double x = std::ceil(left / step) * step; (x - left) * pixels < size.x; x += step) {
+        const float at = corner.x + static_cast<float>((x - left) * pixels);
+        list.AddLine({at, corner.y}, {at, corner.y + size.y}, kGrid);
+        list.AddText({at + 3, corner.y + size.y - ImGui::GetTextLineHeight()}, kText,
+                     fmt::format("{:.6g}", x).c_str());
+    }
+    for (double y = std::ceil(bottom / step) * step; (y - bottom) * pixels < size.y; y += step) {
+        const float at = corner.y + size.y - static_cast<float>((y - bottom) * pixels);
+        list.AddLine({corner.x, at}, {corner.x + size.x, at}, kGrid);
+        list.AddText({corner.x + 3, at}, kText,
+                     fmt::format("{:.8g} {}", y, units.name(Dimension::length)).c_str());
+    }
+}
+
+}  // namespace
+
+void SectionPanel::draw(ViewModel& model) {
+    MeasureModel& measure = model.measure;
+    const Measurement* one = measure.selected_one();
+    if (!one || one->kind != MeasureKind::section || !measure.show_panel) return;
+    const UnitChoice units = measure.units();
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float font = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos(ImVec2(font, display.y - font * 19), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(display.x - font * 25, font * 17), ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Section")) {
+        const Section* section = measure.section.get();
+        const bool whole = section && (section->complete || section->nodes_read == section->nodes);
+        if (section)
+            ImGui::Text(
+                "%s: %zu points%s", one->name.c_str(), section->points.size(),
+                whole ? ""
+                      : fmt::format(", {} of {} nodes read", section->nodes_read, section->nodes).c_str());
+        else
+            ImGui::TextUnformatted("Reading the points.");
+        ImGui::SameLine();
+        ImGui::BeginDisabled(!section);
+        if (ImGui::SmallButton("Save as CSV and SVG")) measure.save_section = true;
+        ImGui::EndDisabled();
+        const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
+        if (section && size.x > 20 && size.y > 20) plot(measure.section, corner, size, units);
+    }
+    ImGui::End();
+}
+
+void SectionPanel::plot(const std::shared_ptr<const Section>& section, const ImVec2& corner,
+                        const ImVec2& size, const UnitChoice& units) {
+    const auto columns = static_cast<uint32_t>(size.x / kDot), rows = static_cast<uint32_t>(size.y / kDot);
+    if (section != drawn_ || columns != columns_ || rows != rows_) {
+        raster_ = rasterize(*section, columns, rows);
+        drawn_ = section;
+        columns_ = columns;
+        rows_ = rows;
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    axes(list, raster_, corner, size, units);
+    for (const ProfileRaster::Dot& dot : raster_.dots) {
+        const ImVec2 at(corner.x + kDot * dot.x, corner.y + kDot * dot.y);
+        list.AddRectFilled(at, {at.x + kDot, at.y + kDot},
+                           IM_COL32(dot.color[0], dot.color[1], dot.color[2], 255));
+    }
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "viewer/tools/profile_raster.h"
+#include "viewer/view_model.h"
+
+struct ImVec2;
+
+namespace lucarne::viewer {
+
+/// The selected section, drawn. Keeps its dots from frame to frame.
+class SectionPanel {
+ public:
+    void draw(ViewModel& model);
+
+ private:
+    void plot(const std::shared_ptr<const Section>& section, const ImVec2& corner, const ImVec2& size,
+              const UnitChoice& units);
+
+    std::shared_ptr<const Section> drawn_;
+    uint32_t columns_ = 0, rows_ = 0;
+    ProfileRaster raster_;
+};
+
+}  // namespace lucarne::viewer

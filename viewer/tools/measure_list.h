@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "viewer/tools/measurement.h"
+
+namespace lucarne::viewer {
+
+/// The measurements of a session. Every change can be undone, the last hundred of them.
+class MeasureList {
+ public:
+    static constexpr size_t kMost = 10000, kMostUndone = 100;
+
+    const std::vector<Measurement>& all() const { return *now_; }
+    /// Gives a name ("Distance 2") to one that has none. False when the list is full.
+    bool add(Measurement measurement);
+    void remove(size_t index);
+    void rename(size_t index, std::string name);
+    void replace(std::vector<Measurement> all);
+    void set_thickness(size_t index, double thickness);
+
+    /// All positions, to another unit. This cannot be undone, nor what was before.
+    void scale(double factor);
+
+    bool can_undo() const { return !before_.empty(); }
+    bool can_redo() const { return !after_.empty(); }
+    void undo();
+    void redo();
+
+ private:
+    using State = std::shared_ptr<const std::vector<Measurement>>;
+    void become(std::vector<Measurement> next);
+
+    State now_ = std::make_shared<const std::vector<Measurement>>();
+    std::vector<State> before_, after_;
+};
+
+}  // namespace lucarne::viewer

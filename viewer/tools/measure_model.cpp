@@ -1,0 +1,89 @@
+#include "viewer/tools/measure_model.h"
+
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "viewer/tools/measure_file.h"
+
+namespace lucarne::viewer {
+
+void MeasureModel::start(MeasureKind kind) {
+    tool = kind;
+    pending.clear();
+    show_panel = true;
+    message = fmt::format("{}: click {}", info_of(kind).title, info_of(kind).hint);
+}
+
+void MeasureModel::take(ExactPoint point) {
+    if (!tool) return;
+    pending.push_back(std::move(point));
+    if (pending.size() < info_of(*tool).most) {
+        const auto& [x, y, z] = pending.back().coordinates;
+        message = fmt::format("{} {} {}", x, y, z);
+    } else {
+        finish();
+    }
+}
+
+bool MeasureModel::finish() {
+    if (!tool || pending.size() < info_of(*tool).least) return false;
+    Measurement done{*tool, "", std::exchange(pending, {}), *tool == MeasureKind::section ? thickness : 0};
+    if (!list.add(std::move(done))) {
+        message = "no more measurements can be held; save and delete some";
+        return true;
+    }
+    selected = list.all().size() - 1;
+    message = list.all().back().name;
+    return true;
+}
+
+void MeasureModel::drop_last() {
+    if (!pending.empty()) pending.pop_back();
+}
+
+void MeasureModel::stop() {
+    tool.reset();
+    pending.clear();
+}
+
+void MeasureModel::remove_selected() {
+    if (!selected_one()) return;
+    message = "deleted " + selected_one()->name;
+    list.remove(*selected);
+    selected.reset();
+}
+
+void MeasureModel::undo() {
+    list.undo();
+    if (!selected_one()) selected.reset();
+}
+
+void MeasureModel::redo() {
+    list.redo();
+    if (!selected_one()) selected.reset();
+}
+
+void MeasureModel::copy_selected() {
+    const Measurement* one = selected_one();
+    const std::span<const Measurement> what = one ? std::span(one, 1) : std::span(list.all());
+    if (what.empty()) return;
+    clipboard = measurements_text(what, units());
+    message = one ? "copied " + one->name : fmt::format("copied {} measurements", what.size());
+}
+
+void MeasureModel::set_unit(double its_metres_per_unit) {
+    if (its_metres_per_unit == metres_per_unit) return;
+    const double factor = metres_per_unit / its_metres_per_unit;
+    metres_per_unit = its_metres_per_unit;
+    list.scale(factor);
+    for (ExactPoint& point : pending) point.position *= factor;
+    thickness *= factor;
+}
+
+const Measurement* MeasureModel::selected_one() const {
+    return selected && *selected < list.all().size() ? &list.all()[*selected] : nullptr;
+}
+
+}  // namespace lucarne::viewer

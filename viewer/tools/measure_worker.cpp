@@ -1,0 +1,119 @@
+#include "viewer/tools/measure_worker.h"
+
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace lucarne::viewer {
+namespace {
+
+/// The window lives on when memory does not do.
+template <class Work>
+auto guarded(const char* what, const Work& work) -> decltype(work()) {
+    try {
+        return work();
+    } catch (const std::exception& problem) {
+        return failed(what, problem.what());
+    }
+}
+
+}  // namespace
+
+NodeCache& MeasureWorker::cache_of(const std::shared_ptr<const octree::NodeSource>& source) {
+    if (!cache_ || cache_->source() != source) cache_ = std::make_unique<NodeCache>(source);
+    return *cache_;
+}
+
+void MeasureWorker::pick(std::shared_ptr<const Picture> picture, const glm::dvec2& place) {
+    if (waiting_ >= kMostWaiting) return;
+    ++waiting_;
+    picking_.push([this, picture = std::move(picture), place] {
+        Pick found =
+            guarded("picking", [&] { return pick_point(*picture, place, cache_of(picture->source)); });
+        {
+            const std::lock_guard lock(mutex_);
+            picks_.push_back(std::move(found));
+        }
+        --waiting_;
+        published_();
+    });
+}
+
+std::vector<MeasureWorker::Pick> MeasureWorker::take_picks() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(picks_, {});
+}
+
+void MeasureWorker::say(std::string message) {
+    {
+        const std::lock_guard lock(mutex_);
+        message_ = std::move(message);
+    }
+    published_();
+}
+
+std::optional<std::string> MeasureWorker::take_message() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(message_, std::nullopt);
+}
+
+void MeasureWorker::read(std::shared_ptr<const octree::NodeSource> source, const Slice& slice) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (source == section_source_ && slice_ == slice) return;
+        section_source_ = source;
+        slice_ = slice;
+        section_ = nullptr;
+    }
+    *stop_ = true;
+    stop_ = std::make_shared<std::atomic<bool>>(false);
+    sections_.push([this, source = std::move(source), slice, stop = stop_] {
+        if (*stop) return;
+        const auto publish = [&](const Section& section) {
+            auto copy = std::make_shared<const Section>(section);
+            {
+                const std::lock_guard lock(mutex_);
+                if (slice_ == slice && section_source_ == source) section_ = std::move(copy);
+            }
+            published_();
+        };
+        const auto section = guarded("section", [&] {
+            return read_section(*source, slice, kMostSectionPoints, [&](const Section& now, bool level_done) {
+                if (level_done) publish(now);
+                return !*stop;
+            });
+        });
+        if (!section) return say(section.error().line());
+        if (!*stop) publish(*section);
+    });
+}
+
+std::shared_ptr<const Section> MeasureWorker::section() const {
+    const std::lock_guard lock(mutex_);
+    return section_;
+}
+
+Result<void> MeasureWorker::write_section(const std::filesystem::path& base, const std::string& title,
+                                          const UnitChoice& units) {
+    std::shared_ptr<const Section> section;
+    std::shared_ptr<const octree::NodeSource> source;
+    {
+        const std::lock_guard lock(mutex_);
+        section = section_;
+        source = section_source_;
+    }
+    if (!section) return failed("section", "there is none to save");
+    NodeCache cache(source);
+    return viewer::write_section(base, *section, title, units, cache, false);
+}
+
+void MeasureWorker::save_section(const std::filesystem::path& base, const std::string& title,
+                                 const UnitChoice& units) {
+    sections_.push([=, this] {
+        const auto written = guarded("section", [&] { return write_section(base, title, units); });
+        say(written ? fmt::format("saved {}.csv and .svg", base.string()) : written.error().line());
+    });
+}
+
+}  // namespace lucarne::viewer

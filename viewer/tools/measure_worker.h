@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/shell/job_queue.h"
+#include "viewer/tools/pick.h"
+#include "viewer/tools/section.h"
+
+namespace lucarne::viewer {
+
+/// What measuring reads of a cloud, off the window's thread: picked points in the order of the clicks, and
+/// one section at a time.
+class MeasureWorker {
+ public:
+    /// `published` is called on a thread of this object whenever something has come.
+    explicit MeasureWorker(std::function<void()> published) : published_(std::move(published)) {}
+
+    ~MeasureWorker() { *stop_ = true; }
+    MeasureWorker(const MeasureWorker&) = delete;
+    MeasureWorker& operator=(const MeasureWorker&) = delete;
+
+    /// Clicks beyond kMostWaiting that wait are dropped.
+    void pick(std::shared_ptr<const Picture> picture, const glm::dvec2& place);
+    static constexpr int kMostWaiting = 32;
+    using Pick = Result<std::optional<PickedPoint>>;
+    std::vector<Pick> take_picks();
+
+    /// Instead of the section before, unless it is the same.
+    void read(std::shared_ptr<const octree::NodeSource> source, const Slice& slice);
+    /// As much as there is of it; null before its first level.
+    std::shared_ptr<const Section> section() const;
+    /// Writes `base`.csv and .svg of the section when it is read; not over files that are there.
+    void save_section(const std::filesystem::path& base, const std::string& title, const UnitChoice& units);
+    /// Errors, and what was saved, for people; each once.
+    std::optional<std::string> take_message();
+
+ private:
+    NodeCache& cache_of(const std::shared_ptr<const octree::NodeSource>& source);
+    void say(std::string message);
+    Result<void> write_section(const std::filesystem::path& base, const std::string& title,
+                               const UnitChoice& units);
+
+    std::function<void()> published_;
+    mutable std::mutex mutex_;
+    std::vector<Pick> picks_;
+    std::shared_ptr<const octree::NodeSource> section_source_;
+    std::optional<Slice> slice_;
+    std::shared_ptr<const Section> section_;
+    std::optional<std::string> message_;
+    std::atomic<int> waiting_{0};  ///< picks
+    std::shared_ptr<std::atomic<bool>> stop_ =
+        std::make_shared<std::atomic<bool>>(false);  ///< reading the section
+    std::unique_ptr<NodeCache> cache_;               ///< the picking thread's
+    JobQueue picking_, sections_;                    ///< last: they end before what they use
+};
+
+}  // namespace lucarne::viewer

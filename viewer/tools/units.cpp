@@ -1,0 +1,44 @@
+#include "viewer/tools/units.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace lucarne::viewer {
+
+std::string unit_name(double metres_per_unit) {
+    // The two feet differ by 2e-6.
+    static constexpr std::array<std::pair<double, const char*>, 7> kNames = {{{1, "m"},
+                                                                              {0.3048, "ft"},
+                                                                              {1200.0 / 3937, "US ft"},
+                                                                              {0.01, "cm"},
+                                                                              {0.001, "mm"},
+                                                                              {1000, "km"},
+                                                                              {0.0254, "in"}}};
+    for (const auto& [metres, name] : kNames)
+        if (std::abs(metres_per_unit / metres - 1) < 1e-7) return name;
+    return fmt::format("units of {} m", metres_per_unit);
+}
+
+double UnitChoice::convert(double value, Dimension dimension) const {
+    if (dimension == Dimension::angle) return value * 180 / std::numbers::pi;
+    if (!metres) return value;
+    return dimension == Dimension::length ? value * metres_per_unit
+                                          : value * metres_per_unit * metres_per_unit;
+}
+
+std::string UnitChoice::name(Dimension dimension) const {
+    if (dimension == Dimension::angle) return "degrees";
+    const std::string length = metres ? "m" : unit_name(metres_per_unit);
+    return dimension == Dimension::length ? length : length + "2";
+}
+
+std::string UnitChoice::text(double value, Dimension dimension) const {
+    return fmt::format("{:.{}f} {}", convert(value, dimension), dimension == Dimension::angle ? 3 : 4,
+                       name(dimension));
+}
+
+}  // namespace lucarne::viewer
