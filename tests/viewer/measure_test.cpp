@@ -160,7 +160,7 @@ TEST(Measure, ToolsTakeTheirPointsAndEveryChangeCanBeUndone) {
     EXPECT_TRUE(model.list.all().empty());
     for (int i = 0; i < 9; ++i) model.redo();
     EXPECT_EQ(model.list.all().size(), 1u);
-    model.copy_selected(1);
+    model.copy_selected();
     EXPECT_THAT(model.clipboard.value_or(""), HasSubstr("Path 1"));
 }
 
