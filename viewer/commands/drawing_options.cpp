@@ -73,8 +73,7 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_option("--atlas", options.atlas, "Texels along a side of the shadow maps' atlas")
         ->check(CLI::IsMember({256, 512, 1024, 2048, 4096, 8192}))
         ->type_name("N");
-    command.add_option("--points", options.points, "Most points that a cut takes")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40))
+    command.add_option("--points", options.points, "Most points that a cut takes: 200000, 2M")
         ->type_name("N");
     command.add_option("--samples", options.samples, "Paths a pixel and frame (reference)")
         ->check(CLI::Range(1, 1 << 20))
@@ -119,7 +118,11 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     override_with(engine.atlas, options.atlas);
     override_with(engine.samples, options.samples);
     override_with(engine.seed, options.seed);
-    if (options.points) drawing.preset.budgets.cap(*options.points);
+    if (!options.points.empty()) {
+        LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
+        if (points == 0) return bad_arguments("--points", "a cut of none shows nothing", "allow 1 or more");
+        drawing.preset.budgets.cap(points);
+    }
     return drawing;
 }
 

@@ -27,7 +27,8 @@ struct DrawingOptions {
     // Single settings over the preset's:
     std::optional<uint32_t> bounces, vpls, interleave, atlas, samples;
     std::optional<int32_t> only_bounce;
-    std::optional<uint64_t> points, seed;
+    std::string points;
+    std::optional<uint64_t> seed;
     std::optional<double> exposure;
     std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
     LookOptions look;
