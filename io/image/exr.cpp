@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -13,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "io/core/file.h"
+#include "io/image/exr_header.h"
 #include "io/image/image.h"
 
 namespace lucarne::io {
@@ -56,6 +59,23 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
+constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
+
+/// Lines from `line` on into `pixels`, the channels of these names into its components.
+void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int64_t left, int64_t width,
+                int64_t line, int64_t lines, glm::vec4* pixels) {
+    constexpr auto kPixel = static_cast<int64_t>(sizeof(glm::vec4));
+    // Where the pixel (0, 0) would be: the library counts from there.
+    char* origin = reinterpret_cast<char*>(pixels) - left * kPixel - line * width * kPixel;
+    Imf::FrameBuffer target;
+    for (size_t c = 0; c < names.size(); ++c)
+        if (!names[c].empty())
+            target.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), kPixel,
+                                               static_cast<size_t>(kPixel * width)));
+    exr.setFrameBuffer(target);
+    exr.readPixels(static_cast<int>(line), static_cast<int>(line + lines - 1));
+}
+
 Image decode(const InputFile& file, uint64_t most_pixels) {
     // The library allocates by the header's size: it must know the limit before it reads the header. The
     // setting is the library's own and the same every time.
@@ -71,25 +91,26 @@ Image decode(const InputFile& file, uint64_t most_pixels) {
 
     const Imf::ChannelList& channels = exr.header().channels();
     const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;
-    Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
-    image.pixels.assign(static_cast<size_t>(width * height), glm::vec4(0, 0, 0, 1));
-    Imf::FrameBuffer target;
-    constexpr size_t kPixel = sizeof(glm::vec4);
-    char* first = reinterpret_cast<char*>(image.pixels.data()) - window.min.x * static_cast<int64_t>(kPixel) -
-                  window.min.y * width * static_cast<int64_t>(kPixel);
+    std::vector<std::string> names;  // of the components of a pixel; empty: the file has none
     for (size_t c = 0; c < 4; ++c) {
-        if (gray && (c == 1 || c == 2)) continue;
-        const char* name = gray && c == 0 ? "Y" : kChannels[c];
-        const Imf::Channel* channel = channels.findChannel(name);
+        names.emplace_back(gray && c < 3 ? (c == 0 ? "Y" : "") : kChannels[c]);
+        if (names[c].empty()) continue;
+        const Imf::Channel* channel = channels.findChannel(names[c]);
         if (!channel && c < 3) throw std::runtime_error("it lacks a channel R, G or B");
-        if (!channel) continue;
-        if (channel->xSampling != 1 || channel->ySampling != 1)
+        if (!channel)
+            names[c].clear();
+        else if (channel->xSampling != 1 || channel->ySampling != 1)
             throw std::runtime_error("its channels are subsampled");
-        target.insert(name, Imf::Slice(Imf::FLOAT, first + c * sizeof(float), kPixel,
-                                       kPixel * static_cast<size_t>(width)));
     }
-    exr.setFrameBuffer(target);
-    exr.readPixels(window.min.y, window.max.y);
+    Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+    // Memory follows what is there: a file of few bytes whose header promises many pixels ends at its first
+    // lines.
+    for (int64_t line = 0; line < height; line += kLinesAtOnce) {
+        const int64_t lines = std::min(kLinesAtOnce, height - line);
+        image.pixels.resize(static_cast<size_t>(width * (line + lines)), glm::vec4(0, 0, 0, 1));
+        read_lines(exr, names, window.min.x, width, window.min.y + line, lines,
+                   image.pixels.data() + width * line);
+    }
     if (gray)
         for (glm::vec4& p : image.pixels) p.y = p.z = p.x;
     return image;
@@ -130,6 +151,7 @@ Result<void> write_exr(const std::filesystem::path& path, const Image& image, bo
 
 Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels) {
     LUCARNE_ASSIGN(const auto file, InputFile::open(path));
+    LUCARNE_TRY(check_exr_header(file));
     try {
         return decode(file, most_pixels);
     } catch (const std::exception& error) {

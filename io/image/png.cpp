@@ -13,6 +13,9 @@ namespace lucarne::io {
 namespace {
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+/// A byte of a deflate stream gives 1032 at most (zlib, "Technical details"), each of eight pixels of one
+/// bit.
+constexpr uint64_t kMostPixelsPerByte = 8 * 1032;
 
 struct PngFree {
     void operator()(png_image* image) const { png_image_free(image); }
@@ -52,6 +55,8 @@ Result<Image8> read_png(const std::filesystem::path& path) {
     if (png.width > kLargestSide || png.height > kLargestSide ||
         uint64_t{png.width} * png.height > kMostPixels)
         return rejected(name, fmt::format("is too large: {}x{} pixels", png.width, png.height));
+    if (uint64_t{png.width} * png.height / kMostPixelsPerByte > file.size())
+        return rejected(name, fmt::format("is shorter than its {}x{} pixels", png.width, png.height));
     png.format = PNG_FORMAT_RGB;
     Image8 image{png.width, png.height, std::vector<uint8_t>(size_t{3} * png.width * png.height)};
     const png_color black{};

@@ -1,7 +1,9 @@
 // Pictures come back as they were written, and hostile ones do no harm.
 #include "io/image/image.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -124,6 +126,103 @@ TEST(Pictures, HugeSizesInAHeaderAreRejectedBeforeAllocation) {
     std::memcpy(&exr[window], huge, sizeof huge);
     write_bytes(folder / "b.exr", exr);
     EXPECT_EQ(read_exr(folder / "b.exr").error().kind, ErrorKind::input_rejected);
+}
+
+std::string refusal_of_exr(const std::string& bytes) {
+    const MemoryFile file;
+    file.set(bytes);
+    const auto read = read_exr(file.path());
+    return read ? "read" : read.error().line();
+}
+
+/// A picture of 4x4 pixels, and where the size of an attribute of `name` and `type` stands in it.
+class ExrHeader : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        const TemporaryFolder folder;
+        ASSERT_TRUE(write_exr(folder / "a.exr", noise(4, 4), false));
+        bytes_ = read_bytes(folder / "a.exr");
+    }
+    size_t value_of(const std::string& name, const std::string& type) const {
+        return bytes_.find(name + '\0' + type + '\0') + name.size() + type.size() + 2 + 4;
+    }
+    /// In front of all others.
+    void insert(const std::string& name, const std::string& type, const std::string& value) {
+        const auto size = static_cast<uint32_t>(value.size());
+        bytes_.insert(
+            8, name + '\0' + type + '\0' + std::string(reinterpret_cast<const char*>(&size), 4) + value);
+    }
+    template <class T>
+    void put(size_t at, T value) {
+        std::memcpy(&bytes_[at], &value, sizeof value);
+    }
+    std::string bytes_;
+};
+
+TEST_F(ExrHeader, AnAttributeLargerThanTheFileIsRefusedBeforeItIsMadeRoomFor) {
+    insert("comments", "unheard", "1234");
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("data block")) << "the pixels are moved, no more";
+    put(value_of("comments", "unheard") - 4, uint32_t{1'677'918'208});
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("header is cut off"));
+}
+
+TEST_F(ExrHeader, LinesThatTheFileHasNoTableForAreRefused) {
+    for (const std::array<int32_t, 2> corner : {std::array{16383, 4000}, {3, 16383}}) {
+        put(value_of("dataWindow", "box2i") + 8, corner);
+        EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("table of its chunks"));
+    }
+}
+
+TEST_F(ExrHeader, TilesThatTheFileHasNoTableForAreRefused) {
+    insert("tiles", "tiledesc", std::string("\1\0\0\0\1\0\0\0\0", 9));
+    put(value_of("dataWindow", "box2i") + 8, std::array{4000, 4000});
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("table of its chunks"));
+    put(value_of("tiles", "tiledesc"), 0);
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("tiles are empty"));
+}
+
+TEST_F(ExrHeader, OtherPromisesOfMemoryAreRefused) {
+    const std::string whole = bytes_;
+    insert("chunkCount", "int", std::string("\xff\xff\xff\x7f", 4));
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("table of its chunks"));
+    bytes_ = whole;
+    insert("preview", "preview", std::string("\0\x40\0\0\0\x40\0\0", 8));
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("preview"));
+    bytes_ = whole;
+    insert("ids", "idmanifest", std::string("\xff\xff\xff\x7f\0\0\0\0", 8));
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("identifiers"));
+}
+
+TEST(Exr, MoreLinesThanAreReadAtOnceComeBackBitForBit) {
+    const TemporaryFolder folder;
+    const Image image = noise(3, 700);
+    ASSERT_TRUE(write_exr(folder / "a.exr", image, false, true));
+    const auto back = read_exr(folder / "a.exr");
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_TRUE(back->pixels == image.pixels);
+}
+
+/// As PNG has it (ISO 15948, annex D).
+uint32_t png_checksum(std::string_view bytes) {
+    uint32_t sum = ~0u;
+    for (const char byte : bytes) {
+        sum ^= static_cast<uint8_t>(byte);
+        for (int bit = 0; bit < 8; ++bit) sum = sum & 1 ? 0xedb88320u ^ sum >> 1 : sum >> 1;
+    }
+    return ~sum;
+}
+
+TEST(Png, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_png(folder / "a.png", noise8(4, 4), false));
+    std::string png = read_bytes(folder / "a.png");
+    put_u32(png, 16, 8000);
+    put_u32(png, 20, 8000);
+    put_u32(png, 29, png_checksum(std::string_view(png).substr(12, 17)));
+    write_bytes(folder / "b.png", png);
+    const auto read = read_png(folder / "b.png");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().line(), ::testing::HasSubstr("shorter than its 8000x8000 pixels"));
 }
 
 TEST(Pictures, TruncatedAndChangedFilesNeverCrash) {
