@@ -1,11 +1,13 @@
 // The formats that Lucarne knows, told apart by content.
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "io/formats/copc.h"
 #include "io/formats/format.h"
+#include "io/formats/text.h"
 
 namespace lucarne::io {
 namespace {
@@ -68,9 +70,20 @@ std::string printable(std::string_view name) {
 
 std::string unique_name(const Schema& schema, std::string_view name) {
     const std::string clean = printable(name);
-    std::string unique = clean;
-    for (int n = 2; schema.find(unique); ++n) unique = fmt::format("{}_{}", clean, n);
-    return unique;
+    // In one pass: thousands of attributes may share their first 64 characters.
+    std::vector<bool> taken(schema.attributes.size() + 3);  // by number; 1 is the plain name
+    for (const Attribute& a : schema.attributes) {
+        if (!a.name.starts_with(clean)) continue;
+        const auto rest = std::string_view(a.name).substr(clean.size());
+        const auto number = rest.starts_with('_') ? parse_number<size_t>(rest.substr(1)) : std::nullopt;
+        if (rest.empty())
+            taken[1] = true;
+        else if (number && *number < taken.size() && rest == fmt::format("_{}", *number))
+            taken[*number] = true;
+    }
+    if (!taken[1]) return clean;
+    const auto free = std::find(taken.begin() + 2, taken.end(), false);
+    return fmt::format("{}_{}", clean, free - taken.begin());
 }
 
 }  // namespace lucarne::io

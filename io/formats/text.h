@@ -1,10 +1,13 @@
 #pragma once
 
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
+
+#include "io/formats/text/number.h"
 
 // Words and numbers of text formats, whatever the locale.
 namespace lucarne::io {
@@ -24,10 +27,25 @@ inline std::string_view next_word(std::string_view& line) {
     return word;
 }
 
+/// Whether the float nearest to a decimal is that nearest to the double nearest to it: not where that double
+/// lies halfway between two floats, nor below their normal ones, which have other midpoints.
+inline bool rounds_to_float(double value) {
+    constexpr uint64_t kHalfway = uint64_t{1} << 28, kBelowFloat = (uint64_t{1} << 29) - 1;
+    if (std::abs(value) < std::numeric_limits<float>::min()) return value == 0;
+    return (std::bit_cast<uint64_t>(value) & kBelowFloat) != kHalfway;
+}
+
 /// The whole word as a number; integers only without fraction and in range. "nan" and "inf" are numbers; what
 /// is too large for a float becomes infinite, what is too small zero.
 template <class T>
 std::optional<T> parse_number(std::string_view word) {
+    if constexpr (std::is_floating_point_v<T>) {
+        const char* last = word.data() + word.size();
+        double plain = 0;
+        if (text::plain_number(word.data(), plain, last) == last && !word.empty() &&
+            (sizeof(T) == sizeof plain || rounds_to_float(plain)))
+            return static_cast<T>(plain);
+    }
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     const char* end = word.data() + word.size();
     T value{};

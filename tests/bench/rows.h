@@ -40,10 +40,19 @@ inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
 }
 
-inline void row(const std::string& what, double value, const std::string& unit, double target) {
+inline void print_row(const std::string& what, double value, const std::string& unit, double target,
+                      bool kept) {
     fmt::print("{:<68} {:>9.2f} {:<7} target {:>7.1f}  {}\n", what, value, unit, target,
-               value <= target ? "kept" : "MISSED");
+               kept ? "kept" : "MISSED");
     std::fflush(stdout);
+}
+/// What is to be small.
+inline void row(const std::string& what, double value, const std::string& unit, double target) {
+    print_row(what, value, unit, target, value <= target);
+}
+/// What is to be large.
+inline void row_at_least(const std::string& what, double value, const std::string& unit, double target) {
+    print_row(what, value, unit, target, value >= target);
 }
 
 }  // namespace lucarne

@@ -15,6 +15,7 @@
 
 #include "gi/gbuffer/gbuffer.h"
 #include "tests/bench/conversion.h"
+#include "tests/bench/formats.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
 #include "viewer/views.h"
@@ -126,6 +127,7 @@ Result<void> bench(const std::filesystem::path& folder) {
     fmt::print("{} hardware threads\n", std::thread::hardware_concurrency());
     LUCARNE_TRY(bench_frames(folder));
     LUCARNE_TRY(bench_normals(folder));
+    LUCARNE_TRY(bench::bench_formats(folder));
     return bench_conversion(folder, 20'000'000);
 }
 

@@ -150,6 +150,17 @@ TEST_F(Pcd, ColoursComeInEveryPacking) {
     EXPECT_EQ(value(0, "rgb"), 7);
 }
 
+TEST_F(Pcd, ThousandsOfValuesWhoseNamesBeginAlikeAreNamedApartAtOnce) {
+    const std::string name(70, 'Z');  // names are cut to 64 characters: all of the values' are the same
+    read(header("x y z " + name, "4 4 4 1", "F F F U", "1 1 1 4000", "") + grid(1, 1, "binary") +
+         std::string(4012, '\1'));
+    ASSERT_EQ(points(), 1u);
+    EXPECT_EQ(schema().attributes.size(), 4000u);
+    EXPECT_EQ(schema().attributes.front().name, name.substr(0, 64));
+    EXPECT_EQ(schema().attributes[1].name, name.substr(0, 64) + "_2");
+    EXPECT_EQ(schema().attributes.back().name, name.substr(0, 64) + "_4000");
+}
+
 TEST_F(Pcd, DoublesAndWholeNumbersKeepEveryDigit) {
     read(header("x y z t", "8 8 4 8", "F F I U", "1 1 1 1", "") + grid(1, 1, "ascii") +
          "2600123.456789 1.1 -7 18446744073709551615\n");

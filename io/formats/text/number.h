@@ -3,37 +3,36 @@
 #include <array>
 #include <cstdint>
 
-#include "io/formats/text.h"
-
 namespace lucarne::io::text {
 
 constexpr bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// The decimal number at `at`, whose text is followed by some other character. Returns where it ends; nullptr
-/// where it has an exponent, too many digits, or is none, which takes parse_number. Exact: up to 2^53 a whole
-/// number and powers of ten up to 10^22 are doubles, so that one division rounds correctly (Clinger, "How to
-/// Read Floating Point Numbers Accurately", 1990).
-inline const char* plain_number(const char* at, double& value) {
+/// The decimal number at `at`, whose text ends at `end` or (without one) is followed by some other character.
+/// Returns where it ends; nullptr where it has an exponent, too many digits, or is none, which takes
+/// parse_number. Exact: up to 2^53 a whole number and powers of ten up to 10^22 are doubles, so that one
+/// division rounds correctly (Clinger, "How to Read Floating Point Numbers Accurately", 1990).
+inline const char* plain_number(const char* at, double& value, const char* end = nullptr) {
     constexpr std::array<double, 23> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     constexpr int kMostDigits = 18;  // that fit 64 bits
-    const bool negative = *at == '-';
-    at += negative || *at == '+';
+    const auto is = [&](char c) { return at != end && *at == c; };
+    const bool negative = is('-');
+    at += negative || is('+');
     uint64_t digits = 0;
     const char* first = at;
-    for (; is_digit(*at); ++at) digits = digits * 10 + static_cast<uint64_t>(*at - '0');
+    for (; at != end && is_digit(*at); ++at) digits = digits * 10 + static_cast<uint64_t>(*at - '0');
     auto count = at - first;
     std::ptrdiff_t decimals = 0;
-    if (*at == '.') {
+    if (is('.')) {
         const char* point = at++;
-        for (; is_digit(*at); ++at) digits = digits * 10 + static_cast<uint64_t>(*at - '0');
+        for (; at != end && is_digit(*at); ++at) digits = digits * 10 + static_cast<uint64_t>(*at - '0');
         decimals = at - point - 1;
         count += decimals;
     }
-    if (count == 0 || count > kMostDigits || digits > (uint64_t{1} << 53) || *at == 'e' || *at == 'E')
+    if (count == 0 || count > kMostDigits || digits > (uint64_t{1} << 53) || is('e') || is('E'))
         return nullptr;
     const double size = static_cast<double>(digits) / kPowers[static_cast<size_t>(decimals)];
     value = negative ? -size : size;

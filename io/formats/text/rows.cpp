@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/core/parallel.h"
-#include "io/formats/text/number.h"
+#include "io/formats/text.h"
 
 namespace lucarne::io::text {
 namespace {
