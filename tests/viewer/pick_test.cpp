@@ -28,7 +28,8 @@ class Pick : public testing::Test {
     static void TearDownTestSuite() { delete std::exchange(scan_, nullptr); }
 
     /// The whole picture from a place relative to the front wall's corner.
-    std::shared_ptr<const Picture> look(const glm::dvec3& from, const glm::dvec3& to) {
+    std::shared_ptr<const Picture> look(const glm::dvec3& from, const glm::dvec3& to,
+                                        const gi::Look& how = {}) {
         std::counting_semaphore<> published(0);
         const auto worker = PictureWorker::start({[] { return gi::Device::headless(); }, [] {}},
                                                  scan_->source, {}, [&] { published.release(); });
@@ -37,6 +38,7 @@ class Pick : public testing::Test {
         request.engine = "direct";
         const auto& header = scan_->source->header();
         request.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
+        request.scene.look = how;
         request.frame.camera.position = MeasuredScan::kCorner + from;
         request.frame.camera.target = MeasuredScan::kCorner + to;
         request.frame.size = {400, 300};
@@ -111,6 +113,30 @@ TEST_F(Pick, NeverTakesAPointThatAWallHides) {
         }
     EXPECT_GT(front, 500);
     EXPECT_GT(behind, 200);
+}
+
+TEST_F(Pick, NeverTakesAPointThatIsClippedOrOfAHiddenClass) {
+    gi::Look clipped, hidden_class;
+    clipped.clip.planes.push_back({MeasuredScan::kCorner + glm::dvec3(0, 1, 0), {0, 1, 0}});
+    hidden_class.hidden_classes.set(6);  // the front wall's
+    for (const gi::Look& how : {clipped, hidden_class}) {
+        const auto picture = look({2, -4, 1.5}, {2, 0, 1.5}, how);
+        ASSERT_TRUE(picture);
+        int picks = 0;
+        for (int y = 2; y < 300; y += 9)
+            for (int x = 2; x < 400; x += 9) {
+                const auto picked = pick_point(*picture, {x / 400.0, y / 300.0}, cache_);
+                ASSERT_TRUE(picked);
+                if (!*picked) continue;
+                ++picks;
+                const ExactPoint& point = (*picked)->point;
+                if (how.clip.active())
+                    EXPECT_GT(point.position.y, MeasuredScan::kCorner.y + 1);
+                else
+                    EXPECT_EQ(field(point, "classification"), "2 ground");
+            }
+        EXPECT_GT(picks, 300);
+    }
 }
 
 TEST_F(Pick, WhatWasPickedStandsWithinHalfAPixelOfItsPlace) {

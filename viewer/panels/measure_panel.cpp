@@ -131,11 +131,13 @@ void draw_measure_panel(ViewModel& model) {
                             ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(font * 22, font * 30), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Measure", &measure.show_panel)) {
+        ImGui::PushItemWidth(-font * 7);
         tool_buttons(measure);
         thickness_field(measure, units);
         list_of(measure, units);
         edit_buttons(measure, units);
         details(measure, units);
+        ImGui::PopItemWidth();
     }
     ImGui::End();
 }

@@ -1,6 +1,7 @@
 // The selected section as a drawing: along the line to the right, height upward, both to the same scale.
 #include "viewer/panels/section_panel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -11,26 +12,37 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kDot = 2;  ///< pixels of a cell's side
+constexpr float kDot = 2;                           ///< pixels of a cell's side
+constexpr float kColumnApart = 90, kRowApart = 36;  ///< pixels between marks of the axes, about
 constexpr ImU32 kGrid = IM_COL32(90, 90, 90, 255), kText = IM_COL32(200, 200, 200, 255);
+
+/// With as many decimals as the step has, and no minus before 0.
+std::string text_of(double value, double step) {
+    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    return fmt::format("{:.{}f}", std::abs(value) < step / 2 ? 0.0 : value, decimals);
+}
 
 void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, const ImVec2& size,
           const UnitChoice& units) {
     const double unit = units.convert(1, Dimension::length),
                  pixels = raster.scale * kDot / unit;  // a shown unit
     const double left = raster.left * unit, bottom = raster.bottom * unit;
-    const double step = axis_step(size.x / pixels, 8);
+    const auto marks = [&](float length, float apart) {
+        return axis_step(length / pixels, std::max(static_cast<int>(length / apart), 1));
+    };
+    const double step = marks(size.x, kColumnApart), row = marks(size.y, kRowApart);
     for (double x = std::ceil(left / step) * step; (x - left) * pixels < size.x; x += step) {
         const float at = corner.x + static_cast<float>((x - left) * pixels);
         list.AddLine({at, corner.y}, {at, corner.y + size.y}, kGrid);
         list.AddText({at + 3, corner.y + size.y - ImGui::GetTextLineHeight()}, kText,
-                     fmt::format("{:.6g}", x).c_str());
+                     text_of(x, step).c_str());
     }
-    for (double y = std::ceil(bottom / step) * step; (y - bottom) * pixels < size.y; y += step) {
+    for (double y = std::ceil(bottom / row) * row; (y - bottom) * pixels < size.y; y += row) {
         const float at = corner.y + size.y - static_cast<float>((y - bottom) * pixels);
         list.AddLine({corner.x, at}, {corner.x + size.x, at}, kGrid);
-        list.AddText({corner.x + 3, at}, kText,
-                     fmt::format("{:.8g} {}", y, units.name(Dimension::length)).c_str());
+        if (at - corner.y > ImGui::GetTextLineHeight())
+            list.AddText({corner.x + 3, at - ImGui::GetTextLineHeight()}, kText,
+                         (text_of(y, row) + " " + units.name(Dimension::length)).c_str());
     }
 }
 
@@ -45,6 +57,7 @@ void SectionPanel::draw(ViewModel& model) {
     const float font = ImGui::GetFontSize();
     ImGui::SetNextWindowPos(ImVec2(font, display.y - font * 19), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(display.x - font * 25, font * 17), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowBgAlpha(1);
     if (ImGui::Begin("Section")) {
         const Section* section = measure.section.get();
         const bool whole = section && (section->complete || section->nodes_read == section->nodes);

@@ -65,7 +65,7 @@ std::string text_of(Wide number, int decimals) {
     std::string digits;
     for (; number > 0; number /= 10) digits += static_cast<char>('0' + static_cast<int>(number % 10));
     while (static_cast<int>(digits.size()) <= decimals) digits += '0';
-    if (decimals > 0) digits.insert(static_cast<size_t>(decimals), ".");
+    if (decimals > 0) digits.insert(static_cast<size_t>(decimals), 1, '.');
     if (negative) digits += '-';
     std::ranges::reverse(digits);
     return digits;
