@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/core/options.h"
 #include "io/formats/scan.h"
 #include "octree/cache.h"
 #include "octree/open.h"
@@ -88,6 +89,25 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
                     "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
                     "else they are guessed, and the guess is printed")
         ->type_name("NAMES");
+    command
+        .add_option("--spacing", options.mesh.spacing,
+                    "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "
+                    "its diagonal, or as dense as its vertices)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("METRES");
+    command
+        .add_option_function<std::string>(
+            "--mesh-points",
+            [&options](const std::string& text) {
+                const auto count = parse_count("--mesh-points", text);
+                if (!count || *count == 0) throw CLI::ValidationError("--mesh-points", "is no number of points");
+                options.mesh.samples = *count;
+            },
+            "About so many points of a mesh, instead of --spacing")
+        ->type_name("N")
+        ->excludes("--spacing");
+    command.add_flag("--vertices", options.mesh.vertices,
+                     "The vertices of a mesh are the points; its faces are passed over");
 }
 
 void add_input_options(CLI::App& command, InputOptions& options) {

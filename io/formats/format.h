@@ -28,6 +28,7 @@ const Format& ply_format();
 const Format& e57_format();
 const Format& pcd_format();
 const Format& ptx_format();
+const Format& obj_format();
 const Format& text_format();  ///< XYZ, PTS and the like
 
 /// A batch holds at most this many bytes of records, however wide they are.

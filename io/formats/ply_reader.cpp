@@ -9,6 +9,8 @@
 #include "io/formats/buffered_input.h"
 #include "io/formats/format.h"
 #include "io/formats/ply_layout.h"
+#include "io/formats/ply_mesh.h"
+#include "io/formats/ply_values.h"
 #include "io/formats/ply_writer.h"
 #include "io/formats/pick.h"
 #include "io/formats/text.h"
@@ -16,95 +18,7 @@
 namespace lucarne::io {
 namespace {
 
-/// The next `bytes` bytes, which have to be there.
-Result<const std::byte*> take(BufferedInput& input, size_t bytes) {
-    LUCARNE_ASSIGN(const auto got, input.peek(bytes));
-    if (got.size() < bytes)
-        return rejected(input.path(), fmt::format("ends early, at {} bytes", input.position() + got.size()));
-    input.skip(bytes);
-    return got.data();
-}
-
-/// The length of a list, 0 or more.
-Result<uint64_t> list_length(BufferedInput& input, ScalarType type, bool big_endian) {
-    const size_t bytes = scalar_bytes(type);
-    LUCARNE_ASSIGN(const std::byte* at, take(input, bytes));
-    std::array<std::byte, 8> native{};
-    for (size_t i = 0; i < bytes; ++i) native[i] = at[big_endian ? bytes - 1 - i : i];
-    const double length = scalar_at(type, native.data());
-    if (length < 0) return rejected(input.path(), "has a list of negative length");
-    return static_cast<uint64_t>(length);
-}
-
-/// One binary entry with lists. The scalars are appended to `packed` where it is wanted.
-Result<void> walk_entry(BufferedInput& input, const ply::Element& element, bool big_endian,
-                        std::byte* packed) {
-    for (const auto& p : element.properties) {
-        if (p.count) {
-            LUCARNE_ASSIGN(const uint64_t length, list_length(input, *p.count, big_endian));
-            LUCARNE_TRY(input.skip_far(length * scalar_bytes(p.type)));
-            continue;
-        }
-        LUCARNE_ASSIGN(const std::byte* at, take(input, scalar_bytes(p.type)));
-        if (!packed) continue;
-        std::memcpy(packed, at, scalar_bytes(p.type));
-        packed += scalar_bytes(p.type);
-    }
-    return {};
-}
-
-/// The next line that is not blank.
-Result<std::string_view> text_line(BufferedInput& input, const ply::Header& header) {
-    for (;;) {
-        LUCARNE_ASSIGN(const auto line, input.line(header.line_end));
-        if (!line) return rejected(input.path(), "ends early: its header promises more lines");
-        if (!std::all_of(line->begin(), line->end(), is_blank)) return *line;
-    }
-}
-
-Result<void> skip_element(BufferedInput& input, const ply::Header& header, const ply::Element& element) {
-    if (element.properties.empty()) return {};
-    if (header.encoding != ply::Encoding::ascii && !element.has_list()) {
-        if (element.count > (uint64_t{1} << 63) / element.record_bytes())
-            return rejected(input.path(),
-                            fmt::format("cannot hold its {} entries of '{}'", element.count, element.name));
-        return input.skip_far(element.count * element.record_bytes());
-    }
-    for (uint64_t i = 0; i < element.count; ++i) {
-        if (header.encoding == ply::Encoding::ascii)
-            LUCARNE_TRY(text_line(input, header));
-        else
-            LUCARNE_TRY(walk_entry(input, element, header.encoding == ply::Encoding::big_endian, nullptr));
-    }
-    return {};
-}
-
-/// Parses `word` into `at`. A "char" takes 128 to 255 as well: some writers mean uchar.
-bool parse_scalar(ScalarType type, std::string_view word, std::byte* at) {
-    const auto put = [&]<class T>(std::optional<T> value) {
-        if (value) store(at, *value);
-        return value.has_value();
-    };
-    switch (type) {
-        case ScalarType::f32:
-            return put(parse_number<float>(word));
-        case ScalarType::f64:
-            return put(parse_number<double>(word));
-        default:
-            break;
-    }
-    // Whole numbers are sometimes written as 255.0; all PLY integers are exact in a double.
-    const auto value = parse_number<double>(word);
-    if (!value || !(std::abs(*value) < 0x1p33) || *value != std::trunc(*value)) return false;
-    const auto whole = static_cast<int64_t>(*value);
-    const int64_t range = int64_t{1} << (8 * scalar_bytes(type));
-    const bool is_signed = type == ScalarType::i8 || type == ScalarType::i16 || type == ScalarType::i32;
-    if (whole >= (type == ScalarType::i8 || !is_signed ? range : range / 2) ||
-        whole < (is_signed ? -range / 2 : 0))
-        return false;
-    std::memcpy(at, &whole, scalar_bytes(type));  // little-endian: the low bytes come first
-    return true;
-}
+using namespace ply;
 
 class PlyReader final : public PointReader {
  public:
@@ -296,10 +210,12 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, ply::read_header(file));
-    auto source = std::make_unique<PlySource>(std::move(file), std::move(header));
+    const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
+    auto source = std::make_unique<PlySource>(file, header);
     LUCARNE_TRY(source->describe());
+    if (mesh) return ply::open_mesh(file, header, source->info(), options);
     return source;
 }
 

@@ -15,7 +15,7 @@ namespace {
 // Text comes last: other formats are text as well.
 auto formats() {
     return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(),
-                      &pcd_format(), &ptx_format(), &text_format()};
+                      &pcd_format(), &ptx_format(), &obj_format(), &text_format()};
 }
 
 constexpr size_t kHeadBytes = 4096;

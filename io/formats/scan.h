@@ -11,11 +11,19 @@
 
 namespace lucarne::io {
 
+/// How a mesh becomes points. `spacing` goes before `samples`; neither: by the mesh's size and vertices.
+struct MeshOptions {
+    double spacing = 0;        ///< mean distance of samples, metres
+    uint64_t samples = 0;      ///< about so many
+    bool vertices = false;     ///< its vertices are the points, and its faces are nothing
+};
+
 /// What a user knows better than the file.
 struct ReadOptions {
     /// Of a text file: what its columns are, "x,y,z,-,intensity:f32,r,g,b"; empty: they are guessed.
     std::string columns;
     bool quiet = false;  ///< guesses are not said again: the file was open before
+    MeshOptions mesh;
 };
 
 /// Opens a scan file; its format is told by its content, by its name only among text files whose rows look the

@@ -41,6 +41,11 @@ Result<Image> read_hdr(const std::filesystem::path& path, uint64_t most_pixels =
 /// 8 bits RGB, tagged sRGB. The file appears whole or not at all.
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite);
 /// Any PNG, brought to 8 bits sRGB (its gamma is respected) over black.
-Result<Image8> read_png(const std::filesystem::path& path);
+Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
+
+/// Any JPEG of grey or colour (not CMYK), its bytes taken as sRGB. A damaged one is read as far as it goes.
+Result<Image8> read_jpeg(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
+/// PNG or JPEG, told apart by content.
+Result<Image8> read_picture(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
 
 }  // namespace lucarne::io

@@ -41,7 +41,7 @@ Result<void> write_png(const std::filesystem::path& path, const Image8& image, b
     return file.commit();
 }
 
-Result<Image8> read_png(const std::filesystem::path& path) {
+Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels) {
     const std::string name = path.string();
     LUCARNE_ASSIGN(const auto file, InputFile::open(path));
     if (file.size() > kLargestFile) return rejected(name, "is too large for a PNG picture");
@@ -53,7 +53,7 @@ Result<Image8> read_png(const std::filesystem::path& path) {
     if (!png_image_begin_read_from_memory(&png, encoded.data(), encoded.size()))
         return rejected(name, fmt::format("is no usable PNG picture ({})", png.message));
     if (png.width > kLargestSide || png.height > kLargestSide ||
-        uint64_t{png.width} * png.height > kMostPixels)
+        uint64_t{png.width} * png.height > most_pixels)
         return rejected(name, fmt::format("is too large: {}x{} pixels", png.width, png.height));
     if (uint64_t{png.width} * png.height / kMostPixelsPerByte > file.size())
         return rejected(name, fmt::format("is shorter than its {}x{} pixels", png.width, png.height));

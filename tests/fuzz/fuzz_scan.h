@@ -22,7 +22,7 @@ inline void write_unfinished(const io::PointSource& source, std::span<const std:
 inline bool scan(std::string_view bytes) {
     const auto path = memory_file(bytes);
     if (!path) return false;
-    const auto source = io::open_scan(*path, {"", true});
+    const auto source = io::open_scan(*path, {"", true, {0, 2000, false}});  // few samples of a mesh
     if (!source) return true;
     const auto reader = (*source)->open();
     if (!reader) return true;

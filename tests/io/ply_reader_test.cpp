@@ -187,7 +187,7 @@ TEST_F(Ply, OtherElementsAreSkippedWhereverTheyStand) {
     const std::string before =
         "element camera 2\nproperty list uint8 int parts\nproperty float f\nelement empty 0\nproperty int "
         "i\n";
-    const std::string after = "element face 1\nproperty list uchar int vertex_indices\n";
+    const std::string after = "element strip 1\nproperty list uchar int vertex_indices\n";
     const auto text = read(header("ascii", before + "element vertex 1\n" + kXyz + after) +
                            "2 1 2 0.5\n\n0 0.5\n1 2 3\n3 0 1 2\n");
     ASSERT_TRUE(text) << text.error().line();

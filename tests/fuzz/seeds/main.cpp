@@ -29,7 +29,7 @@ void Seeds::add_scan(std::string_view name, std::string_view bytes) const {
     const auto refuse = [&](const std::string& why) {
         throw std::runtime_error(fmt::format("the seed {} is refused: {}", (folder_ / name).string(), why));
     };
-    const auto source = io::open_scan(folder_ / name, {"", true});
+    const auto source = io::open_scan(folder_ / name, {"", true, {0, 2000, false}});
     if (!source) return refuse(source.error().line());
     const auto reader = (*source)->open();
     if (!reader) return refuse(reader.error().line());
@@ -62,6 +62,7 @@ void make_all(const std::filesystem::path& folder) {
     e57_seeds(Seeds(folder / "e57"));
     las_seeds(Seeds(folder / "las"));
     laz_seeds(Seeds(folder / "laz"));
+    obj_seeds(Seeds(folder / "obj"));
     pcd_seeds(Seeds(folder / "pcd"));
     picture_seeds(Seeds(folder / "exr"), Seeds(folder / "hdr"), Seeds(folder / "png"));
     ply_seeds(Seeds(folder / "ply"));

@@ -30,6 +30,7 @@ void copc_seeds(const Seeds& seeds);
 void e57_seeds(const Seeds& seeds);
 void las_seeds(const Seeds& seeds);
 void laz_seeds(const Seeds& seeds);
+void obj_seeds(const Seeds& seeds);
 void pcd_seeds(const Seeds& seeds);
 void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png);
 void ply_seeds(const Seeds& seeds);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "io/formats/mesh/mesh.h"
+#include "io/formats/scan.h"
+
+namespace lucarne::io::mesh {
+
+/// More samples are refused when they are asked for.
+inline constexpr uint64_t kMostSamples = uint64_t{1} << 30;
+/// Nobody asked: a thousandth of the box's diagonal, or finer where the vertices stand denser, for no more
+/// than this.
+inline constexpr uint64_t kMostDefaultSamples = 20'000'000;
+
+/// What is known of the file: path, format, bytes, time, unit; `details` say more of the mesh.
+/// `state` is a hash of all else that the samples follow from: textures.
+/// The mesh is finished and has triangles. Errors: a spacing that would give too many samples.
+Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann::json details, uint64_t state,
+                                             const ReadOptions& options);
+
+/// The vertices of a mesh, without its surface, with their colours.
+Result<std::unique_ptr<PointSource>> vertices_only(Mesh mesh, ScanInfo info, nlohmann::json details);
+
+}  // namespace lucarne::io::mesh

@@ -1,0 +1,76 @@
+#include "io/formats/mesh/textures.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+#include "io/core/random.h"
+#include "io/formats/format.h"
+
+namespace lucarne::io::mesh {
+namespace {
+
+constexpr uint64_t kMostText = uint64_t{64} << 20;  ///< bytes of a material file
+constexpr size_t kMostTexts = 64, kMostTextures = 4096;
+constexpr uint64_t kMostAllPixels = uint64_t{1} << 28;  ///< of all textures together, three bytes each
+
+}  // namespace
+
+Companions::Companions(Mesh& mesh, const std::filesystem::path& mesh_file)
+    : mesh_(mesh), folder_(mesh_file.parent_path().lexically_normal()) {}
+
+std::filesystem::path Companions::place(std::string_view name, const std::filesystem::path& from) const {
+    std::string text(name);
+    std::replace(text.begin(), text.end(), '\\', '/');
+    std::filesystem::path wanted(text);
+    const auto whole = (from / wanted).lexically_normal();
+    const auto inside = whole.lexically_relative(folder_.empty() ? "." : folder_);
+    const bool drive = text.size() > 1 && text[1] == ':';
+    if (!drive && wanted.is_relative() && !inside.empty() && *inside.begin() != "..") return whole;
+    return from / wanted.filename();
+}
+
+void Companions::count(const InputFile& file) {
+    state_ = mix64(mix64(state_, file.size()), static_cast<uint64_t>(file.modified()));
+}
+
+uint32_t Companions::texture(std::string_view name, const std::filesystem::path& from) {
+    const auto path = place(name, from);
+    const auto known = textures_.find(path);
+    if (known != textures_.end()) return known->second;
+    uint32_t& number = textures_[path] = kNone;
+    if (textures_.size() > kMostTextures || pixels_ >= kMostAllPixels) {
+        log::warn("{}: the textures are too many or too large; it is left out", path.string());
+        return kNone;
+    }
+    auto image = read_picture(path, std::min(kMostPixels, kMostAllPixels - pixels_));
+    if (!image) {
+        log::warn("{}; the mesh is sampled without this texture", image.error().line());
+        return kNone;
+    }
+    if (const auto file = InputFile::open(path)) count(*file);
+    pixels_ += uint64_t{image->width} * image->height;
+    number = static_cast<uint32_t>(mesh_.textures.size());
+    mesh_.textures.push_back(std::move(*image));
+    return number;
+}
+
+std::optional<std::string> Companions::text(std::string_view name, std::filesystem::path& path) {
+    path = place(name, folder_);
+    if (texts_.size() == kMostTexts || !texts_.emplace(path, true).second) return std::nullopt;
+    const auto read = [&]() -> Result<std::string> {
+        LUCARNE_ASSIGN(const auto file, InputFile::open(path));
+        if (file.size() > kMostText) return rejected(path.string(), "is too large for a file of materials");
+        count(file);
+        std::string bytes(static_cast<size_t>(file.size()), '\0');
+        LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(bytes))));
+        return bytes;
+    };
+    auto bytes = read();
+    if (bytes) return std::move(*bytes);
+    log::warn("{}; the mesh is sampled without these materials", bytes.error().line());
+    return std::nullopt;
+}
+
+}  // namespace lucarne::io::mesh

@@ -1,0 +1,239 @@
+// OBJ: polygons with texture coordinates, normals and materials; vertices alone are a point cloud. Source:
+// Wavefront, "Object Files (.obj)", 1992 (Bourke's copy), and colours behind the coordinates as MeshLab and
+// others write them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/buffered_input.h"
+#include "io/formats/format.h"
+#include "io/formats/mesh/materials.h"
+#include "io/formats/mesh/source.h"
+#include "io/formats/text.h"
+
+namespace lucarne::io {
+namespace {
+
+using namespace mesh;
+
+class ObjParser {
+ public:
+    explicit ObjParser(const std::shared_ptr<const InputFile>& file)
+        : name_(file->path().string()), input_(file, 0, file->size()), companions_(mesh_, file->path()) {}
+
+    Result<void> parse() {
+        std::string joined;  // of a line that goes on behind a backslash
+        for (;;) {
+            LUCARNE_ASSIGN(const auto got, input_.line('\n'));
+            if (!got) break;
+            ++line_;
+            std::string_view line = *got;
+            while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+            const bool goes_on = line.ends_with('\\');
+            if (goes_on) line.remove_suffix(1);
+            if (goes_on || !joined.empty()) {
+                if (joined.size() + line.size() > BufferedInput::kLargestPeek)
+                    return wrong("goes on for more than 1 MiB");
+                joined.append(line).append(" ");
+                if (goes_on) continue;
+                line = joined;
+            }
+            LUCARNE_TRY(statement(line));
+            joined.clear();
+        }
+        if (!joined.empty()) LUCARNE_TRY(statement(joined));
+        finish_colors();
+        return {};
+    }
+
+    Mesh& mesh() { return mesh_; }
+    uint64_t state() const { return companions_.state(); }
+    uint64_t other() const { return other_; }
+    uint64_t faces() const { return faces_; }
+
+ private:
+    tl::unexpected<Error> wrong(std::string why) const {
+        return rejected(name_, fmt::format("line {} {}", line_, why));
+    }
+
+    Result<void> statement(std::string_view rest) {
+        const auto word = next_word(rest);
+        if (word.empty() || word[0] == '#') return {};
+        if (word == "v") return vertex(rest);
+        if (word == "f" || word == "fo") return face(rest);
+        std::array<double, 3> values{};
+        if (word == "vn") {
+            LUCARNE_TRY(numbers(rest, values, 3));
+            mesh_.normals.emplace_back(values[0], values[1], values[2]);
+        } else if (word == "vt") {
+            LUCARNE_TRY(numbers(rest, values, 1));
+            mesh_.coordinates.emplace_back(values[0], values[1]);
+        } else if (word == "mtllib") {
+            library(rest);
+        } else if (word == "usemtl") {
+            const auto found = materials_.find(trimmed(rest));
+            material_ = found == materials_.end() ? kNone : found->second;
+        } else {
+            other_ += word == "l" || word == "p" || word == "curv" || word == "surf" || word == "call";
+        }
+        return {};
+    }
+
+    static std::string_view trimmed(std::string_view text) {
+        while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+        while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+        return text;
+    }
+
+    /// Reads up to as many numbers as there is room for; at least `least`. Returns how many.
+    Result<size_t> numbers(std::string_view rest, std::span<double> values, size_t least) const {
+        size_t count = 0;
+        for (auto word = next_word(rest); !word.empty() && word[0] != '#'; word = next_word(rest)) {
+            if (count == values.size()) break;
+            const auto value = parse_number<double>(word);
+            if (!value) return wrong(fmt::format("has '{}' for a number", printable(word)));
+            values[count++] = *value;
+        }
+        if (count < least) return wrong("has too few numbers");
+        return count;
+    }
+
+    Result<void> vertex(std::string_view rest) {
+        std::array<double, 7> values{};
+        LUCARNE_ASSIGN(const size_t count, numbers(rest, values, 3));
+        if (mesh_.positions.size() == kNone) return wrong("is one vertex too many");
+        mesh_.positions.emplace_back(values[0], values[1], values[2]);
+        // x y z, x y z w, x y z r g b, x y z w r g b
+        if (count >= 6) {
+            raw_colors_.resize(mesh_.positions.size() - 1, glm::vec3(-1.0f));
+            const size_t at = count - 3;
+            raw_colors_.emplace_back(values[at], values[at + 1], values[at + 2]);
+        }
+        return {};
+    }
+
+    /// Colours are 0 to 1, or 0 to 255 where any is larger.
+    void finish_colors() {
+        if (raw_colors_.empty()) return;
+        raw_colors_.resize(mesh_.positions.size(), glm::vec3(-1.0f));
+        float largest = 0;
+        for (const auto& c : raw_colors_) largest = std::max({largest, c.x, c.y, c.z});
+        const float white = largest > 1 ? 1.0f : 255.0f;
+        for (const auto& c : raw_colors_) {
+            const auto byte = [&](float v) {
+                return static_cast<uint8_t>(v >= 0 ? std::lround(std::min(v * white, 255.0f)) : kNoColor[0]);
+            };
+            mesh_.colors.push_back({byte(c.x), byte(c.y), byte(c.z)});
+        }
+    }
+
+    /// An index counts from 1, or backwards from -1 at the last; what it names stands above.
+    Result<uint32_t> index(std::string_view word, size_t count, std::string_view of) const {
+        const auto number = parse_number<int64_t>(word);
+        if (!number) return wrong(fmt::format("has '{}' for the number of a {}", printable(word), of));
+        const int64_t at = *number > 0 ? *number - 1 : *number + static_cast<int64_t>(count);
+        if (*number == 0 || at < 0 || at >= static_cast<int64_t>(count))
+            return wrong(fmt::format("names {} {}, of {} above it", of, *number, count));
+        return static_cast<uint32_t>(at);
+    }
+
+    Result<void> face(std::string_view rest) {
+        polygon_.clear();
+        for (auto word = next_word(rest); !word.empty() && word[0] != '#'; word = next_word(rest)) {
+            std::array<std::string_view, 3> parts;
+            for (size_t i = 0; i < 3; ++i) {
+                const size_t slash = word.find('/');
+                parts[i] = word.substr(0, slash);
+                word.remove_prefix(slash == word.npos ? word.size() : slash + 1);
+            }
+            Corner corner;
+            LUCARNE_ASSIGN(corner.position, index(parts[0], mesh_.positions.size(), "vertex"));
+            if (!parts[1].empty()) {
+                LUCARNE_ASSIGN(corner.coordinate,
+                               index(parts[1], mesh_.coordinates.size(), "texture coordinate"));
+            }
+            if (!parts[2].empty()) {
+                LUCARNE_ASSIGN(corner.normal, index(parts[2], mesh_.normals.size(), "normal"));
+            }
+            polygon_.push_back(corner);
+        }
+        ++faces_;
+        mesh_.add(polygon_, material_, std::nullopt);
+        return {};
+    }
+
+    /// The rest of the line is one name, which may hold blanks, or several.
+    void library(std::string_view rest) {
+        const auto take = [&](std::string_view name) {
+            std::filesystem::path path;
+            const auto text = companions_.text(name, path);
+            if (text) read_materials(*text, path.parent_path(), companions_, mesh_, materials_);
+        };
+        rest = trimmed(rest);
+        if (rest.ends_with(".mtl") && rest.find(".mtl ") == rest.npos) return take(rest);
+        for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) take(word);
+    }
+
+    std::string name_;
+    BufferedInput input_;
+    Mesh mesh_;
+    Companions companions_;
+    std::map<std::string, uint32_t, std::less<>> materials_;
+    std::vector<glm::vec3> raw_colors_;
+    std::vector<Corner> polygon_;
+    uint32_t material_ = kNone;
+    uint64_t line_ = 0, other_ = 0, faces_ = 0;
+};
+
+Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> file,
+                                              const ReadOptions& options) {
+    ObjParser parser(file);
+    LUCARNE_TRY(parser.parse());
+    Mesh& mesh = parser.mesh();
+    ScanInfo info;
+    info.path = file->path().string();
+    info.file_bytes = file->size();
+    info.modified = file->modified();
+    nlohmann::json details;
+    if (parser.other() > 0) {
+        details["mesh"]["left_out_lines_points_curves"] = parser.other();
+        log::warn("{}: {} lines, points, curves and calls are left out", info.path, parser.other());
+    }
+    mesh.finish();
+    if (parser.faces() > 0 && mesh.triangles.empty())
+        log::warn("{}: none of its faces has an area; its vertices are read", info.path);
+    const bool vertices = options.mesh.vertices || mesh.triangles.empty();
+    info.format = fmt::format("OBJ, {}", vertices ? "vertices" : "mesh");
+    if (vertices) return vertices_only(std::move(mesh), std::move(info), std::move(details));
+    return sampled(std::move(mesh), std::move(info), std::move(details), parser.state(), options);
+}
+
+/// Text whose first statement is one of OBJ's.
+bool is_obj(std::string_view head) {
+    static constexpr std::array<std::string_view, 11> kWords = {"v", "vn", "vt",     "vp",     "f", "o",
+                                                                "g", "s",  "mtllib", "usemtl", "l"};
+    const bool whole = head.size() < 4096;
+    while (!head.empty()) {
+        const size_t end = head.find('\n');
+        auto line = head.substr(0, end);
+        if (end == head.npos && !whole) return false;
+        head.remove_prefix(end == head.npos ? head.size() : end + 1);
+        const auto word = next_word(line);
+        if (word.empty() || word[0] == '#') continue;
+        return std::find(kWords.begin(), kWords.end(), word) != kWords.end() && !next_word(line).empty();
+    }
+    return false;
+}
+
+}  // namespace
+
+const Format& obj_format() {
+    static constexpr Format kFormat{"OBJ", "", is_obj, open_obj, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

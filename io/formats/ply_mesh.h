@@ -1,0 +1,18 @@
+#pragma once
+
+#include "io/formats/ply_header.h"
+#include "io/formats/scan.h"
+
+namespace lucarne::io::ply {
+
+/// Whether there are faces, as lists of vertex_indices (or vertex_index), and as many as one.
+bool has_faces(const Header& header);
+
+/// The mesh, sampled. Colours of faces or vertices; texture coordinates of faces (texcoord, with texnumber)
+/// or of vertices (s t, u v, texture_u texture_v), with the pictures that comments name ("TextureFile
+/// a.png"), as MeshLab writes them; normals of vertices. `info` is that of the vertices.
+Result<std::unique_ptr<PointSource>> open_mesh(const std::shared_ptr<const InputFile>& file,
+                                               const Header& header, ScanInfo info,
+                                               const ReadOptions& options);
+
+}  // namespace lucarne::io::ply

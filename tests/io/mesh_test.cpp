@@ -1,0 +1,491 @@
+// Meshes become points: evenly by area, blue, with the colours and normals of their surface; what makes no
+// sense is rejected.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/parallel.h"
+#include "io/core/random.h"
+#include "io/formats/mesh/sampler.h"
+#include "io/formats/mesh/triangulate.h"
+#include "io/image/image.h"
+#include "tests/io/scan_text.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+
+ReadOptions every(double spacing) {
+    return {"", true, {spacing, 0, false}};
+}
+ReadOptions about(uint64_t samples) {
+    return {"", true, {0, samples, false}};
+}
+const ReadOptions kVertices{"", true, {0, 0, true}};
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+/// Distances in units of the spacing, of points that lie near each other on a grid.
+class Neighbours {
+ public:
+    Neighbours(const std::vector<glm::dvec3>& points, double cell) : points_(points), cell_(cell) {
+        for (size_t i = 0; i < points.size(); ++i) cells_[key(points[i])].push_back(i);
+    }
+    /// To the nearest point but `self`, where it is nearer than two cells.
+    double nearest(const glm::dvec3& from, size_t self) const {
+        double least = 2 * cell_;
+        for (int k = 0; k < 125; ++k) {
+            const glm::dvec3 shift(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2);
+            const auto found = cells_.find(key(from + shift * cell_));
+            if (found == cells_.end()) continue;
+            for (const size_t i : found->second)
+                if (i != self) least = std::min(least, glm::length(points_[i] - from));
+        }
+        return least;
+    }
+
+ private:
+    using Key = std::array<int, 3>;
+    Key key(const glm::dvec3& p) const {
+        const glm::dvec3 at = glm::floor(p / cell_);
+        return {static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z)};
+    }
+    const std::vector<glm::dvec3>& points_;
+    double cell_;
+    std::map<Key, std::vector<size_t>> cells_;
+};
+
+class MeshScan : public testing::TextScan {
+ protected:
+    std::vector<glm::dvec3> positions() const {
+        std::vector<glm::dvec3> all;
+        for (size_t i = 0; i < points(); ++i) all.push_back(position(i));
+        return all;
+    }
+    glm::dvec3 triple(size_t i, std::string_view name) const {
+        return {value(i, name, 0), value(i, name, 1), value(i, name, 2)};
+    }
+    nlohmann::json details() const { return nlohmann::json::parse(source_->info().details)["mesh"]; }
+
+    /// A folder with an OBJ or PLY file and what it names.
+    void read_folder(const std::string& name, const ReadOptions& options) {
+        const auto source = open_scan(folder_ / name, options);
+        ASSERT_TRUE(source) << source.error().line();
+        source_ = std::move(const_cast<std::unique_ptr<PointSource>&>(*source));
+        const auto records = testing::read_all(*source_);
+        ASSERT_TRUE(records) << records.error().line();
+        records_ = *records;
+    }
+    void put(const std::string& name, const std::string& text) const {
+        testing::write_bytes(folder_ / name, text);
+    }
+    /// Upper half red, lower half blue; its left quarter green from top to bottom.
+    void put_picture(const std::string& name) const {
+        Image8 image{64, 64, {}};
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const std::array<uint8_t, 3> color = x < 16   ? std::array<uint8_t, 3>{10, 200, 30}
+                                                     : y < 32 ? std::array<uint8_t, 3>{201, 11, 12}
+                                                              : std::array<uint8_t, 3>{13, 14, 203};
+                image.bytes.insert(image.bytes.end(), color.begin(), color.end());
+            }
+        ASSERT_TRUE(write_png(folder_ / name, image, true));
+    }
+    /// A unit square whose coordinates span the picture of put_picture: u along x, v along y.
+    void expect_picture_upright() const {
+        size_t seen = 0;
+        for (size_t i = 0; i < points(); ++i) {
+            const glm::dvec3 p = position(i);
+            if (std::abs(p.x - 0.25) < 0.05 || std::abs(p.y - 0.5) < 0.05 || std::min(p.x, p.y) < 0.03 ||
+                std::max(p.x, p.y) > 0.97)
+                continue;  // between two colours
+            const glm::dvec3 wanted = p.x < 0.25  ? glm::dvec3(10, 200, 30)
+                                      : p.y > 0.5 ? glm::dvec3(201, 11, 12)
+                                                  : glm::dvec3(13, 14, 203);
+            ASSERT_EQ(triple(i, "color"), wanted) << p.x << ' ' << p.y;
+            ++seen;
+        }
+        EXPECT_GT(seen, 500u);
+    }
+    const testing::TemporaryFolder folder_;
+};
+
+/// A sphere of radius 1 as `rings` rings of quads, turning left seen from outside.
+std::string sphere(int rings, bool normals) {
+    std::string text;
+    for (int j = 0; j <= rings; ++j)
+        for (int i = 0; i < 2 * rings; ++i) {
+            const double down = M_PI * j / rings, around = M_PI * i / rings;
+            const glm::dvec3 p(std::sin(down) * std::cos(around), std::sin(down) * std::sin(around),
+                               std::cos(down));
+            text += fmt::format("v {:.9f} {:.9f} {:.9f}\n", p.x, p.y, p.z);
+            if (normals) text += fmt::format("vn {:.9f} {:.9f} {:.9f}\n", p.x, p.y, p.z);
+        }
+    for (int j = 0; j < rings; ++j)
+        for (int i = 0; i < 2 * rings; ++i) {
+            const int next = (i + 1) % (2 * rings), row = 2 * rings * j, below = row + 2 * rings;
+            text += "f";
+            for (const int corner : {row + i, below + i, below + next, row + next})
+                text += normals ? fmt::format(" {0}//{0}", corner + 1) : fmt::format(" {}", corner + 1);
+            text += "\n";
+        }
+    return text;
+}
+
+TEST_F(MeshScan, SamplesKeepTheirDistanceAndLeaveNoHole) {
+    constexpr double kSpacing = 0.02;
+    read(sphere(40, false), every(kSpacing));
+    const auto all = positions();
+    const double expected = 4 * M_PI / (kSpacing * kSpacing);
+    EXPECT_NEAR(static_cast<double>(all.size()) / expected, 1.0, 0.05);
+    EXPECT_NEAR(static_cast<double>(source_->info().declared_points) / static_cast<double>(all.size()), 1.0,
+                0.05);
+    const Neighbours near(all, kSpacing);
+    for (size_t i = 0; i < all.size(); ++i)
+        ASSERT_GE(near.nearest(all[i], i), 0.75 * kSpacing) << "two samples in a clump";
+    for (uint64_t k = 0; k < 10'000; ++k) {
+        const double z = 2 * unit_double(mix64(1, k)) - 1, around = 2 * M_PI * unit_double(mix64(2, k));
+        const double r = std::sqrt(1 - z * z);
+        const glm::dvec3 place(r * std::cos(around), r * std::sin(around), z);
+        ASSERT_LE(near.nearest(place, all.size()), 1.2 * kSpacing) << "a hole";
+    }
+}
+
+TEST_F(MeshScan, SamplesAreSpreadByAreaWhateverTheTrianglesSize) {
+    // A square with a fan of slivers, large triangles and a corner of tiny ones, in 400 equal bins.
+    std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    constexpr int kFan = 1000;
+    for (int i = 1; i < kFan; ++i) text += fmt::format("v 1 {:.6f} 0\n", static_cast<double>(i) / kFan);
+    text += "f 1 2 5\n";
+    for (int i = 1; i + 1 < kFan; ++i) text += fmt::format("f 1 {} {}\n", i + 4, i + 5);
+    text += fmt::format("f 1 {} 3\nf 1 3 4\n", kFan + 3);
+    read(text, every(0.004));
+    std::vector<double> bins(400);
+    for (const auto& p : positions()) {
+        const auto cell = [](double v) { return std::min(19, static_cast<int>(v * 20)); };
+        ++bins[static_cast<size_t>(cell(p.x) * 20 + cell(p.y))];
+    }
+    const double mean = static_cast<double>(points()) / 400;
+    double chi = 0;
+    for (const double n : bins) chi += (n - mean) * (n - mean) / mean;
+    // 400 +- 28 were samples thrown at random; blue noise is far more even.
+    EXPECT_LT(chi, 200);
+}
+
+TEST_F(MeshScan, BothSidesOfAThinWallAreSampledInFull) {
+    const std::string wall = kSquare + "v 0 0 0.001\nv 1 0 0.001\nv 1 1 0.001\nv 0 1 0.001\nf 8 7 6 5\n";
+    read(wall, every(0.02));
+    size_t up = 0;
+    for (size_t i = 0; i < points(); ++i) up += value(i, "normal", 2) > 0;
+    EXPECT_NEAR(static_cast<double>(up), 2500, 125);
+    EXPECT_NEAR(static_cast<double>(points() - up), 2500, 125);
+}
+
+TEST_F(MeshScan, TheSamplesAreTheSameForAnyNumberOfThreadsAndAnyBatch) {
+    const std::string text = sphere(20, true);
+    read(text, every(0.01));
+    const auto all = records_.bytes;
+    for (const unsigned threads : {1u, 7u}) {
+        const ThreadLimit limit(threads);
+        const auto again = testing::read_all(*source_, 777);
+        ASSERT_TRUE(again);
+        EXPECT_TRUE(again->bytes == all) << threads;
+    }
+}
+
+TEST_F(MeshScan, NormalsAreTheFacesOrInterpolated) {
+    read(kSquare, every(0.05));
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
+    read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 4 3 2 1\n", every(0.05));
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, -1));
+    read(sphere(20, true), every(0.05));
+    for (size_t i = 0; i < points(); ++i)
+        ASSERT_LT(glm::length(triple(i, "normal") - glm::normalize(position(i))), 0.01);
+}
+
+TEST_F(MeshScan, TexturesStandUpright) {
+    put_picture("a b.png");
+    put("m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd -blendu on a b.png\n");
+    put("a.obj",
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "usemtl painted\nf 1/1 2/2 3/3 4/4\n");
+    read_folder("a.obj", every(0.02));
+    expect_picture_upright();
+}
+
+TEST_F(MeshScan, TexturesRepeatAndAreScaledAsTheMaterialSays) {
+    put_picture("p.png");
+    put("m.mtl", "newmtl painted\nmap_Kd -s 0.5 0.5 1 -o 0.25 3.5 0 p.png\n");
+    // 0.5 * vt + (0.25, 3.5) spans the picture from (2, -4): everything repeats.
+    put("a.obj",
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 3.5 -15\nvt 5.5 -15\nvt 5.5 -13\nvt 3.5 -13\n"
+        "usemtl painted\nf -4/-4 -3/-3 -2/-2 -1/-1\n");
+    read_folder("a.obj", every(0.02));
+    expect_picture_upright();
+}
+
+TEST_F(MeshScan, PlyHasTexturesByFaceOrByVertexAsMeshLabWritesThem) {
+    put_picture("p.png");
+    const std::string head =
+        "ply\nformat ascii 1.0\ncomment TextureFile p.png\nelement vertex 4\nproperty float "
+        "x\nproperty float y\nproperty float z\n";
+    put("face.ply", head +
+                        "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
+                        "texcoord\nproperty int texnumber\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                        "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 1 1 0 1 0\n");
+    read_folder("face.ply", every(0.02));
+    expect_picture_upright();
+    put("vertex.ply",
+        head +
+            "property float s\nproperty float t\nelement face 1\nproperty list uchar int "
+            "vertex_index\nend_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
+    read_folder("vertex.ply", every(0.02));
+    expect_picture_upright();
+}
+
+TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
+    read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nproperty "
+        "uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int "
+        "vertex_indices\nend_header\n0 0 0 10 20 30\n1 0 0 10 20 30\n0 1 0 10 20 30\n3 0 1 2\n",
+        every(0.05));
+    ASSERT_GT(points(), 100u);
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(10, 20, 30));
+    read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face "
+        "1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar "
+        "blue\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 2 255\n",
+        every(0.05));
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(1, 2, 255));
+    read("v 0 0 0 0.2 0.4 1\nv 1 0 0 0.2 0.4 1\nv 0 1 0 0.2 0.4 1\nf 1 2 3\n", every(0.05));
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(51, 102, 255));
+    put("m.mtl", "newmtl a b\nKd 0.2 0.4 1\nnewmtl c\nKd 1 1 0\n");
+    put("a.obj",
+        "mtllib m.mtl\n" + kSquare + "v 0 0 1\nv 1 0 1\nv 1 1 1\nusemtl c\nf 5 6 7\nusemtl a b\nf 5 7 6\n");
+    read_folder("a.obj", every(0.05));
+    for (size_t i = 0; i < points(); ++i)
+        ASSERT_EQ(triple(i, "color"), position(i).z < 0.5         ? glm::dvec3(188)
+                                      : value(i, "normal", 2) > 0 ? glm::dvec3(255, 255, 0)
+                                                                  : glm::dvec3(51, 102, 255));
+}
+
+TEST_F(MeshScan, PolygonsAreCutAlongTheirOutline) {
+    // An L of area 3, either way round, and lifted onto a slope.
+    for (const bool backwards : {false, true}) {
+        std::string text = "v 0 0 0\nv 2 0 2\nv 2 1 2\nv 1 1 1\nv 1 2 1\nv 0 2 0\n";
+        text += backwards ? "f 6 5 4 3 2 1\n" : "f 1 2 3 4 5 6\n";
+        read(text, every(0.05));
+        EXPECT_NEAR(details()["area_m2"].get<double>(), 3 * std::sqrt(2.0), 1e-9);
+        for (size_t i = 0; i < points(); ++i) {
+            const glm::dvec3 p = position(i);
+            ASSERT_FALSE(p.x > 1.001 && p.y > 1.001) << "outside";
+            ASSERT_EQ(value(i, "normal", 2) < 0, backwards);
+        }
+    }
+}
+
+TEST_F(MeshScan, FacesWithoutAreaAreLeftOutAndCounted) {
+    read(kSquare + "f 1 1 2\nf 1 2\nv 2 0 0\nf 1 2 5\nv nan 0 0\nf 1 2 6\n", every(0.05));
+    EXPECT_EQ(details()["triangles"], 2);
+    EXPECT_EQ(details()["left_out_without_area"], 3);
+    EXPECT_EQ(details()["left_out_not_finite"], 1);
+    EXPECT_NEAR(static_cast<double>(points()), 400, 40);
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nf 1 1 2\n").line(), HasSubstr("none of them has an area"));
+}
+
+TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").line(),
+                HasSubstr("line 4 names vertex 4, of 3"));
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n").line(), HasSubstr("names vertex -4"));
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n").line(), HasSubstr("names vertex 0"));
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2 3\n").line(),
+                HasSubstr("names texture coordinate 1"));
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2 3\n").line(), HasSubstr("names normal 1"));
+    EXPECT_THAT(error_of("v 0 0\n").line(), HasSubstr("too few numbers"));
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+        "0\n0 1 0\n";
+    for (const char* face : {"3 0 1 3\n", "3 0 1 -1\n"})
+        EXPECT_THAT(error_of(ply + face).line(), HasSubstr("face 1 names vertex"));
+    EXPECT_THAT(error_of(ply).line(), HasSubstr("ends early"));
+    EXPECT_THAT(error_of(ply + "4 0 1 2\n").line(),
+                HasSubstr("face 1 has 'unnamed' for its property vertex_indices"));
+}
+
+TEST_F(MeshScan, VerticesAloneAreAPointCloud) {
+    read("v 0.25 0 0\nv 1 0 0 1 0 0\nv 1e6 2 3 \\\n 0 1 0\nv nan 0 0\n", {"", true});
+    ASSERT_EQ(points(), 3u);
+    EXPECT_EQ(records_.dropped, 1u);
+    EXPECT_EQ(position(2), glm::dvec3(1e6, 2, 3));
+    EXPECT_EQ(triple(2, "color"), glm::dvec3(0, 255, 0));
+    EXPECT_EQ(triple(0, "color"), glm::dvec3(188)) << "it has none";
+    read(kSquare, kVertices);
+    EXPECT_EQ(points(), 4u);
+}
+
+TEST_F(MeshScan, TheNumberOfSamplesCanBeAskedForUpToACap) {
+    read(kSquare, about(10'000));
+    EXPECT_NEAR(static_cast<double>(points()), 10'000, 500);
+    EXPECT_EQ(error_of(kSquare, every(1e-5)).kind, ErrorKind::arguments);
+    EXPECT_EQ(error_of(kSquare, about(2'000'000'000)).kind, ErrorKind::arguments);
+    // By default a thousandth of the diagonal; and never more than 20 million, however large the area.
+    source_ = std::move(open_scan(file_.path(), {"", true}).value());
+    EXPECT_NEAR(details()["spacing_m"].get<double>(), std::sqrt(2.0) / 1000, 1e-9);
+    std::string sheets;
+    for (int i = 0; i < 100; ++i)
+        sheets += fmt::format("v 0 0 {0}\nv 1e20 0 {0}\nv 1e20 1e20 {0}\nv 0 1e20 {0}\nf -4 -3 -2 -1\n", i);
+    file_.set(sheets);
+    source_ = std::move(open_scan(file_.path(), {"", true}).value());
+    EXPECT_LE(source_->info().declared_points, 20'000'000u);
+}
+
+TEST_F(MeshScan, FoldedSheetsUponSheetsAskForBoundedMemory) {
+    // Four hundred squares within a hair: all samples of a place fall into the same few cells.
+    std::string text;
+    for (int i = 0; i < 400; ++i)
+        text += fmt::format("v 0 0 {0}\nv 1 0 {0}\nv 1 1 {0}\nv 0 1 {0}\nf -4 -3 -2 -1\n", i * 1e-9);
+    read(text, every(0.05));
+    EXPECT_NEAR(static_cast<double>(points()), 400, 100) << "one sheet's worth: the discs are full";
+    const auto all = positions();
+    const Neighbours near(all, 0.05);
+    for (size_t i = 0; i < all.size(); ++i) ASSERT_GE(near.nearest(all[i], i), 0.75 * 0.05);
+}
+
+TEST_F(MeshScan, NothingOutsideTheMeshsFolderIsOpened) {
+    std::filesystem::create_directory(folder_ / "inner");
+    put_picture("secret.png");
+    put("secret.mtl", "newmtl m\nKd 1 0 0\n");
+    put("inner/m.mtl", "newmtl m\nmap_Kd ../secret.png\n");
+    put("inner/a.obj", "mtllib ../secret.mtl\nmtllib m.mtl m.mtl " + (folder_ / "secret.mtl").string() +
+                           "\n" + "vt 0 0\nusemtl m\n" + kSquare);
+    read_folder("inner/a.obj", every(0.1));
+    EXPECT_EQ(details()["textures"], 0);
+    EXPECT_EQ(schema().find("color"), nullptr);
+    // A path of the machine where it was written: the file stands beside the mesh now.
+    put_picture("inner/p.png");
+    put("inner/m.mtl", "newmtl m\nmap_Kd C:\\work\\textures\\p.png\n");
+    read_folder("inner/a.obj", every(0.1));
+    EXPECT_EQ(details()["textures"], 1);
+}
+
+TEST_F(MeshScan, ATextureThatIsNoneIsDoneWithout) {
+    put("p.png", "no picture at all");
+    put("m.mtl", "newmtl m\nKd 0.2 0.4 1\nmap_Kd p.png\n");
+    put("a.obj", "mtllib m.mtl\nusemtl m\n" + kSquare);
+    read_folder("a.obj", every(0.1));
+    EXPECT_EQ(triple(0, "color"), glm::dvec3(51, 102, 255));
+}
+
+TEST_F(MeshScan, AChangedTextureOrSpacingIsAnotherStateOfTheFile) {
+    put_picture("p.png");
+    put("m.mtl", "newmtl m\nmap_Kd p.png\n");
+    put("a.obj", "mtllib m.mtl\nusemtl m\n" + kSquare);
+    read_folder("a.obj", every(0.1));
+    const auto before = source_->info().modified;
+    read_folder("a.obj", every(0.1));
+    EXPECT_EQ(source_->info().modified, before);
+    read_folder("a.obj", every(0.2));
+    EXPECT_NE(source_->info().modified, before);
+    put("m.mtl", "newmtl m\nmap_Kd p.png\n\n");
+    read_folder("a.obj", every(0.1));
+    EXPECT_NE(source_->info().modified, before);
+}
+
+TEST_F(MeshScan, BinaryPlyOfEitherEndGivesTheSameAsText) {
+    std::array<std::string, 2> bodies;
+    for (const bool big : {false, true}) {
+        std::string& body = bodies[big];
+        const auto put_value = [&](auto value) {
+            std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+            if (big) std::reverse(bytes.begin(), bytes.end());
+            body += bytes;
+        };
+        for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f}) put_value(v);
+        body += '\4';
+        for (const int32_t i : {0, 1, 2, 3}) put_value(i);
+    }
+    const auto head = [](const std::string& format) {
+        return "ply\nformat " + format +
+               " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
+               "1\nproperty list uchar int vertex_indices\nend_header\n";
+    };
+    read(head("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", every(0.05));
+    const auto text = records_.bytes;
+    EXPECT_NEAR(static_cast<double>(points()), 400, 40);
+    read(head("binary_little_endian") + bodies[0], every(0.05));
+    EXPECT_TRUE(records_.bytes == text);
+    read(head("binary_big_endian") + bodies[1], every(0.05));
+    EXPECT_TRUE(records_.bytes == text);
+    for (size_t cut = 1; cut < 20; ++cut)
+        EXPECT_EQ(error_of((head("binary_big_endian") + bodies[1])
+                               .substr(0, head("binary_big_endian").size() + bodies[1].size() - cut))
+                      .kind,
+                  ErrorKind::input_rejected)
+            << cut;
+}
+
+TEST_F(MeshScan, ChangedBytesNeverCrash) {
+    const std::string obj = "mtllib x.mtl\n" + kSquare + "vn 0 0 1\nvt 0 1\nusemtl a\nf 1/1/1 -2//1 3/1 4\n" +
+                            "v 5 5 5 1 0 0\nf -1 \\\n 1 2\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+        "0\n0 1 0\n3 0 1 2\n";
+    for (uint64_t round = 0; round < 3000; ++round) {
+        std::string bytes = round % 2 != 0 ? obj : ply;
+        for (uint64_t k = 0; k <= round % 3; ++k)
+            bytes[mix64(round, k) % bytes.size()] = "0123456789-/. \nefvx"[mix64(round, k + 9) % 19];
+        (void)try_read(bytes, about(500));
+    }
+}
+
+TEST(Triangulate, EarsCoverPolygonsWithHolesJoinedByABridge) {
+    // A square of 4 with a square hole of 1, the bridge walked twice.
+    const std::vector<glm::dvec3> polygon = {{0, 0, 7},    {2, 0, 7},   {2, 2, 7},    {0, 2, 7},
+                                             {0, 0, 7},    {.5, .5, 7}, {.5, 1.5, 7}, {1.5, 1.5, 7},
+                                             {1.5, .5, 7}, {.5, .5, 7}};
+    std::vector<std::array<uint32_t, 3>> triangles;
+    ASSERT_TRUE(mesh::triangulate(polygon, triangles));
+    double area = 0;
+    for (const auto& [a, b, c] : triangles) {
+        const double twice = glm::cross(polygon[b] - polygon[a], polygon[c] - polygon[a]).z;
+        EXPECT_GE(twice, 0);
+        area += twice / 2;
+    }
+    EXPECT_NEAR(area, 3, 1e-12);
+}
+
+class SharedMeshes : public MeshScan {};
+
+TEST_F(SharedMeshes, TheStatueOfTheSharedDataIsSampledNearItsVertices) {
+    const auto data = testing::shared_data();
+    if (data.empty()) GTEST_SKIP() << "the shared data is not here";
+    const auto path = data / "ply" / "ankylosaurus_ascii_rgb_normals.ply";
+    const auto vertices = open_scan(path, kVertices);
+    ASSERT_TRUE(vertices);
+    EXPECT_EQ((*vertices)->info().declared_points, 34820u);
+    const auto cloud = testing::read_all(**vertices);
+    ASSERT_TRUE(cloud);
+    std::vector<glm::dvec3> places;
+    for (size_t i = 0; i < cloud->count; ++i)
+        places.push_back(position_of((*vertices)->schema(), &cloud->bytes[i * (*vertices)->schema().stride]));
+    source_ = std::move(open_scan(path, {"", true}).value());
+    records_ = testing::read_all(*source_).value();
+    EXPECT_EQ(details()["triangles"].get<int>() + details()["left_out_without_area"].get<int>(), 69636);
+    // A scan's mesh: its vertices stand denser than a thousandth of the diagonal, or about as dense.
+    EXPECT_GE(points(), 33'000u);
+    const Neighbours near(places, 0.1);
+    for (size_t i = 0; i < points(); i += 50) ASSERT_LT(near.nearest(position(i), places.size()), 0.1);
+}
+
+}  // namespace
+}  // namespace lucarne::io
