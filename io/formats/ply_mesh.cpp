@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/log.h"
 #include "io/formats/format.h"
 #include "io/formats/mesh/source.h"
 #include "io/formats/mesh/textures.h"
@@ -176,10 +177,15 @@ bool has_faces(const Header& header) {
 }
 
 Result<std::unique_ptr<PointSource>> open_mesh(const std::shared_ptr<const InputFile>& file,
-                                               const Header& header, ScanInfo info,
+                                               const Header& header, std::unique_ptr<PointSource> vertices,
                                                const ReadOptions& options) {
+    ScanInfo info = vertices->info();
     MeshLoader loader(file, header, color_white(info.color_bits));
     LUCARNE_TRY(loader.load());
+    if (loader.mesh().triangles.empty()) {
+        log::warn("{}: none of its faces has an area; its vertices are read", info.path);
+        return vertices;
+    }
     info.format += ", mesh";
     return mesh::sampled(std::move(loader.mesh()), std::move(info), nlohmann::json::object(), loader.state(),
                          options);

@@ -215,7 +215,7 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> f
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto source = std::make_unique<PlySource>(file, header);
     LUCARNE_TRY(source->describe());
-    if (mesh) return ply::open_mesh(file, header, source->info(), options);
+    if (mesh) return ply::open_mesh(file, header, std::move(source), options);
     return source;
 }
 

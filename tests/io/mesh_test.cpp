@@ -298,7 +298,8 @@ TEST_F(MeshScan, FacesWithoutAreaAreLeftOutAndCounted) {
     EXPECT_EQ(details()["left_out_without_area"], 3);
     EXPECT_EQ(details()["left_out_not_finite"], 1);
     EXPECT_NEAR(static_cast<double>(points()), 400, 40);
-    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nf 1 1 2\n").line(), HasSubstr("none of them has an area"));
+    read("v 0 0 0\nv 1 0 0\nf 1 1 2\n");
+    EXPECT_EQ(points(), 2u) << "without a single face its vertices are what there is";
 }
 
 TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
