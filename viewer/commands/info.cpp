@@ -54,9 +54,9 @@ json describe_scan(const io::PointSource& scan) {
                       {"metres_per_unit", info.metres_per_unit},
                       {"stations", std::move(stations)},
                       {"attributes", attributes_json(scan.schema())}};
-    // What a file of several scans says of each, and its images, which are not read (E57).
+    // What a file of several scans says of each, and its images, which are not read (E57); of a mesh.
     const json details = json::parse(info.details, nullptr, false);
-    for (const char* list : {"scans", "images"})
+    for (const char* list : {"scans", "images", "mesh"})
         if (details.is_object() && details.contains(list)) described[list] = details[list];
     return described;
 }
