@@ -52,7 +52,9 @@ namespace {
 
 void make_all(const std::filesystem::path& folder) {
     const std::filesystem::path data = LUCARNE_SOURCE_DIR "/data";
-    const auto copies = std::filesystem::copy_options::overwrite_existing;
+    // Without `recursive` nothing of a folder is copied.
+    const auto copies =
+        std::filesystem::copy_options::overwrite_existing | std::filesystem::copy_options::recursive;
     std::filesystem::create_directories(folder);
     std::filesystem::copy(data / "scenes", folder / "scene", copies);
     std::filesystem::copy(data / "flythroughs", folder / "path", copies);
