@@ -31,6 +31,7 @@ constexpr float kSparserInDoubt = 5.0f;
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
 /// ... unless it is farther from the patch than this many of its spacings: too far for its plane to tell.
 constexpr float kMostApart = 10.0f;
+constexpr size_t kCompanions = 2;
 /// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
@@ -156,8 +157,10 @@ float share_of_neighbours(const Patch& nearest) {
 }
 
 bool is_near_enough(const Patch& nearest) {
-    return nearest.distance2[2] <  // the nearest may hang there with it
-           kMostApart * kMostApart * share_of_neighbours(nearest);
+    const float limit = kMostApart * kMostApart * share_of_neighbours(nearest);
+    // The nearest few may hang there with it.
+    return nearest.distance2[kCompanions] < limit &&
+           nearest.distance2[std::min(kOwnRank, nearest.count - 1)] < 4 * limit;
 }
 
 }  // namespace lucarne::octree

@@ -21,6 +21,26 @@ void print(const char* name, const Score& s, double area) {
                 s.oriented, s.marked, s.area / area);
 }
 
+/// What photogrammetry leaves in the air: crumbs of a few points, far from the body and from each other.
+TEST(Normals, CrumbsInTheAirHaveNoDiscAsWideAsTheirDistance) {
+    Cloud cloud = sphere(100000);
+    const size_t body = cloud.points.size();
+    Random random(5);
+    const auto crumb = [&](const glm::dvec3& at, size_t count) {
+        for (size_t i = 0; i < count; ++i) {
+            cloud.points.push_back(at +
+                                   0.005 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()));
+            cloud.normals.push_back({0, 0, 1});
+        }
+    };
+    crumb({2.0, 0.0, 0.1}, 3);
+    crumb({1.8, 0.3, 0.0}, 5);
+    crumb({0, 2.5, 0}, 1);
+    crumb({0, -1.5, 0}, 2);
+    const Estimate found = estimate(cloud);
+    for (size_t i = body; i < cloud.points.size(); ++i) EXPECT_LT(found.areas[i], 0.01) << i - body;
+}
+
 TEST(Normals, PlaneSphereAndCubeHaveTheirNormalsAndAreas) {
     const struct {
         const char* name;
