@@ -81,7 +81,8 @@ void MeasureSession::take_input(ViewModel& model) {
         worker_.pick(model.picture, {at.x / io.DisplaySize.x, at.y / io.DisplaySize.y});
     }
     if (model.picture) model.measure.set_unit(model.picture->metres_per_unit);
-    if (model.picture && !(model.measure.thickness > 0)) model.measure.thickness = model.scene_size / 100;
+    if (model.picture && !(model.measure.thickness > 0))
+        model.measure.thickness = axis_step(model.scene_size, 100);
     take_results(model);
     follow_section(model);
     files(model);

@@ -164,6 +164,15 @@ TEST(Measure, ToolsTakeTheirPointsAndEveryChangeCanBeUndone) {
     EXPECT_THAT(model.clipboard.value_or(""), HasSubstr("Path 1"));
 }
 
+TEST(Measure, AxesHaveRoundMarksAndEndWhereverTheyLie) {
+    EXPECT_NEAR(axis_step(10, 10), 1, 1e-12);
+    EXPECT_NEAR(axis_step(37, 8), 5, 1e-12);
+    EXPECT_EQ(axis_marks(-0.4, 1.1, 0.5), (std::vector<double>{0, 0.5, 1}));
+    EXPECT_EQ(axis_text(-1e-17, 0.5), "0.0");
+    EXPECT_EQ(axis_text(812.25, 0.05), "812.25");
+    EXPECT_LE(axis_marks(1e20, 1e20 + 1e6, 1).size(), 100u) << "steps that a double does not make";
+}
+
 class MeasuredCloud : public testing::Test {
  protected:
     static void SetUpTestSuite() { scan_ = new MeasuredScan; }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/measured_scan.h"
+#include "viewer/tools/overlay.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -155,6 +156,35 @@ TEST_F(Pick, WhatWasPickedStandsWithinHalfAPixelOfItsPlace) {
             EXPECT_LE(std::abs(back->pixel.y - (y + 0.5)), 0.5);
         }
     EXPECT_GT(seen, 200);
+}
+
+TEST_F(Pick, LabelsStandAtTheirPointsAndWhatAWallHidesIsDimmed) {
+    const auto picture = look({2, -4, 1.5}, {2, 0, 1.5});
+    ASSERT_TRUE(picture);
+    // From before the wall, through it, to behind it: one line that is seen, one that is hidden.
+    Measurement through;
+    through.kind = MeasureKind::distance;
+    through.points.resize(2);
+    through.points[0].position = MeasuredScan::kCorner + glm::dvec3(0.5, -0.5, 0.5);
+    through.points[1].position = MeasuredScan::kCorner + glm::dvec3(0.7, 1.5, 0.7);
+    const glm::dvec2 window(800, 600);  // twice the picture's size
+    const Overlay overlay = overlay_of({&through, 1}, *picture, window, {false, MeasuredScan::kFoot});
+    ASSERT_EQ(overlay.marks.size(), 2u);
+    EXPECT_FALSE(overlay.marks[0].hidden);
+    EXPECT_TRUE(overlay.marks[1].hidden);
+    EXPECT_LT(glm::distance(overlay.marks[0].at, 2.0 * project(*picture, through.points[0].position)->pixel),
+              1e-6);
+    ASSERT_EQ(overlay.lines.size(), 2u);
+    EXPECT_FALSE(overlay.lines[0].hidden);
+    EXPECT_TRUE(overlay.lines[1].hidden);
+    EXPECT_EQ(overlay.lines[0].to, overlay.lines[1].from);
+    // It passes the wall a quarter of the way.
+    const auto at_wall = project(*picture, MeasuredScan::kCorner + glm::dvec3(0.55, 0, 0.55));
+    EXPECT_LT(glm::distance(overlay.lines[0].to, 2.0 * at_wall->pixel), 8);
+    ASSERT_EQ(overlay.labels.size(), 1u);
+    EXPECT_EQ(overlay.labels[0].text, "2.0199 US ft") << "the file's own unit";
+    through.points[0].position.y -= 100;  // behind the camera
+    EXPECT_EQ(overlay_of({&through, 1}, *picture, window, {}).marks.size(), 1u);
 }
 
 TEST_F(Pick, WhereNothingIsSeenThereIsNoPoint) {

@@ -129,7 +129,8 @@ void draw_measure_panel(ViewModel& model) {
     const float font = ImGui::GetFontSize();
     ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - font * 23, font * 3),
                             ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(font * 22, font * 30), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(font * 22, std::min(font * 44, ImGui::GetIO().DisplaySize.y * 0.8f)),
+                             ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Measure", &measure.show_panel)) {
         ImGui::PushItemWidth(-font * 7);
         tool_buttons(measure);

@@ -16,12 +16,6 @@ constexpr float kDot = 2;                           ///< pixels of a cell's side
 constexpr float kColumnApart = 90, kRowApart = 36;  ///< pixels between marks of the axes, about
 constexpr ImU32 kGrid = IM_COL32(90, 90, 90, 255), kText = IM_COL32(200, 200, 200, 255);
 
-/// With as many decimals as the step has, and no minus before 0.
-std::string text_of(double value, double step) {
-    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
-    return fmt::format("{:.{}f}", std::abs(value) < step / 2 ? 0.0 : value, decimals);
-}
-
 void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, const ImVec2& size,
           const UnitChoice& units) {
     const double unit = units.convert(1, Dimension::length),
@@ -31,18 +25,18 @@ void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, c
         return axis_step(length / pixels, std::max(static_cast<int>(length / apart), 1));
     };
     const double step = marks(size.x, kColumnApart), row = marks(size.y, kRowApart);
-    for (double x = std::ceil(left / step) * step; (x - left) * pixels < size.x; x += step) {
+    for (const double x : axis_marks(left, left + size.x / pixels, step)) {
         const float at = corner.x + static_cast<float>((x - left) * pixels);
         list.AddLine({at, corner.y}, {at, corner.y + size.y}, kGrid);
         list.AddText({at + 3, corner.y + size.y - ImGui::GetTextLineHeight()}, kText,
-                     text_of(x, step).c_str());
+                     axis_text(x, step).c_str());
     }
-    for (double y = std::ceil(bottom / row) * row; (y - bottom) * pixels < size.y; y += row) {
+    for (const double y : axis_marks(bottom, bottom + size.y / pixels, row)) {
         const float at = corner.y + size.y - static_cast<float>((y - bottom) * pixels);
         list.AddLine({corner.x, at}, {corner.x + size.x, at}, kGrid);
         if (at - corner.y > ImGui::GetTextLineHeight())
             list.AddText({corner.x + 3, at - ImGui::GetTextLineHeight()}, kText,
-                         (text_of(y, row) + " " + units.name(Dimension::length)).c_str());
+                         (axis_text(y, row) + " " + units.name(Dimension::length)).c_str());
     }
 }
 

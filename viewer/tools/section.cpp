@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
 #include <glm/vec2.hpp>
 
 namespace lucarne::viewer {
@@ -132,6 +133,19 @@ double axis_step(double range, int count) {
     for (const double factor : {1.0, 2.0, 5.0})
         if (factor * power >= raw * (1 - 1e-9)) return factor * power;
     return 10 * power;
+}
+
+std::vector<double> axis_marks(double low, double high, double step) {
+    std::vector<double> marks;
+    const double first = std::ceil(low / step);
+    // Counted: far away a step may be less than a double's.
+    for (int i = 0; i < 100 && (first + i) * step <= high; ++i) marks.push_back((first + i) * step);
+    return marks;
+}
+
+std::string axis_text(double value, double step) {
+    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    return fmt::format("{:.{}f}", std::abs(value) < step / 2 ? 0.0 : value, decimals);
 }
 
 }  // namespace lucarne::viewer

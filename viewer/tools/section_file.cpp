@@ -77,23 +77,24 @@ std::string section_svg(const Section& section, const std::string& title, const 
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
         "font-family=\"sans-serif\" "
-        "font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{2}\" "
+        "font-size=\"13\" fill=\"#ddd\">\n<rect width=\"100%\" height=\"100%\" fill=\"#202020\"/>\n<text "
+        "x=\"{2}\" "
         "y=\"25\">{3}: {4} "
         "points{5}, {6} thick</text>\n",
-        kWidth, height, kMargin, escaped(title), section.points.size(), section.complete ? "" : " (a sample)",
-        units.text(thickness, Dimension::length));
+        length * scale + 2 * kMargin, height, kMargin, escaped(title), section.points.size(),
+        section.complete ? "" : " (a sample)", units.text(thickness, Dimension::length));
     const double step_x = axis_step(length, 10), step_y = axis_step(range, 6);
-    for (double x = 0; x <= length * (1 + 1e-9); x += step_x)
+    for (const double x : axis_marks(0, length * (1 + 1e-9), step_x))
         svg += fmt::format(
-            "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" "
-            "text-anchor=\"middle\">{4:g}</text>\n",
-            kMargin + x * scale, kMargin, base, base + 18, x);
-    for (double y = std::ceil(low / step_y) * step_y; y <= (low + range) * (1 + 1e-12); y += step_y)
+            "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#505050\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" "
+            "text-anchor=\"middle\">{4}</text>\n",
+            kMargin + x * scale, kMargin, base, base + 18, axis_text(x, step_x));
+    for (const double y : axis_marks(low, low + range, step_y))
         svg += fmt::format(
-            "<path d=\"M{0} {1:.1f}H{2:.1f}\" stroke=\"#ddd\"/><text x=\"{3}\" y=\"{4:.1f}\" "
-            "text-anchor=\"end\">{5:g}</text>\n",
+            "<path d=\"M{0} {1:.1f}H{2:.1f}\" stroke=\"#505050\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+            "text-anchor=\"end\">{5}</text>\n",
             kMargin, base - (y - low) * scale, kMargin + length * scale, kMargin - 6,
-            base - (y - low) * scale + 4, y);
+            base - (y - low) * scale + 4, axis_text(y, step_y));
     svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\">along, {}</text>\n", kMargin, base + 38, name);
     const size_t every = section.points.size() / kMostDots + 1;
     for (size_t i = 0; i < section.points.size(); i += every) {
