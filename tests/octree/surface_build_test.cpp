@@ -2,10 +2,12 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
+#include "io/formats/scan.h"
 #include "octree/attributes.h"
 #include "octree/build/build.h"
 #include "octree/cache.h"
@@ -99,6 +101,21 @@ TEST(SurfaceBuild, AreasOfTheCutsOfAllLevelsAddUpToTheSurface) {
         std::printf("levels 0 to %u: %.2f of %.2f m2\n", level, surface, kSphere);
         EXPECT_NEAR(surface, kSphere, 0.03 * kSphere);
     }
+}
+
+TEST(SurfaceBuild, TheSurfelsOfAMeshAddUpToItsArea) {
+    const TempFolder folder;
+    // A cube of 1 m, its faces turned outwards.
+    std::string cube;
+    for (int i = 0; i < 8; ++i) cube += fmt::format("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2 & 1);
+    cube += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    io::testing::write_bytes(folder / "cube.obj", cube);
+    const auto mesh = io::open_scan(folder / "cube.obj", {"", true, {0, 100'000, false}});
+    ASSERT_TRUE(mesh) << mesh.error().line();
+    const auto cache = converted(**mesh, folder / "a.luc", NormalsMode::keep);
+    ASSERT_TRUE(cache);
+    EXPECT_FALSE(cache->header().schema.find(io::names::normal_oct)) << "its own normals are kept";
+    EXPECT_NEAR(surface_of_cut(*cache, cache->nodes().back().key.level), 6, 0.02 * 6);
 }
 
 TEST(SurfaceBuild, EstimatesNormalsThatLieOnTheSurface) {
