@@ -22,6 +22,7 @@ struct Action {
 // A room's actions, in the order of its menu. A new room adds its own line here and in `actions()`.
 std::span<const Action> file_actions();
 std::span<const Action> view_actions();
+std::span<const Action> look_actions();
 std::span<const Action> light_actions();
 std::span<const Action> picture_actions();
 std::span<const Action> measure_actions();

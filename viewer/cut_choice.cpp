@@ -81,7 +81,9 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
         return octree::light_cut(purpose.source, focus, points.value_or(budgets.light), lamps,
                                  purpose.extent);
     };
-    const octree::View eye = octree_view(purpose.camera, purpose.size);
+    octree::View eye = octree_view(purpose.camera, purpose.size);
+    if (purpose.clip && purpose.clip->active())
+        eye.wanted = [&](const octree::Cube& cube) { return kept(*purpose.clip, cube) != gi::Kept::none; };
     const auto view = [&](size_t, Points points) {
         return octree::view_cut(purpose.source, eye, points.value_or(budgets.view), budgets.pixel_spacing);
     };

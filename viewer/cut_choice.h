@@ -30,6 +30,7 @@ struct CutPurpose {
     uint32_t light_resolution;
     CutBudgets budgets;
     double extent;  ///< of what is looked at, without far strays (octree/bulk.h); world units
+    const gi::Clip* clip = nullptr;  ///< cubes that it leaves nothing of are not for the eye; none: all are
 };
 
 /// What may be held of the nodes of all cuts together.

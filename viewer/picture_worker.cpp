@@ -80,6 +80,7 @@ Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipe
     picture->local_origin = pipeline.local_origin();
     picture->metres_per_unit = pipeline.source().header().metres_per_unit;
     picture->exposure_ev = pipeline.exposure_ev();
+    picture->values = pipeline.values();
     picture->device_memory = device.memory_used();
     return picture;
 }

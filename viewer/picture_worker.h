@@ -39,6 +39,7 @@ struct Picture {
     glm::dvec3 local_origin{0.0};
     double metres_per_unit = 1, exposure_ev = 0;
     FrameStats stats;
+    gi::ShownValues values;      ///< what the colours stand for
     uint64_t device_memory = 0;  ///< bytes of the device's buffers
 
     /// The world point seen at a place, shares of the width and height from the top left; the nearest within

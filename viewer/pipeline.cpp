@@ -90,7 +90,7 @@ struct Pipeline::State {
     std::shared_ptr<SurfelPreparation> preparation;
     std::unique_ptr<octree::Residency> residency;
     bool repack = true;  // what the surfels hold of scene and look has changed
-    std::optional<gi::ValueRange> range;  // of the values that are shown
+    gi::ShownValues values;
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
 
@@ -194,12 +194,9 @@ void Pipeline::State::start_stream() {
 /// ones are shown.
 Result<void> Pipeline::State::colour_anew() {
     repack = false;
-    range = scene.look.range;
-    if (!range) {
-        LUCARNE_ASSIGN(range, gi::measured_range(*source, scene.look));
-    }
+    LUCARNE_ASSIGN(values, gi::measured_values(*source, scene.look));
     gi::Scene shown = scene;
-    shown.look.range = range;
+    shown.look.range = values.range;
     preparation->set_scene(shown);
     std::vector<uint32_t> all(source->nodes().size());
     std::iota(all.begin(), all.end(), 0u);
@@ -214,7 +211,8 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              scene.lights,
                              settings.light_resolution,
                              budgets,
-                             glm::distance(bulk[0], bulk[1])};
+                             glm::distance(bulk[0], bulk[1]),
+                             &scene.look.clip};
     const auto cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
     chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), cost});
     local = local_frame(request.camera.position, source->header().metres_per_unit);
@@ -461,8 +459,8 @@ const gi::CameraView& Pipeline::camera() const {
 glm::dvec3 Pipeline::local_origin() const {
     return state_->local.origin;
 }
-std::optional<gi::ValueRange> Pipeline::value_range() const {
-    return state_->range;
+const gi::ShownValues& Pipeline::values() const {
+    return state_->values;
 }
 double Pipeline::exposure_ev() const {
     return state_->exposure_ev;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gi/engine.h"
+#include "gi/scene/colouring.h"
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/source.h"
@@ -107,9 +108,8 @@ class Pipeline {
     std::shared_ptr<const gi::CutPoints> points() const;  ///< behind the G-buffer's ids
     const gi::CameraView& camera() const;
     glm::dvec3 local_origin() const;
-    /// Of the values that the last picture's colours stand for: the look's, or measured; none where the colours
-    /// have no range or no point has the attribute.
-    std::optional<gi::ValueRange> value_range() const;
+    /// What the colours of the last picture stand for.
+    const gi::ShownValues& values() const;
     /// The stops that the last picture was exposed by (measured where the scene leaves them open).
     double exposure_ev() const;
 

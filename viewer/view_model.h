@@ -6,6 +6,7 @@
 
 #include "viewer/camera.h"
 #include "viewer/navigation.h"
+#include "viewer/overlay/look_tools.h"
 #include "viewer/picture_worker.h"
 #include "viewer/presets.h"
 #include "viewer/shell/shell.h"
@@ -34,6 +35,8 @@ struct ViewModel {
 
     Shell shell;  ///< the open scans and what stands around the picture
     MeasureModel measure;
+
+    LookTools look_tools;  ///< beside scene.look
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

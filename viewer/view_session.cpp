@@ -168,6 +168,7 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard) run_actions(model_, keys);
+    if (take_clip_handles(model_)) return;
     measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
@@ -179,6 +180,7 @@ void ViewSession::take_input() {
 }
 
 void ViewSession::draw_panels() {
+    draw_overlay(model_);
     draw_menu_bar(model_);
     measure_.draw(model_);
     draw_scans_panel(model_);
@@ -186,6 +188,7 @@ void ViewSession::draw_panels() {
     if (model_.show_panels && !scans_.rows().empty()) {
         draw_settings_panel(model_);
         draw_light_panel(model_);
+        if (model_.look_tools.show_panel) draw_view_panel(model_);
         draw_statistics_panel(model_);
     }
     if (model_.show_help) draw_help(model_);

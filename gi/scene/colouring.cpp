@@ -55,18 +55,32 @@ std::string_view attribute_name(const Look& look) {
     return {};
 }
 
-/// The values of a node's points that are numbers.
-void append_values(const octree::SourcePart& part, const Look& look, const octree::NodeData& data,
-                   std::vector<double>& values) {
+/// What the points of the sample say.
+struct Sampled {
+    std::vector<double> values;  ///< that are numbers, of looks with a range
+    std::bitset<256> numbers, classes;
+};
+
+void mark(std::bitset<256>& numbers, double number) {
+    if (number >= 0 && number < 256) numbers.set(static_cast<size_t>(number));
+}
+
+void sample(const octree::SourcePart& part, const Look& look, const octree::NodeData& data,
+            Sampled& sampled) {
     const io::Schema& schema = part.header.schema;
-    const auto column = value_column(schema, look);
-    const bool elevation = look.colour == ColourBy::elevation;
-    if (!column && !elevation) return;
+    const auto shown = value_column(schema, look), classes = column_of(schema, io::names::classification);
+    const auto scans = column_of(schema, io::names::scan);
+    const bool ranged = has_range(look.colour), elevation = look.colour == ColourBy::elevation;
     const size_t count = std::min<size_t>(data.count, data.records.size() / schema.stride);
     for (size_t i = 0; i < count; ++i) {
         const std::byte* record = data.records.data() + i * schema.stride;
-        const double value = elevation ? io::position_of(schema, record).z * part.scale : column->at(record);
-        if (std::isfinite(value)) values.push_back(value);
+        if (classes) mark(sampled.classes, classes->at(record));
+        if (look.colour == ColourBy::scan)
+            mark(sampled.numbers, part.first_scan + (scans ? scans->at(record) : 0));
+        if (!shown && !elevation) continue;
+        const double value = elevation ? io::position_of(schema, record).z * part.scale : shown->at(record);
+        if (!ranged) mark(sampled.numbers, value);
+        if (ranged && std::isfinite(value)) sampled.values.push_back(value);
     }
 }
 
@@ -141,28 +155,31 @@ std::optional<uint32_t> Colouring::colour(const std::byte* record, double z, uin
     return shades_[number > 0 ? static_cast<size_t>(std::min(number, 255.0)) : 0];  // NaN: 0
 }
 
-Result<std::optional<ValueRange>> measured_range(const octree::NodeSource& source, const Look& look) {
-    if (!has_range(look.colour)) return std::nullopt;
+Result<ShownValues> measured_values(const octree::NodeSource& source, const Look& look) {
     // Level by level, from some roots where there are many.
     const std::vector<uint32_t> roots = source.roots();
     std::vector<uint32_t> level, below;
     const size_t used = std::min(roots.size(), kSampledRoots);
     for (size_t i = 0; i < used; ++i) level.push_back(roots[i * roots.size() / used]);
-    std::vector<double> values;
+    Sampled sampled;
     const auto nodes = source.nodes();
-    for (uint64_t sampled = 0; !level.empty() && sampled < kSampled; level = std::move(below)) {
+    for (uint64_t points = 0; !level.empty() && points < kSampled; level.swap(below)) {
         below.clear();
         for (const uint32_t node : level) {
             LUCARNE_ASSIGN(const octree::NodeData data, source.load(node));
-            sampled += data.count;
-            append_values(source.part_of(node), look, data, values);
+            points += data.count;
+            sample(source.part_of(node), look, data, sampled);
             for (uint32_t octant = 0; octant < 8; ++octant)
                 if (const uint32_t child = nodes[node].child(octant); child != octree::kNoNode)
                     below.push_back(child);
         }
     }
-    if (values.empty()) return std::nullopt;
-    return range_of(values);
+    ShownValues shown{look.range, sampled.numbers, sampled.classes};
+    if (!has_range(look.colour) || sampled.values.empty())
+        shown.range.reset();
+    else if (!shown.range)
+        shown.range = range_of(sampled.values);
+    return shown;
 }
 
 Result<void> check_attribute(const octree::NodeSource& source, const Look& look) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 
@@ -44,10 +45,17 @@ class Colouring {
     std::array<uint32_t, kShades> shades_{};  ///< along the colour map, or of the numbers 0 to 255
 };
 
-/// The values between which most points of a source lie: from its coarsest nodes, which are an even sample,
-/// the 1st and the 99th percentile; elevations in the source's unit. The same on every run. Empty where no
-/// point has the attribute, or where the look needs no range. Errors: a node that cannot be read.
-Result<std::optional<ValueRange>> measured_range(const octree::NodeSource& source, const Look& look);
+/// What a look shows of a source, measured on its coarsest nodes, which are an even sample. The same on every
+/// run.
+struct ShownValues {
+    /// The look's; or the 1st and the 99th percentile, of elevations in the source's unit. Empty where no point
+    /// has the attribute, or where the look needs no range.
+    std::optional<ValueRange> range;
+    std::bitset<256> numbers;  ///< that classes, return numbers or scans have
+    std::bitset<256> classes;  ///< that there are, whatever is shown
+};
+/// Errors: a node that cannot be read.
+Result<ShownValues> measured_values(const octree::NodeSource& source, const Look& look);
 
 /// Errors (ErrorKind::arguments) where no part of the source has the attribute; the message lists what there
 /// is.

@@ -200,6 +200,7 @@ Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double
     const double nearest = std::max(view.near_plane, 1e-9);  // of a node around the camera
     const Reach reach = [&](const Cube& cube, double radius) -> std::optional<double> {
         if (!frustum.touches(cube, radius)) return std::nullopt;
+        if (view.wanted && !view.wanted(cube)) return std::nullopt;
         return pixel * std::max(nearest, distance_to(cube, view.position));
     };
     return Sweep(source, reach).run(budget, 1 / (pixel_spacing * pixel_spacing));

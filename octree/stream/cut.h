@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct View {
     double tan_half_width = 1, tan_half_height = 1;
     uint32_t width = 1, height = 1;  ///< pixels or shadow-map texels
     double near_plane = 1e-3;
+    std::function<bool(const Cube&)> wanted{};  ///< whether any point in a cube is to be seen; none: all are
 };
 
 /// What a camera sees, refined where the projected spacing of the points is largest until it is under

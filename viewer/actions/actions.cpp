@@ -42,8 +42,8 @@ std::string key_name(int key) {
 std::vector<Action> join() {
     std::vector<Action> all;
     for (const auto room :
-         {file_actions(), view_actions(), light_actions(), picture_actions(), measure_actions(),
-          window_actions()})
+         {file_actions(), view_actions(), look_actions(), light_actions(), picture_actions(),
+          measure_actions(), window_actions()})
         all.insert(all.end(), room.begin(), room.end());
     return all;
 }
@@ -74,6 +74,7 @@ std::span<const Gesture> gestures() {
         Gesture{"scroll", "go to the point under the cursor (orbit), speed (fly)"},
         Gesture{"W A S D, E Q", "fly; with Shift faster"},
         Gesture{"click", "measure the point there, with a tool; select what a label belongs to"},
+        Gesture{"left drag on a clip's handle", "move the box's face, or the plane"},
         Gesture{"Shift + left drag", "aim the light at the point under the cursor"},
         Gesture{"Shift + right drag", "move the light sideways"},
     };

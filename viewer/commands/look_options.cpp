@@ -166,6 +166,10 @@ void add_look_options(CLI::App& command, LookOptions& options) {
         ->type_name("PX,PY,PZ,NX,NY,NZ");
     command.add_flag("--clip-casts", options.clip_casts,
                      "What is clipped is out of sight, but still blocks and bounces light");
+    command.add_flag("--legend", options.legend, "Over the picture (.png): what the colours stand for");
+    command.add_flag("--axes", options.axes, "Over the picture (.png): where x, y and z point to");
+    command.add_flag("--scale-bar", options.scale_bar,
+                     "Over the picture (.png): a length at the distance of the camera's target");
 }
 
 Result<void> apply(const LookOptions& options, gi::Look& look) {
@@ -175,6 +179,9 @@ Result<void> apply(const LookOptions& options, gi::Look& look) {
         LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
         look.unlit.shading = static_cast<gi::Shading>(shading);
     }
+    look.legend |= options.legend;
+    look.axes |= options.axes;
+    look.scale_bar |= options.scale_bar;
     look.unlit.strength = options.shading_strength.value_or(look.unlit.strength);
     look.point_size = options.point_size.value_or(look.point_size);
     look.point_pixels = options.point_pixels.value_or(look.point_pixels);

@@ -19,12 +19,13 @@ struct LookOptions {
     std::optional<double> point_size, point_pixels, shading_strength;
     std::vector<std::string> clip_boxes, clip_planes, clip_outside;
     std::vector<int> hidden_classes;
-    bool reversed = false, clip_casts = false;
+    bool reversed = false, clip_casts = false, legend = false, axes = false, scale_bar = false;
 };
 
 /// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size
 /// --point-pixels
-/// --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts. `options` outlives the
+/// --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts
+/// --legend --axes --scale-bar. `options` outlives the
 /// command.
 void add_look_options(CLI::App& command, LookOptions& options);
 

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "gi/compare/edges.h"
@@ -23,6 +24,7 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
 #include "viewer/inputs.h"
+#include "viewer/overlay/draw_marks.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -111,13 +113,26 @@ nlohmann::json report(const Rendered& rendered, const Pipeline& pipeline, const 
             {"statistics", engine}};
 }
 
+/// What the look wants over the picture; texts grow with it.
+void draw_overlay(const Pipeline& pipeline, const gi::SceneCamera& camera, io::Image8& picture) {
+    const int scale = std::max(static_cast<int>(picture.height / 540), 1);
+    OverlayView view;
+    view.camera = camera;
+    view.distance = glm::distance(camera.position, camera.target);
+    view.metres_per_unit = pipeline.source().header().metres_per_unit;
+    view.size = {picture.width, picture.height};
+    view.font = 13.0 * scale;
+    draw_marks(overlay(pipeline.scene().look, pipeline.values(), view), scale, picture);
+}
+
 Result<void> write_picture(const RenderOptions& options, PictureKind kind, const Pipeline& pipeline,
-                           io::Image radiance) {
+                           const gi::SceneCamera& camera, io::Image radiance) {
     if (kind == PictureKind::exr) return io::write_exr(options.output, radiance, options.overwrite);
     io::Image8 picture{radiance.width, radiance.height, {}};
     picture.bytes.reserve(radiance.pixels.size() * 3);
     for (const uint32_t rgba : pipeline.picture().download_all<uint32_t>(radiance.pixels.size()))
         for (const int shift : {0, 8, 16}) picture.bytes.push_back(static_cast<uint8_t>(rgba >> shift));
+    draw_overlay(pipeline, camera, picture);
     return io::write_png(options.output, picture, options.overwrite);
 }
 
@@ -186,7 +201,7 @@ Result<void> render(const RenderOptions& options) {
     io::Image picture{drawing.size.width, drawing.size.height,
                       pipeline->radiance().download_all<glm::vec4>(pixels)};
     const double mean = gi::mean_luminance(picture.pixels);
-    LUCARNE_TRY(write_picture(options, kind, *pipeline, std::move(picture)));
+    LUCARNE_TRY(write_picture(options, kind, *pipeline, request.camera, std::move(picture)));
     if (!options.gbuffer.empty())
         LUCARNE_TRY(
             io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));

@@ -11,11 +11,18 @@ void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how f
 
 // Each draws one ImGui window and writes the user's changes into the model.
 void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure
+void draw_view_panel(ViewModel& model);                ///< colours, sizes, shading, classes, clips
 void draw_light_panel(ViewModel& model);               ///< the selected spot
 void draw_statistics_panel(ViewModel& model);          ///< the last picture's figures
 void draw_measure_panel(ViewModel& model);             ///< tools, measurements, points
 void draw_measurements(ViewModel& model);              ///< over the picture
 void draw_help(ViewModel& model);                      ///< every action and gesture
+
+inline constexpr float kViewPanelWidth = 22;  ///< of the font's height
+void draw_overlay(const ViewModel& model);    ///< legend, axes, scale bar
+/// Draws clip boxes and their handles, and lets the mouse drag those; true while it does.
+bool take_clip_handles(ViewModel& model);
+
 void draw_message(const ViewModel& model, bool busy);  ///< one line at the bottom
 
 }  // namespace lucarne::viewer

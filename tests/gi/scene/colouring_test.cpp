@@ -140,17 +140,31 @@ TEST(Colouring, MeasuredRangesLeaveOutTheOutermostPercent) {
     Points points;
     for (int i = 0; i < 1000; ++i) points.add(i * 0.001, i, 0, 0, 0, {0, 0, 1}, i == 500 ? INFINITY : i);
     for (int i = 0; i < 5; ++i) points.add(15, 60000, 0, 0, 0, {0, 0, 1}, 1e300);
-    const auto intensity = measured_range(points, by(ColourBy::intensity));
-    ASSERT_TRUE(intensity && *intensity);
-    EXPECT_NEAR((*intensity)->low, 10, 1);
-    EXPECT_NEAR((*intensity)->high, 995, 2);
-    const auto elevation = measured_range(points, by(ColourBy::elevation));
-    ASSERT_TRUE(elevation && *elevation);
-    EXPECT_NEAR((*elevation)->high, 0.995, 0.002);
-    const auto classes = measured_range(points, by(ColourBy::classification));
-    EXPECT_TRUE(classes && !*classes) << "classes have no range";
-    const auto none = measured_range(Points(), by(ColourBy::intensity));
-    EXPECT_TRUE(none && !*none) << "no point, no range";
+    const auto range = [](const Points& of, ColourBy colour) {
+        const auto measured = measured_values(of, by(colour));
+        EXPECT_TRUE(measured);
+        return measured ? measured->range : std::nullopt;
+    };
+    const auto intensity = range(points, ColourBy::intensity), elevation = range(points, ColourBy::elevation);
+    ASSERT_TRUE(intensity && elevation);
+    EXPECT_NEAR(intensity->low, 10, 1);
+    EXPECT_NEAR(intensity->high, 995, 2);
+    EXPECT_NEAR(elevation->high, 0.995, 0.002);
+    EXPECT_FALSE(range(points, ColourBy::classification)) << "classes have no range";
+    EXPECT_FALSE(range(Points(), ColourBy::intensity)) << "no point, no range";
+}
+
+TEST(Colouring, MeasuredNumbersAreThoseThatPointsHave) {
+    Points points;
+    points.add(1, 0, 2, 1, 4, {0, 0, 1}, 0);
+    points.add(1, 0, 6, 3, 4, {0, 0, 1}, 0);
+    const auto returns = measured_values(points, by(ColourBy::return_number));
+    ASSERT_TRUE(returns);
+    EXPECT_TRUE(returns->classes.count() == 2 && returns->classes[2] && returns->classes[6]);
+    EXPECT_TRUE(returns->numbers.count() == 2 && returns->numbers[1] && returns->numbers[3]);
+    const auto scans = measured_values(points, by(ColourBy::scan));
+    ASSERT_TRUE(scans);
+    EXPECT_TRUE(scans->numbers.count() == 1 && scans->numbers[4]);
 }
 
 TEST(Colouring, HiddenClassesHaveNoDiscAndNoShareOfTheSurface) {

@@ -1,0 +1,133 @@
+#include "viewer/overlay/overlay.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "viewer/overlay/draw_marks.h"
+#include "viewer/overlay/look_tools.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using glm::dvec3;
+using testing::ElementsAre;
+
+TEST(Overlay, NiceNumbersAreOneTwoOrFiveTimesAPowerOfTen) {
+    EXPECT_DOUBLE_EQ(nice_at_most(1), 1);
+    EXPECT_DOUBLE_EQ(nice_at_most(1.99), 1);
+    EXPECT_DOUBLE_EQ(nice_at_most(2), 2);
+    EXPECT_DOUBLE_EQ(nice_at_most(49), 20);
+    EXPECT_DOUBLE_EQ(nice_at_most(0.0051), 0.005);
+    EXPECT_DOUBLE_EQ(nice_at_most(1e9), 1e9);
+    for (const double none : {0.0, -1.0, std::nan(""), INFINITY}) EXPECT_EQ(nice_at_most(none), 0);
+    for (double most = 1e-6; most < 1e6; most *= 1.07) {
+        const double nice = nice_at_most(most);
+        EXPECT_LE(nice, most * (1 + 1e-9));
+        EXPECT_GT(nice, most / 2.51);
+    }
+}
+
+TEST(Overlay, TicksLieOnNiceNumbersWithinTheRange) {
+    EXPECT_THAT(nice_ticks(0, 10, 6), ElementsAre(0, 2, 4, 6, 8, 10));
+    EXPECT_THAT(nice_ticks(402.3, 611.9, 5), ElementsAre(450, 500, 550, 600));
+    EXPECT_THAT(nice_ticks(-1, 1, 5), ElementsAre(-1, -0.5, 0, 0.5, 1));
+    EXPECT_TRUE(nice_ticks(3, 3, 5).empty());
+    EXPECT_TRUE(nice_ticks(5, 2, 5).empty());
+    EXPECT_LE(nice_ticks(1e15, 1e15 + 1, 5).size(), 50u) << "steps below a double's";
+}
+
+TEST(Overlay, ScaleBarsAreInTheScansUnitAndInMetres) {
+    const auto metres = scale_bars(0.1, 1, 320);
+    ASSERT_EQ(metres.size(), 1u);
+    EXPECT_EQ(metres[0].text, "20 m");
+    EXPECT_NEAR(metres[0].pixels, 200, 1e-9);
+    const auto feet = scale_bars(0.1, 0.3048, 320);
+    ASSERT_EQ(feet.size(), 2u);
+    EXPECT_EQ(feet[0].text, "20 ft");
+    EXPECT_EQ(feet[1].text, "5 m");
+    EXPECT_NEAR(feet[1].pixels, 5 / 0.3048 / 0.1, 1e-9);
+    EXPECT_EQ(scale_bars(1e-5, 1, 320)[0].text, "2 mm");
+    EXPECT_EQ(scale_bars(10, 1, 320)[0].text, "2 km");
+    EXPECT_TRUE(scale_bars(0, 1, 320).empty());
+}
+
+TEST(Overlay, AxesPointWhereTheCameraSeesThem) {
+    gi::SceneCamera camera;  // from the origin along +y, z up
+    const auto axes = axes_in(camera);
+    EXPECT_NEAR(axes[0].place.x, 1, 1e-12);
+    EXPECT_NEAR(axes[1].depth, 1, 1e-12);
+    EXPECT_NEAR(axes[2].place.y, -1, 1e-12) << "up in the picture";
+}
+
+std::vector<std::string> texts(const gi::Look& look, const gi::ShownValues& values) {
+    OverlayView view;
+    view.size = {640, 480};
+    view.distance = 10;
+    std::vector<std::string> found;
+    for (const Mark& mark : overlay(look, values, view))
+        if (mark.kind == Mark::Kind::text) found.push_back(mark.text);
+    return found;
+}
+
+TEST(Overlay, LegendsNameTheClassesThatThereAreAndAreNotHidden) {
+    gi::Look look;
+    look.legend = true;
+    look.colour = gi::ColourBy::classification;
+    look.hidden_classes.set(7);
+    gi::ShownValues values;
+    for (const size_t number : {2u, 6u, 7u}) values.numbers.set(number);
+    EXPECT_THAT(texts(look, values), ElementsAre("Classification", "2 Ground", "6 Building"));
+    look.legend = false;
+    EXPECT_TRUE(texts(look, values).empty());
+}
+
+TEST(Overlay, LegendsOfARangeHaveNiceTicks) {
+    gi::Look look;
+    look.legend = true;
+    look.colour = gi::ColourBy::elevation;
+    gi::ShownValues values;
+    values.range = gi::ValueRange{402, 611};
+    EXPECT_THAT(texts(look, values), ElementsAre("Elevation", "450", "500", "550", "600"));
+}
+
+TEST(Overlay, MarksStayWithinAPictureHoweverFarTheyReach) {
+    io::Image8 picture{16, 8, std::vector<uint8_t>(16 * 8 * 3, 10)};
+    const std::vector<Mark> marks = {
+        {Mark::Kind::area, {-1e12, -5}, {4, 1e12}, glm::vec3(1.0f), 1},
+        {Mark::Kind::line, {-1e9, 1e9}, {1e9, -1e9}, glm::vec3(1.0f), 1},
+        {Mark::Kind::text, {12, 5}, {}, glm::vec3(1.0f), 1, "beyond the edge \xff"},
+    };
+    draw_marks(marks, 2, picture);
+    EXPECT_EQ(picture.bytes.size(), 16u * 8 * 3);
+    for (size_t y = 0; y < 8; ++y) EXPECT_EQ(picture.bytes[3 * (y * 16 + 3)], 255);
+    EXPECT_EQ(picture.bytes[3 * (0 * 16 + 10)], 10);
+}
+
+TEST(ClipHandles, MovingAFaceLeavesTheOppositeOneWhereItIs) {
+    gi::Clip clip;
+    clip.boxes.push_back({{1, 2, 3}, {5, 4, 9}, 0.7});
+    for (int face = 0; face < 6; ++face) {
+        gi::Clip moved = clip;
+        const ClipHandle handle{false, 0, face}, opposite{false, 0, face ^ 1};
+        const dvec3 before = handle_place(clip, handle).position;
+        const HandlePlace still = handle_place(clip, opposite);
+        move_handle(moved, handle, 0.5);
+        EXPECT_NEAR(glm::distance(handle_place(moved, handle).position, before), 0.5, 1e-12);
+        EXPECT_NEAR(glm::distance(handle_place(moved, opposite).position, still.position), 0, 1e-12) << face;
+        move_handle(moved, handle, -100);
+        EXPECT_LT(moved.boxes[0].min[face / 2], moved.boxes[0].max[face / 2]) << "never inside out";
+    }
+}
+
+TEST(ClipHandles, AHandleFollowsTheRayThroughTheCursor) {
+    const dvec3 origin(1, 2, 3), axis = glm::normalize(dvec3(1, 1, 0)), eye(-4, 6, 8);
+    const dvec3 aim = origin + 2.5 * axis;
+    EXPECT_NEAR(along_axis(origin, axis, eye, 3.0 * (aim - eye)).value_or(0), 2.5, 1e-9);
+    EXPECT_FALSE(along_axis(origin, axis, eye, axis)) << "along the axis there is no nearest point";
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <optional>
+
+#include <imgui.h>
+
+#include "viewer/panels/panels.h"
+#include "viewer/tools/pick.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kHandle = 7;  // pixels, radius
+constexpr ImU32 kEdge = IM_COL32(255, 210, 80, 200), kFace = IM_COL32(255, 240, 200, 255),
+                kHeld = IM_COL32(255, 120, 40, 255);
+
+/// Where a world point stands in the window.
+std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
+    const auto seen = project(picture, world);
+    if (!seen) return std::nullopt;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
+                  static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
+}
+
+void draw_edges(const Picture& picture, const gi::ClipBox& box) {
+    const auto corners = box_corners(box);
+    for (size_t i = 0; i < 8; ++i)
+        for (size_t axis = 0; axis < 3; ++axis) {
+            if (i >> axis & 1) continue;
+            const auto from = on_screen(picture, corners[i]),
+                       to = on_screen(picture, corners[i | 1u << axis]);
+            if (from && to) ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kEdge, 1.5f);
+        }
+}
+
+/// The ray through the cursor, from the camera.
+glm::dvec3 cursor_ray(const ViewModel& model) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return model.rig.ray(
+        {2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
+        static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
+}
+
+void drag(ViewModel& model, const ClipHandle& handle) {
+    const HandlePlace place = handle_place(model.scene.look.clip, handle);
+    const auto by = along_axis(place.position, place.axis, model.rig.position(), cursor_ray(model));
+    if (!by || *by == 0) return;
+    move_handle(model.scene.look.clip, handle, *by);
+    model.scene_changed();
+}
+
+}  // namespace
+
+bool take_clip_handles(ViewModel& model) {
+    gi::Clip& clip = model.scene.look.clip;
+    LookTools& tools = model.look_tools;
+    if (!tools.show_handles || !clip.active() || !model.picture) {
+        tools.held.reset();
+        return false;
+    }
+    for (const gi::ClipBox& box : clip.boxes) draw_edges(*model.picture, box);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const bool free = !ImGui::GetIO().WantCaptureMouse;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.held.reset();
+    std::optional<ClipHandle> under;
+    const auto handles = clip_handles(clip);
+    if (tools.held && std::find(handles.begin(), handles.end(), *tools.held) == handles.end())
+        tools.held.reset();
+    for (const ClipHandle& handle : handles) {
+        const auto at = on_screen(*model.picture, handle_place(clip, handle).position);
+        if (!at) continue;
+        const float x = at->x - mouse.x, y = at->y - mouse.y;
+        const bool hovered = free && x * x + y * y < 4 * kHandle * kHandle;
+        if (hovered) under = handle;
+        const bool lit = tools.held ? *tools.held == handle : hovered;
+        ImGui::GetBackgroundDrawList()->AddCircleFilled(*at, kHandle, lit ? kHeld : kFace);
+    }
+    if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.held = under;
+    if (tools.held) drag(model, *tools.held);
+    return tools.held.has_value();
+}
+
+}  // namespace lucarne::viewer

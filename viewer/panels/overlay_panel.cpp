@@ -1,0 +1,38 @@
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+#include "viewer/overlay/overlay.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+ImU32 packed(const Mark& mark) {
+    return ImGui::ColorConvertFloat4ToU32(ImVec4(mark.colour.x, mark.colour.y, mark.colour.z, mark.opacity));
+}
+ImVec2 point(const glm::dvec2& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y)};
+}
+
+}  // namespace
+
+void draw_overlay(const ViewModel& model) {
+    if (!model.picture) return;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    OverlayView view;
+    view.camera = model.rig.camera();
+    view.distance = glm::dot(model.rig.pivot() - model.rig.position(), model.rig.forward());
+    view.metres_per_unit = model.picture->metres_per_unit;
+    view.size = {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)};
+    view.font = ImGui::GetFontSize();
+    view.right = model.show_panels && model.look_tools.show_panel ? kViewPanelWidth * view.font + 16 : 8;
+    view.bottom = 2 * view.font;  // the line of messages
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const Mark& mark : overlay(model.scene.look, model.picture->values, view)) {
+        if (mark.kind == Mark::Kind::area) list.AddRectFilled(point(mark.from), point(mark.to), packed(mark));
+        if (mark.kind == Mark::Kind::line) list.AddLine(point(mark.from), point(mark.to), packed(mark), 2.0f);
+        if (mark.kind == Mark::Kind::text) list.AddText(point(mark.from), packed(mark), mark.text.c_str());
+    }
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <imgui.h>
+
+#include "viewer/look_edits.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// True where another one was chosen.
+template <class Value>
+bool choice(const char* label, Value& value, std::span<const std::string_view> names) {
+    bool changed = false;
+    const std::string now(names[static_cast<size_t>(value)]);
+    if (!ImGui::BeginCombo(label, now.c_str())) return false;
+    for (size_t i = 0; i < names.size(); ++i) {
+        const std::string name(names[i]);
+        if (!ImGui::Selectable(name.c_str(), name == now)) continue;
+        value = static_cast<Value>(i);
+        changed = true;
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool slider(const char* label, double& value, float least, float most, const char* format, int flags = 0) {
+    float shown = static_cast<float>(value);
+    if (!ImGui::SliderFloat(label, &shown, least, most, format, flags | ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    value = shown;
+    return true;
+}
+
+bool attribute_choice(const ViewModel& model, gi::Look& look) {
+    if (!model.picture || !model.picture->source || !ImGui::BeginCombo("attribute", look.attribute.c_str()))
+        return false;
+    bool changed = false;
+    for (const std::string& name : attribute_names(*model.picture->source)) {
+        if (!ImGui::Selectable(name.c_str(), name == look.attribute)) continue;
+        look.attribute = name;
+        look.range.reset();
+        changed = true;
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool edit_range(const ViewModel& model, gi::Look& look) {
+    const auto& measured = model.picture ? model.picture->values.range : std::nullopt;
+    bool automatic = !look.range;
+    bool changed = ImGui::Checkbox("range where most values lie", &automatic);
+    if (changed) look.range = automatic ? std::nullopt : std::optional(measured.value_or(gi::ValueRange{}));
+    if (!measured) {
+        ImGui::TextDisabled("no point has this attribute");
+        return changed;
+    }
+    // The handles: each end drags by hundredths of the range.
+    gi::ValueRange range = look.range.value_or(*measured);
+    const auto speed = static_cast<float>(std::max(std::abs(range.high - range.low) / 200, 1e-9));
+    bool dragged =
+        ImGui::DragScalar("low", ImGuiDataType_Double, &range.low, speed, nullptr, nullptr, "%.6g");
+    dragged |= ImGui::DragScalar("high", ImGuiDataType_Double, &range.high, speed, nullptr, nullptr, "%.6g");
+    if (dragged) look.range = range;
+    return changed || dragged;
+}
+
+bool edit_colours(const ViewModel& model, gi::Look& look) {
+    bool changed = choice("colour", look.colour, gi::colour_names());
+    if (changed) look.range.reset();
+    if (look.colour == gi::ColourBy::attribute) changed |= attribute_choice(model, look);
+    if (!gi::has_range(look.colour)) return changed;
+    changed |= choice("colour map", look.map, gi::colour_map_names());
+    changed |= ImGui::Checkbox("reversed", &look.reversed);
+    return edit_range(model, look) || changed;
+}
+
+bool edit_points(gi::Look& look) {
+    bool fixed = look.point_pixels > 0;
+    bool changed = ImGui::Checkbox("points of a fixed size", &fixed);
+    if (changed) look.point_pixels = fixed ? 3 : 0;
+    if (fixed) return slider("size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
+    return slider("size", look.point_size, 0.1f, 5, "%.2f of the points' own",
+                  ImGuiSliderFlags_Logarithmic) ||
+           changed;
+}
+
+bool edit_shading(ViewModel& model, gi::Look& look) {
+    bool lit = model.engine != "unlit";
+    if (ImGui::Checkbox("light", &lit)) switch_light(model);
+    if (lit) return false;
+    bool changed = choice("shading", look.unlit.shading, gi::shading_names());
+    if (look.unlit.shading != gi::Shading::flat)
+        changed |= slider("strength", look.unlit.strength, 0, 5, "%.2f");
+    return changed;
+}
+
+bool edit_backdrop(gi::Look& look) {
+    static constexpr std::array<std::string_view, 3> kKinds = {"the scene's", "one colour",
+                                                               "from top to bottom"};
+    gi::Backdrop& backdrop = look.backdrop;
+    bool changed = choice("background", backdrop.kind, kKinds);
+    const auto colour = [&](const char* label, glm::dvec3& value) {
+        float shown[3] = {static_cast<float>(value.x), static_cast<float>(value.y),
+                          static_cast<float>(value.z)};
+        if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return;
+        value = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
+        changed = true;
+    };
+    if (backdrop.kind != gi::Backdrop::Kind::scene) colour("top", backdrop.top);
+    if (backdrop.kind == gi::Backdrop::Kind::gradient) colour("bottom", backdrop.bottom);
+    return changed;
+}
+
+bool edit_classes(const ViewModel& model, gi::Look& look) {
+    if (!model.picture || model.picture->values.classes.none() || !ImGui::TreeNode("Classes")) return false;
+    bool changed = false;
+    for (size_t number = 0; number < 256; ++number) {
+        if (!model.picture->values.classes[number] && !look.hidden_classes[number]) continue;
+        const auto small = static_cast<uint8_t>(number);
+        const glm::vec3 c = gi::class_colour(small);
+        bool shown = !look.hidden_classes[number];
+        const std::string label = fmt::format("{} {}", number, gi::class_name(small));
+        ImGui::ColorButton(fmt::format("##{}", number).c_str(), ImVec4(c.x, c.y, c.z, 1),
+                           ImGuiColorEditFlags_NoTooltip);
+        ImGui::SameLine();
+        if (!ImGui::Checkbox(label.c_str(), &shown)) continue;
+        look.hidden_classes[number] = !shown;
+        changed = true;
+    }
+    ImGui::TreePop();
+    return changed;
+}
+
+bool drag_place(const char* label, glm::dvec3& place, double speed) {
+    double values[3] = {place.x, place.y, place.z};
+    if (!ImGui::DragScalarN(label, ImGuiDataType_Double, values, 3, static_cast<float>(speed), nullptr,
+                            nullptr, "%.3f"))
+        return false;
+    place = {values[0], values[1], values[2]};
+    return true;
+}
+
+/// True where it was changed; `gone` where it is to be removed.
+bool edit_box(gi::ClipBox& box, double speed, bool& gone) {
+    bool changed = drag_place("from", box.min, speed);
+    changed |= drag_place("to", box.max, speed);
+    box.max = glm::max(box.min, box.max);
+    double degrees = box.rotation * 180 / std::numbers::pi;
+    if (slider("turned", degrees, -180, 180, "%.1f degrees")) {
+        box.rotation = degrees * std::numbers::pi / 180;
+        changed = true;
+    }
+    changed |= ImGui::Checkbox("keeps what is outside", &box.inverted);
+    ImGui::SameLine();
+    gone = ImGui::SmallButton("remove");
+    return changed || gone;
+}
+
+bool edit_plane(gi::ClipPlane& plane, double speed, bool& gone) {
+    bool changed = drag_place("at", plane.position, speed);
+    glm::dvec3 normal = plane.normal;
+    if (drag_place("normal", normal, 0.01) && glm::dot(normal, normal) > 1e-6) {
+        plane.normal = normal;
+        changed = true;
+    }
+    changed |= ImGui::Checkbox("keeps the other side", &plane.inverted);
+    ImGui::SameLine();
+    gone = ImGui::SmallButton("remove");
+    return changed || gone;
+}
+
+template <class Shapes>
+bool edit_shapes(const char* name, Shapes& shapes, const auto& edit) {
+    bool changed = false;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        ImGui::PushID(name);
+        ImGui::PushID(static_cast<int>(i));
+        bool gone = false;
+        if (ImGui::TreeNodeEx("shape", ImGuiTreeNodeFlags_DefaultOpen, "%s %d", name,
+                              static_cast<int>(i) + 1)) {
+            changed |= edit(shapes[i], gone);
+            ImGui::TreePop();
+        }
+        ImGui::PopID();
+        ImGui::PopID();
+        if (gone) shapes.erase(shapes.begin() + static_cast<ptrdiff_t>(i--));
+    }
+    return changed;
+}
+
+bool edit_clip(ViewModel& model, gi::Clip& clip) {
+    if (!ImGui::TreeNode("Clip")) return false;
+    if (ImGui::Button("Add box")) add_clip_box(model);
+    ImGui::SameLine();
+    if (ImGui::Button("Add plane")) add_clip_plane(model);
+    ImGui::SameLine();
+    ImGui::Checkbox("handles", &model.look_tools.show_handles);
+    const double speed = model.scene_size / 1000;
+    bool changed =
+        edit_shapes("box", clip.boxes, [&](auto& box, bool& gone) { return edit_box(box, speed, gone); });
+    changed |= edit_shapes("plane", clip.planes,
+                           [&](auto& plane, bool& gone) { return edit_plane(plane, speed, gone); });
+    if (clip.active()) changed |= ImGui::Checkbox("what is clipped still casts shadows", &clip.casts);
+    ImGui::TreePop();
+    return changed;
+}
+
+}  // namespace
+
+void draw_view_panel(ViewModel& model) {
+    const float font = ImGui::GetFontSize(), width = kViewPanelWidth * font;
+    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - width - 8, ImGui::GetFrameHeight() + 8),
+                            ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(width, 0), ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("View")) {
+        gi::Look& look = model.scene.look;
+        bool changed = edit_colours(model, look);
+        changed |= edit_points(look);
+        changed |= edit_shading(model, look);
+        changed |= edit_backdrop(look);
+        changed |= edit_classes(model, look);
+        changed |= edit_clip(model, look.clip);
+        // These are drawn over the picture, which stays as it is.
+        ImGui::Checkbox("legend", &look.legend);
+        ImGui::SameLine();
+        ImGui::Checkbox("axes", &look.axes);
+        ImGui::SameLine();
+        ImGui::Checkbox("scale bar", &look.scale_bar);
+        if (changed) model.scene_changed();
+    }
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer
