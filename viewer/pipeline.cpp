@@ -391,6 +391,9 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.wanted_points = chosen.points();
     for (const auto& cut : light_views) result.light_view_points += cut.surfels();
     result.ready_points = result.view_points + result.light_points + result.light_view_points;
+    // Clipped nodes are as complete as can be.
+    result.ready_points += uint64_t{view.clipped()} + light_cut.clipped();
+    for (const auto& cut : light_views) result.ready_points += cut.clipped();
     result.bytes_loaded = bytes_loaded;
     const octree::ResidencyStats streamed = residency->stats();
     result.nodes_pending = streamed.pending;

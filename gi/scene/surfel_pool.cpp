@@ -161,7 +161,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     std::vector<CutItem> items;
     std::vector<CutBlock> blocks;
     const auto cut_points = std::make_shared<CutPoints>();
-    uint64_t surfels = 0;
+    uint64_t surfels = 0, clipped = 0;
     cut.fingerprint_ = 0;
     for (const CutEntry& entry : sorted) {
         const auto resident = resident_.find(entry.node);
@@ -206,6 +206,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
             blocks.push_back({index, first, count, lod(at) | lod(at + count) << 16});
         }
         surfels += drawn;
+        clipped += item.count - drawn;
         items.push_back(item);
     }
     cut.clip_ = device_clip(clip, local_origin, unit);
@@ -221,6 +222,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     cut.blocks_buffer_.upload_all(blocks);
     cut.pool_ = &buffer_;
     cut.host_items_ = std::move(items);
+    cut.clipped_ = static_cast<uint32_t>(clipped);
     cut.surfels_ = static_cast<uint32_t>(surfels);  // at most the pool's capacity
     cut.blocks_ = static_cast<uint32_t>(blocks.size());
     cut.host_blocks_ = std::move(blocks);

@@ -59,6 +59,7 @@ class CutPoints {
 class DeviceCut {
  public:
     uint32_t surfels() const { return surfels_; }  ///< points drawn, with those that are tested and clipped
+    uint32_t clipped() const { return clipped_; }  ///< points of nodes that are clipped whole
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
     float size() const { return size_; }           ///< m, side of the source's root cube
     /// Of what the cut shows: equal for equal surfels at equal places.
@@ -74,7 +75,7 @@ class DeviceCut {
     std::vector<CutItem> host_items_;
     std::vector<CutBlock> host_blocks_;
     DeviceClip clip_;
-    uint32_t surfels_ = 0, blocks_ = 0;
+    uint32_t surfels_ = 0, blocks_ = 0, clipped_ = 0;
     float size_ = 1;
     uint64_t fingerprint_ = 0;
     std::shared_ptr<const CutPoints> points_;

@@ -57,5 +57,5 @@ void main() {
             sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
         }
     }
-    obscurance[index] = min(sum * 2.5 / float(kSamples), 1.0);
+    obscurance[index] = min(sum * 5.0 / float(kSamples), 1.0);
 }

@@ -31,6 +31,7 @@ class Sheet {
     }
     double width() const { return view_.size.width - view_.right; }
     double height() const { return view_.size.height - view_.bottom; }
+    double left() const { return view_.left; }
     double em() const { return view_.font; }
 
     std::vector<Mark> marks;
@@ -122,7 +123,7 @@ void draw_axes(Sheet& sheet, const gi::SceneCamera& camera) {
         glm::vec3(0.95f, 0.3f, 0.3f), glm::vec3(0.4f, 0.85f, 0.35f), glm::vec3(0.4f, 0.6f, 1.0f)};
     static constexpr std::array kNames = {"x", "y", "z"};
     const double em = sheet.em(), length = 2.6 * em;
-    const dvec2 middle(4 * em, sheet.height() - 4.5 * em);
+    const dvec2 middle(sheet.left() + 4 * em, sheet.height() - 4.5 * em);
     const auto axes = axes_in(camera);
     std::array<size_t, 3> order = {0, 1, 2};
     std::ranges::sort(order, [&](size_t a, size_t b) { return axes[a].depth > axes[b].depth; });
@@ -138,7 +139,7 @@ void draw_scale(Sheet& sheet, const OverlayView& view) {
     const double pixel =
         2 * std::tan(view.camera.vertical_fov / 2) * view.distance / std::max(view.size.height, 1u);
     const auto bars = scale_bars(pixel, view.metres_per_unit, 0.25 * sheet.width());
-    dvec2 at(8.5 * em, sheet.height() - (1.3 + 1.9 * static_cast<double>(bars.size())) * em);
+    dvec2 at(sheet.left() + 8.5 * em, sheet.height() - (1.3 + 1.9 * static_cast<double>(bars.size())) * em);
     for (const ScaleBar& bar : bars) {
         const dvec2 line = at + dvec2(0, 1.3 * em), end = line + dvec2(bar.pixels, 0), up(0, -0.4 * em);
         sheet.line(line, end);

@@ -28,7 +28,7 @@ struct OverlayView {
     double metres_per_unit = 1;
     ImageSize size;
     double font = 13;              ///< height of the text, pixels
-    double right = 0, bottom = 0;  ///< kept free, pixels
+    double left = 0, right = 0, bottom = 0;  ///< kept free, pixels
 };
 
 /// Legend, axes and scale bar, as far as the look asks for them.

@@ -26,6 +26,7 @@ void draw_overlay(const ViewModel& model) {
     view.size = {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)};
     view.font = ImGui::GetFontSize();
     view.right = model.show_panels && model.look_tools.show_panel ? kViewPanelWidth * view.font + 16 : 8;
+    view.left = model.show_panels ? 33 * view.font : 8;  // the scans' tree
     view.bottom = 2 * view.font;  // the line of messages
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const Mark& mark : overlay(model.scene.look, model.picture->values, view)) {
