@@ -181,6 +181,38 @@ TEST_F(ViewerWindow, OrbitsAndMovesTheLightAndComesHome) {
     EXPECT_EQ(viewer_->code(), 0);
 }
 
+/// Mean of the bytes of some rows.
+double brightness(const io::Image8& image, uint32_t from_row, uint32_t to_row) {
+    double sum = 0;
+    for (size_t i = size_t{from_row} * image.width * 3; i < size_t{to_row} * image.width * 3; ++i)
+        sum += image.bytes[i];
+    return sum / (static_cast<double>(to_row - from_row) * image.width * 3);
+}
+
+TEST_F(ViewerWindow, SwitchesLightAndColoursByKeysAndRaisesAClipsTopByItsHandle) {
+    // The camera looks straight at the edge of what the clip leaves of the box.
+    start(" --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json --clip-box=-1,-1,-1,7,7,2.75");
+    const auto lower_half = [](const io::Image8& now) {
+        return brightness(now, 0, 170) < 1 && brightness(now, 200, 360) > 20;
+    };
+    const auto first = picture(lower_half);
+    ASSERT_TRUE(first) << "the clip does not hold";
+    xdo("key Tab");  // the panels would take the drags
+    xdo("key u");
+    const auto unlit =
+        picture([&](const io::Image8& now) { return lower_half(now) && difference(now, *first) > 2; });
+    ASSERT_TRUE(unlit) << "U does not switch the light off";
+    for (const char* key : {"c", "c"}) xdo(std::string("key ") + key);  // intensity, elevation
+    const auto heights =
+        picture([&](const io::Image8& now) { return lower_half(now) && difference(now, *unlit) > 5; });
+    ASSERT_TRUE(heights) << "C does not colour";
+    // The handle in the middle of the clip's top, 10.6 m away and .25 m to the right.
+    drag(1, 252, 180, 252, 120);
+    EXPECT_TRUE(picture([](const io::Image8& now) {
+        return brightness(now, 140, 165) > 20 && brightness(now, 0, 90) < 1;
+    })) << "the handle does not move the face, or more than that";
+}
+
 TEST_F(ViewerWindow, FliesWithTheKeys) {
     start();
     const auto first = picture(lit);
@@ -255,7 +287,8 @@ TEST_F(ViewerWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigi
         const double half = std::tan(25.0 / 180 * M_PI);
         const double x = kWidth / 2.0 + d.x / d.y / half * kHeight / 2.0;
         const double y = kHeight / 2.0 - d.z / d.y / half * kHeight / 2.0;
-        EXPECT_EQ(xdo(fmt::format("mousemove {:.0f} {:.0f} sleep 0.4 click 1 sleep 0.4", std::floor(x), std::floor(y)))
+        EXPECT_EQ(xdo(fmt::format("mousemove {:.0f} {:.0f} sleep 0.4 click 1 sleep 0.4", std::floor(x),
+                                  std::floor(y)))
                       .code,
                   0);
     };
@@ -270,8 +303,8 @@ TEST_F(ViewerWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigi
     const std::string csv = test::bytes_of(file);
     const auto digits = [](uint64_t number) {
         const glm::ivec3 p = test::MeasuredScan::integers(number);
-        return fmt::format("{}.{:03},{}.{:03},{}.{:03}", 1'500'000 + p.x / 1000, p.x % 1000, 200'000 + p.y / 1000,
-                           p.y % 1000, p.z / 1000, p.z % 1000);
+        return fmt::format("{}.{:03},{}.{:03},{}.{:03}", 1'500'000 + p.x / 1000, p.x % 1000,
+                           200'000 + p.y / 1000, p.y % 1000, p.z / 1000, p.z % 1000);
     };
     EXPECT_THAT(csv, HasSubstr("Distance 1,distance,point 1,,," + digits(a)));
     EXPECT_THAT(csv, HasSubstr("Distance 1,distance,point 2,,," + digits(b)));
