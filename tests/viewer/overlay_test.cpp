@@ -22,7 +22,7 @@ TEST(Overlay, NiceNumbersAreOneTwoOrFiveTimesAPowerOfTen) {
     EXPECT_DOUBLE_EQ(nice_at_most(49), 20);
     EXPECT_DOUBLE_EQ(nice_at_most(0.0051), 0.005);
     EXPECT_DOUBLE_EQ(nice_at_most(1e9), 1e9);
-    for (const double none : {0.0, -1.0, std::nan(""), INFINITY}) EXPECT_EQ(nice_at_most(none), 0);
+    for (const double none : {0.0, -1.0, std::nan(""), HUGE_VAL}) EXPECT_EQ(nice_at_most(none), 0);
     for (double most = 1e-6; most < 1e6; most *= 1.07) {
         const double nice = nice_at_most(most);
         EXPECT_LE(nice, most * (1 + 1e-9));
