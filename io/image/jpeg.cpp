@@ -15,6 +15,9 @@ namespace lucarne::io {
 namespace {
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+/// A block of 8x8 pixels takes a bit at least of Huffman's code: 512 pixels a byte. Arithmetic codes, which
+/// hardly anything writes, may take less.
+constexpr uint64_t kMostPixelsPerByte = 1024;
 
 struct Destroy {
     void operator()(void* handle) const { tjDestroy(handle); }
@@ -37,6 +40,8 @@ Result<Image8> read_jpeg(const std::filesystem::path& path, uint64_t most_pixels
     const auto w = static_cast<uint32_t>(width), h = static_cast<uint32_t>(height);
     if (width < 1 || height < 1 || w > kLargestSide || h > kLargestSide || uint64_t{w} * h > most_pixels)
         return rejected(name, fmt::format("is too large: {}x{} pixels", width, height));
+    if (uint64_t{w} * h / kMostPixelsPerByte > file.size())
+        return rejected(name, fmt::format("is shorter than its {}x{} pixels", width, height));
     Image8 image{w, h, std::vector<uint8_t>(size_t{3} * w * h)};
     // Scans upon scans of a progressive picture would cost hours: libjpeg-turbo allows 500.
     if (tjDecompress2(decoder.get(), encoded.data(), encoded.size(), image.bytes.data(), width, 0, height,

@@ -161,7 +161,8 @@ class ExrHeader : public ::testing::Test {
 
 TEST_F(ExrHeader, AnAttributeLargerThanTheFileIsRefusedBeforeItIsMadeRoomFor) {
     insert("comments", "unheard", "1234");
-    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("data block")) << "the pixels are moved, no more";
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("data block"))
+        << "the pixels are moved, no more";
     put(value_of("comments", "unheard") - 4, uint32_t{1'677'918'208});
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("header is cut off"));
 }
@@ -221,6 +222,16 @@ TEST(Png, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
     put_u32(png, 29, png_checksum(std::string_view(png).substr(12, 17)));
     write_bytes(folder / "b.png", png);
     const auto read = read_png(folder / "b.png");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().line(), ::testing::HasSubstr("shorter than its 8000x8000 pixels"));
+}
+
+TEST(Jpeg, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
+    const MemoryFile file;
+    // Start, a frame of 8000x8000 grey pixels, the start of its scan.
+    file.set(
+        std::string("\xff\xd8\xff\xc0\0\x0b\x08\x1f\x40\x1f\x40\1\1\x11\0\xff\xda\0\x08\1\1\0\0\x3f\0", 25));
+    const auto read = read_jpeg(file.path());
     ASSERT_FALSE(read);
     EXPECT_THAT(read.error().line(), ::testing::HasSubstr("shorter than its 8000x8000 pixels"));
 }

@@ -66,7 +66,8 @@ void make_all(const std::filesystem::path& folder) {
     laz_seeds(Seeds(folder / "laz"));
     obj_seeds(Seeds(folder / "obj"));
     pcd_seeds(Seeds(folder / "pcd"));
-    picture_seeds(Seeds(folder / "exr"), Seeds(folder / "hdr"), Seeds(folder / "png"));
+    picture_seeds(Seeds(folder / "exr"), Seeds(folder / "hdr"), Seeds(folder / "png"),
+                  Seeds(folder / "jpeg"));
     ply_seeds(Seeds(folder / "ply"));
     text_seeds(Seeds(folder / "text"));
 }

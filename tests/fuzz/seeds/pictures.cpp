@@ -1,4 +1,4 @@
-// EXR and PNG by our own writers, Radiance by hand: flat, and in runs.
+// EXR and PNG by our own writers; Radiance, flat and in runs, and JPEG by hand.
 #include <stdexcept>
 
 #include <glm/vec4.hpp>
@@ -24,9 +24,25 @@ std::string runs_of(char value, int width) {
     return {static_cast<char>(128 + width), value};
 }
 
+/// A marker of JPEG with what belongs to it.
+std::string segment(char marker, const std::string& content) {
+    const size_t length = content.size() + 2;
+    return std::string("\xff", 1) + marker + static_cast<char>(length >> 8) + static_cast<char>(length) +
+           content;
+}
+
+/// 16x8 grey pixels; one code each: a block's mean does not change, and it has nothing else.
+std::string grey_jpeg() {
+    const std::string one_code = '\1' + std::string(15, '\0') + '\0';
+    return "\xff\xd8" + segment('\xdb', '\0' + std::string(64, '\1')) +
+           segment('\xc0', std::string("\x08\0\x08\0\x10\1\1\x11\0", 9)) + segment('\xc4', '\0' + one_code) +
+           segment('\xc4', '\x10' + one_code) + segment('\xda', std::string("\1\1\0\0\x3f\0", 6)) +
+           "\x0f\xff\xd9";
+}
+
 }  // namespace
 
-void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png) {
+void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png, const Seeds& jpeg) {
     for (const bool alpha : {false, true})
         require(io::write_exr(exr.folder() / (alpha ? "alpha" : "opaque"), picture(), true, alpha));
     io::Image8 bytes{9, 5, {}};
@@ -41,6 +57,9 @@ void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png) {
         runs += std::string("\2\2\0\x0a", 4) + runs_of('\x40', 10) + "\x0a" + "abcdefghij" +
                 runs_of('\x20', 10) + runs_of('\x81', 10);
     hdr.add("runs", runs);
+    jpeg.add("grey", grey_jpeg());
+    if (const auto read = io::read_jpeg(jpeg.folder() / "grey"); !read)
+        throw std::runtime_error(read.error().line());
 }
 
 }  // namespace lucarne::fuzz

@@ -45,15 +45,18 @@ void ply_seeds(const Seeds& seeds) {
                                 "5e-1 -1.5 2 16 32 48 1 3 0 0 1\n3 0 1 2\n");
     seeds.add_scan("little-endian", head("binary_little_endian") + binary(false));
     seeds.add_scan("big-endian", head("binary_big_endian") + binary(true));
-    seeds.add_scan("textured",
-                   "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\nproperty "
-                   "float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar "
-                   "blue\nelement face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
-                   "texcoord\nproperty int texnumber\nend_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n"
-                   "0 1 1 1 2 3\n3 0 1 2 6 0 0 1 0 1 1 0\n4 0 1 2 3 0 0\n");
+    seeds.add_scan(
+        "textured",
+        "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\nproperty "
+        "float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar "
+        "blue\nelement face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
+        "texcoord\nproperty int texnumber\nend_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n"
+        "0 1 1 1 2 3\n3 0 1 2 6 0 0 1 0 1 1 0\n4 0 1 2 3 0 0\n");
     std::string mesh =
-        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
-        "z\nproperty float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_index\nproperty uchar "
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
+        "y\nproperty float "
+        "z\nproperty float s\nproperty float t\nelement face 1\nproperty list uchar int "
+        "vertex_index\nproperty uchar "
         "red\nproperty uchar green\nproperty uchar blue\nend_header\n";
     for (int i = 0; i < 4; ++i) {
         const float x = i == 1 || i == 2, y = i > 1;

@@ -32,7 +32,7 @@ void las_seeds(const Seeds& seeds);
 void laz_seeds(const Seeds& seeds);
 void obj_seeds(const Seeds& seeds);
 void pcd_seeds(const Seeds& seeds);
-void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png);
+void picture_seeds(const Seeds& exr, const Seeds& hdr, const Seeds& png, const Seeds& jpeg);
 void ply_seeds(const Seeds& seeds);
 void text_seeds(const Seeds& seeds);
 
