@@ -71,8 +71,10 @@ Result<Scene> load_scene(const std::filesystem::path& path);
 Result<Scene> parse_scene(std::string_view text, const std::string& name,
                           const std::filesystem::path& folder = ".");
 
-/// What is used without a scene file: a camera that sees the whole box (world units) and one spot beside it,
-/// bright enough for a mid-grey picture at exposure 0, which is fixed.
-Scene default_scene(const glm::dvec3& min, const glm::dvec3& max, double metres_per_unit = 1.0);
+/// What is used without a scene file: a camera to whose picture (width over height: `aspect`) the whole box
+/// (world units) just fits, and one spot beside it, bright enough for a mid-grey picture at exposure 0, which
+/// is fixed.
+Scene default_scene(const glm::dvec3& min, const glm::dvec3& max, double metres_per_unit = 1.0,
+                    double aspect = 4.0 / 3);
 
 }  // namespace lucarne::gi

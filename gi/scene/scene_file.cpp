@@ -126,6 +126,20 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
     return scene;
 }
 
+/// How far from its centre a box of these half sizes must be seen to fit the picture with a small margin.
+double fitting_distance(const dvec3& half, const dvec3& right, const dvec3& up, const dvec3& back, double fov,
+                        double aspect) {
+    constexpr double kMargin = .94;
+    const double tall = kMargin * std::tan(fov / 2), wide = tall * aspect;
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const dvec3 c = half * dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const double reach = std::max(std::abs(dot(c, right)) / wide, std::abs(dot(c, up)) / tall);
+        distance = std::max(distance, reach + dot(c, back));
+    }
+    return distance;
+}
+
 }  // namespace
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name,
@@ -139,7 +153,7 @@ Result<Scene> load_scene(const std::filesystem::path& path) {
     return read_scene(document, path.string(), path.parent_path());
 }
 
-Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) {
+Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit, double aspect) {
     dvec3 centre = (min + max) / 2.0;
     double radius = glm::length(max - min) / 2;
     if (!std::isfinite(radius)) centre = dvec3(0), radius = 1;  // an empty box: nothing to frame
@@ -151,13 +165,14 @@ Scene default_scene(const dvec3& min, const dvec3& max, double metres_per_unit) 
     camera.vertical_fov = kFov;
     camera.target = centre;
     const dvec3 back = glm::normalize(dvec3(-.55, -1, .6));
-    const double distance = radius / std::sin(kFov / 2);
-    camera.position = centre + back * distance;
+    const dvec3 right = glm::normalize(cross(-back, camera.up)), up = cross(right, -back);
+    const double fitting = fitting_distance((max - min) / 2.0, right, up, back, kFov, aspect);
+    camera.position = centre + back * std::clamp(fitting, 1e-3, 2 * radius / std::sin(kFov / 2));
 
     SceneLight spot;
     spot.name = "beside the camera";
-    const dvec3 right = glm::normalize(cross(-back, camera.up)), up = cross(right, -back);
-    spot.position = camera.position + (right * .35 + up * .35) * distance;
+    const double distance = radius / std::sin(kFov / 2);
+    spot.position = centre + (back + right * .35 + up * .35) * distance;
     spot.target = centre;
     const double from = glm::length(spot.position - centre);
     spot.angle = 2 * std::asin(std::min(.95, 1.1 * radius / from));

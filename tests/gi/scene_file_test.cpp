@@ -167,13 +167,29 @@ TEST(SceneFile, TheScenesOfThisRepositoryLoad) {
     }
 }
 
-/// Whether a point lies inside the vertical field of view of a camera, for a square picture.
-bool sees(const SceneCamera& camera, const dvec3& point) {
+/// How far from the middle of the picture a point is seen: 1 at its nearest edge, infinite behind the camera.
+double place(const SceneCamera& camera, const dvec3& point, double aspect) {
     const dvec3 forward = glm::normalize(camera.target - camera.position);
     const dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
     const dvec3 to = point - camera.position;
     const double depth = dot(to, forward), limit = depth * std::tan(camera.vertical_fov / 2);
-    return depth > 0 && std::abs(dot(to, right)) <= limit && std::abs(dot(to, up)) <= limit;
+    if (!(depth > 0)) return std::numeric_limits<double>::infinity();
+    return std::max(std::abs(dot(to, right)) / aspect, std::abs(dot(to, up))) / limit;
+}
+
+TEST(DefaultScene, TheBoxFillsThePictureOfAnyShape) {
+    const dvec3 min(-6, 0, 0), max(6, 30, 15);
+    for (const double aspect : {0.4, 1.0, 16.0 / 9, 3.0}) {
+        const Scene scene = default_scene(min, max, 1, aspect);
+        double farthest = 0;
+        for (int corner = 0; corner < 8; ++corner)
+            farthest = std::max(farthest, place(scene.cameras[0],
+                                                {corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y,
+                                                 corner & 4 ? max.z : min.z},
+                                                aspect));
+        EXPECT_GT(farthest, 0.9) << aspect;
+        EXPECT_LT(farthest, 1) << aspect;
+    }
 }
 
 TEST(DefaultScene, CameraAndSpotTakeInTheWholeBox) {
@@ -189,7 +205,7 @@ TEST(DefaultScene, CameraAndSpotTakeInTheWholeBox) {
         const SceneLight& spot = scene.lights[0];
         for (int corner = 0; corner < 8; ++corner) {
             const dvec3 p(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z);
-            EXPECT_TRUE(sees(scene.cameras[0], p));
+            EXPECT_LT(place(scene.cameras[0], p, 4.0 / 3), 1);
             const double cosine =
                 dot(glm::normalize(spot.target - spot.position), glm::normalize(p - spot.position));
             EXPECT_GE(cosine, std::cos(spot.angle / 2));

@@ -128,7 +128,9 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
     const auto [low, high] = octree::bulk_of(source);
-    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit);
+    LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
+    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit,
+                                        static_cast<double>(size.width) / size.height);
     if (!options.scene.empty()) {
         const auto cameras = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
