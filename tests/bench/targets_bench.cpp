@@ -123,7 +123,7 @@ Result<void> bench_frames(const std::filesystem::path& folder) {
     return {};
 }
 
-Result<void> bench(const std::filesystem::path& folder) {
+Result<void> bench_all(const std::filesystem::path& folder) {
     fmt::print("{} hardware threads\n", std::thread::hardware_concurrency());
     LUCARNE_TRY(bench_frames(folder));
     LUCARNE_TRY(bench_normals(folder));
@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
     const bool own = argc < 2;
     if (own && !mkdtemp(name.data())) return 1;
     const std::filesystem::path folder = own ? name : argv[1];
-    const auto done = lucarne::bench(folder);
+    const auto done = lucarne::bench_all(folder);
     if (own) std::filesystem::remove_all(folder);
     if (!done) fmt::print(stderr, "lucarne_bench: {}\n", done.error().line());
     return done ? 0 : 1;
