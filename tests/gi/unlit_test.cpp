@@ -190,11 +190,11 @@ TEST_F(UnlitTest, NoPixelShowsAClippedPointAndEveryKeptPointStays) {
         Lit lit{camera, {}, seen.texels.download_all<GBufferTexel>(160 * 120)};
         for (uint32_t i = 0; i < lit.texels.size(); ++i) {
             if (!(lit.texels[i].depth > 0)) continue;
-            ++shown;  // a disc of a pixel reaches so far from its point
+            ++shown;  // a pixel is .11 m wide where the farthest points are
             const glm::vec3 p = lit.position(i % 160, i / 160);
             EXPECT_TRUE(keeps_near(clip, glm::dvec3(p) + origin, 0.04) ||
                         std::ranges::any_of(
-                            kept, [&](const Surfel& s) { return glm::distance(s.position, p) < 0.05f; }))
+                            kept, [&](const Surfel& s) { return glm::distance(s.position, p) < 0.1f; }))
                 << trial;
         }
     }
