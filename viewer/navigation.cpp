@@ -1,6 +1,7 @@
 #include "viewer/navigation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,18 @@ constexpr double kFaster = 1.25;            ///< flying speed, a notch
 constexpr double kFast = 4;                 ///< with Shift
 constexpr double kLongestStep = 0.25;       ///< s: a slow frame does not throw the camera out of the house
 
+constexpr std::array kNames = {"orbit", "fly"};
+
 }  // namespace
+
+const char* navigation_name(NavigationMode mode) {
+    return kNames[static_cast<size_t>(mode)];
+}
+std::optional<NavigationMode> navigation_mode(std::string_view name) {
+    for (size_t i = 0; i < kNames.size(); ++i)
+        if (name == kNames[i]) return static_cast<NavigationMode>(i);
+    return std::nullopt;
+}
 
 bool Navigation::apply(const NavigationInput& input, CameraRig& rig) {
     bool moved = false;

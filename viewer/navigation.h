@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -8,6 +11,9 @@
 namespace lucarne::viewer {
 
 enum class NavigationMode { orbit, fly };
+/// "orbit", as settings have it.
+const char* navigation_name(NavigationMode mode);
+std::optional<NavigationMode> navigation_mode(std::string_view name);
 
 /// What pointer and keys did since the last frame, where no panel took it.
 struct NavigationInput {

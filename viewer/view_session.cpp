@@ -122,13 +122,6 @@ void ViewSession::follow_scans() {
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
 
-/// Files that were dropped on the window or chosen in it.
-void ViewSession::take_files() {
-    std::vector<std::string> files = window_.take_dropped_files();
-    std::ranges::move(std::exchange(model_.shell.to_open, {}), std::back_inserter(files));
-    if (!files.empty()) scans_.open(std::move(files));
-}
-
 /// Shift and the mouse are the light's.
 void ViewSession::take_light_gesture() {
     const glm::dvec2 move = cursor_move();
@@ -167,7 +160,7 @@ bool ViewSession::take_navigation() {
 void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
-    if (!io.WantCaptureKeyboard) run_actions(model_, keys);
+    if (!io.WantCaptureKeyboard && !model_.shell.ask_to_close) run_actions(model_, keys);
     if (take_clip_handles(model_)) return;
     measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
@@ -181,10 +174,8 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_overlay(model_);
-    draw_menu_bar(model_);
+    desk_.draw();
     measure_.draw(model_);
-    draw_scans_panel(model_);
-    if (scans_.rows().empty()) draw_start_page(model_);
     if (model_.show_panels && !scans_.rows().empty()) {
         draw_settings_panel(model_);
         draw_light_panel(model_);
@@ -238,13 +229,14 @@ Result<void> ViewSession::save() {
 }
 
 Result<void> ViewSession::run() {
-    while (!window_.closing() && !model_.close) {
+    while (!desk_.closing(shot_.has_value())) {
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
         window_.wait(lively ? kStep : kRest);
         take_picture();
+        window_.set_text_size(model_.shell.settings.text_size);
         window_.begin_frame();
         if (model_.picture) window_.show(*model_.picture);
-        take_files();
+        desk_.take_files();
         follow_scans();
         take_input();
         draw_panels();

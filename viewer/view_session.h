@@ -9,6 +9,7 @@
 #include "viewer/measure_session.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
+#include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
@@ -33,6 +34,7 @@ class ViewSession {
           model_(model),
           shot_(std::move(shot)),
           scans_(scans),
+          desk_(window, model, scans),
           quality_(model.frame_time),
           budget_(model.frame_time) {}
 
@@ -45,7 +47,6 @@ class ViewSession {
 
     void take_picture();
     void follow_scans();
-    void take_files();
     void take_extent();
     void take_input();
     void take_light_gesture();
@@ -60,6 +61,7 @@ class ViewSession {
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
     ScanSet& scans_;
+    Desk desk_;
     bool placed_ = false;  ///< there has been a view to begin with
     bool first_told_ = false;
     MovingQuality quality_;

@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <algorithm>
+#include <cmath>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -14,8 +15,9 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr size_t kMostPressed = 64;  ///< keys kept between two frames
-constexpr size_t kMostDropped = 1000; ///< files
+constexpr float kTextPixels = 13;      ///< on a screen of scale 1, as the font was drawn for
+constexpr size_t kMostPressed = 64;    ///< keys kept between two frames
+constexpr size_t kMostDropped = 1000;  ///< files
 
 /// GLFW's last complaint, without its habit of several sentences.
 std::string glfw_reason() {
@@ -53,15 +55,10 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     ImGui::CreateContext();
     imgui_ = true;
     ImGui::GetIO().IniFilename = nullptr;  // no files left in the user's folder
-    ImGui::StyleColorsDark();
-    float scale = 1;
-    glfwGetWindowContentScale(window_, &scale, nullptr);
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    ImGui::GetIO().FontGlobalScale = scale;
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
         auto& pressed = static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_;
-        if (action == GLFW_PRESS && pressed.size() < kMostPressed) 
+        if (action == GLFW_PRESS && pressed.size() < kMostPressed)
             pressed.push_back({key, modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT)});
     });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
@@ -123,8 +120,38 @@ ImageSize Window::framebuffer() const {
     return {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))};
 }
 
+void Window::stay() {
+    glfwSetWindowShouldClose(window_, GLFW_FALSE);
+}
+
+ImageSize Window::size() const {
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    return {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))};
+}
+
+/// Draws the glyphs anew in the size that they are shown in: stretched ones would be blurred.
+void Window::fit_text() {
+    float screen = 1;
+    glfwGetWindowContentScale(window_, &screen, nullptr);
+    const double scale = std::clamp(screen * text_size_, 0.5, 8.0);
+    if (std::abs(scale - text_scale_) < 1e-3) return;
+    text_scale_ = scale;
+    ImGui::GetStyle() = ImGuiStyle();
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale));
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
+    ImFontConfig config;
+    config.SizePixels = std::round(kTextPixels * static_cast<float>(scale));
+    io.Fonts->AddFontDefault(&config);
+    ImGui_ImplOpenGL3_DestroyFontsTexture();  // the next frame makes another
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void Window::begin_frame() {
-    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplOpenGL3_NewFrame();  // makes what the first glyphs need
+    fit_text();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
 }

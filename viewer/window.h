@@ -33,6 +33,10 @@ class Window {
 
     void set_title(const std::string& title);
     bool closing() const;
+    void stay();             ///< closing() is taken back
+    ImageSize size() const;  ///< in the desktop's units, as open() takes it
+    /// How large text is, beside the scale of the screen that the window is on; glyphs are drawn anew for it.
+    void set_text_size(double size) { text_size_ = size; }
     /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
     void wait(double seconds);
     ImageSize framebuffer() const;  ///< pixels; 1x1 at least
@@ -55,12 +59,14 @@ class Window {
 
  private:
     Window() = default;
+    void fit_text();
     Result<void> create(ImageSize size, const std::string& title);
 
     GLFWwindow* window_ = nullptr;
     GLFWwindow* hidden_ = nullptr;
     std::string title_;
     bool initialised_ = false, imgui_ = false;
+    double text_size_ = 1, text_scale_ = 0;  ///< wanted; what the glyphs are of
     unsigned texture_ = 0;
     ImageSize texture_size_;
     uint64_t shown_ = 0;

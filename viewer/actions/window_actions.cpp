@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #define GLFW_INCLUDE_NONE
@@ -20,12 +21,33 @@ void toggle_panels(ViewModel& model) {
 bool shows_panels(const ViewModel& model) {
     return model.show_panels;
 }
+void toggle_scans(ViewModel& model) {
+    model.shell.show_scans = !model.shell.show_scans;
+}
+bool shows_scans(const ViewModel& model) {
+    return model.shell.show_scans;
+}
+
+constexpr double kTextStep = 1.1;
+void scale_text(ViewModel& model, double by) {
+    double& size = model.shell.settings.text_size;
+    size = std::clamp(size * by, 0.5, 4.0);
+}
+void larger_text(ViewModel& model) {
+    scale_text(model, kTextStep);
+}
+void smaller_text(ViewModel& model) {
+    scale_text(model, 1 / kTextStep);
+}
 
 }  // namespace
 
 std::span<const Action> window_actions() {
     static constexpr std::array kActions = {
         Action{{GLFW_KEY_TAB}, "Window", "Panels", toggle_panels, nullptr, shows_panels},
+        Action{{GLFW_KEY_TAB, GLFW_MOD_SHIFT}, "Window", "Scans", toggle_scans, nullptr, shows_scans},
+        Action{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
+        Action{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
         Action{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},
     };
     return kActions;

@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
 
 #include "io/core/file.h"
+#include "io/core/log.h"
 #include "octree/bulk.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
@@ -25,6 +28,7 @@ struct ViewOptions {
     uint32_t frames = 1;
     double frame_time_ms = 100;
     bool overwrite = false;
+    bool size_given = false;  ///< else the window is as large as the last one
 };
 
 /// Where the view of what is open begins. On a thread: it reads.
@@ -60,6 +64,18 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     return model;
 }
 
+std::string absolute(const std::string& path) {
+    std::error_code unknown;
+    const auto whole = std::filesystem::absolute(path, unknown);
+    return unknown ? path : whole.lexically_normal().string();
+}
+
+void take_settings(Settings settings, ViewModel& model) {
+    model.show_panels = settings.panels;
+    if (const auto mode = navigation_mode(settings.navigation)) model.navigation.set_mode(*mode);
+    model.shell.settings = std::move(settings);
+}
+
 Result<void> view(const ViewOptions& options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
@@ -78,13 +94,20 @@ Result<void> view(const ViewOptions& options) {
             if (awake) Window::wake();
         });
     scans.open(options.input.paths, true);  // while the window starts
-    LUCARNE_ASSIGN(const auto window, Window::open(drawing.size, "Lucarne"));
+    LoadedSettings kept = load_settings(config_folder());
+    if (!kept.problem.empty()) log::warn("{}", kept.problem);
+    for (const std::string& path : options.input.paths) kept.settings.opened(absolute(path));
+    const ImageSize size =
+        options.size_given || !kept.settings.window.width ? drawing.size : kept.settings.window;
+    LUCARNE_ASSIGN(const auto window, Window::open(size, "Lucarne"));
     awake = true;
     LUCARNE_ASSIGN(const auto worker,
                    PictureWorker::start(window->worker_device(), nullptr, drawing.caps, &Window::wake));
     ViewModel model = first_model(options, drawing);
     model.device = worker->device();
     model.shell.scans = &scans;
+    model.message = std::move(kept.problem);
+    take_settings(std::move(kept.settings), model);
     auto done = ViewSession(*window, *worker, model, shot, scans).run();
     awake = false;
     return done;
@@ -113,7 +136,10 @@ void add_view(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(1u, 256u))
         ->capture_default_str();
     command->add_flag("--overwrite", options->overwrite, "Replace the screenshot's file");
-    command->callback([options, &chosen] { chosen = [options] { return view(*options); }; });
+    command->callback([options, command, &chosen] {
+        options->size_given = command->count("--size") > 0;
+        chosen = [options] { return view(*options); };
+    });
 }
 
 }  // namespace lucarne::viewer

@@ -31,6 +31,13 @@ void draw_menu_bar(ViewModel& model) {
             if (ImGui::MenuItem(action.name, key_text(action.chord).c_str(), checked, enabled))
                 action.run(model);
         });
+    in_menu("File", [&] {
+        const auto& recent = model.shell.settings.recent;
+        if (!ImGui::BeginMenu("Opened before", !recent.empty())) return;
+        for (const std::string& path : recent)
+            if (ImGui::MenuItem(path.c_str())) model.shell.to_open = {path};
+        ImGui::EndMenu();
+    });
     ImGui::EndMainMenuBar();
 }
 

@@ -4,10 +4,15 @@
 
 namespace lucarne::viewer {
 
+class FileBrowser;
+
 void draw_menu_bar(ViewModel& model);  ///< of the table of actions, with their keys
 
 void draw_start_page(ViewModel& model);   ///< with nothing open
 void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how far loads and conversions are
+
+void draw_file_browser(ViewModel& model, FileBrowser& browser);
+void draw_closing_question(ViewModel& model);  ///< where a conversion is running
 
 // Each draws one ImGui window and writes the user's changes into the model.
 void draw_settings_panel(ViewModel& model);            ///< engine, preset, bounces, exposure

@@ -8,12 +8,12 @@ namespace {
 constexpr size_t kMostShown = 8;  ///< recent files
 
 void recent_files(Shell& shell) {
-    if (shell.recent.empty()) return;
+    if (shell.settings.recent.empty()) return;
     ImGui::Spacing();
     ImGui::TextDisabled("Opened before");
-    for (size_t i = 0; i < std::min(shell.recent.size(), kMostShown); ++i) {
+    for (size_t i = 0; i < std::min(shell.settings.recent.size(), kMostShown); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Selectable(shell.recent[i].c_str())) shell.to_open = {shell.recent[i]};
+        if (ImGui::Selectable(shell.settings.recent[i].c_str())) shell.to_open = {shell.settings.recent[i]};
         ImGui::PopID();
     }
 }

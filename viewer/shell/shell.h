@@ -3,17 +3,21 @@
 #include <string>
 #include <vector>
 
+#include "viewer/shell/settings.h"
+
 namespace lucarne::viewer {
 
 class ScanSet;
 
-/// What stands around the picture: the open scans, and what the user wants done with files.
+/// What stands around the picture: the open scans, and what the user wants done with files and the window.
 struct Shell {
     ScanSet* scans = nullptr;          ///< what is open; outlives the model
     std::vector<std::string> to_open;  ///< paths
-    std::vector<std::string> recent;   ///< paths, the newest first
     bool want_file = false;            ///< File > Open
     bool show_scans = true;
+    bool ask_to_close = false;  ///< the question is on the screen
+    bool close_now = false;     ///< and was answered
+    Settings settings;
 };
 
 }  // namespace lucarne::viewer

@@ -1,0 +1,27 @@
+#include <imgui.h>
+
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+
+void draw_closing_question(ViewModel& model) {
+    if (!model.shell.ask_to_close) return;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
+    if (ImGui::Begin("A scan is being converted", nullptr, flags)) {
+        ImGui::TextUnformatted(
+            "What is finished of it is kept: the conversion goes on from there\nwhen the scan is opened "
+            "again.");
+        ImGui::Spacing();
+        if (ImGui::Button("Close now (Enter)") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)))
+            model.shell.close_now = true;
+        ImGui::SameLine();
+        if (ImGui::Button("Stay (Escape)") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+            model.shell.ask_to_close = false;
+    }
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,84 @@
+#include "viewer/shell/desk.h"
+
+#include <algorithm>
+#include <iterator>
+#include <system_error>
+
+#include "io/core/log.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+std::string absolute(const std::string& path) {
+    std::error_code unknown;
+    const auto whole = std::filesystem::absolute(path, unknown);
+    return unknown ? path : whole.lexically_normal().string();
+}
+
+}  // namespace
+
+/// Written at the end as well; a failure is told on the terminal, the window is gone.
+Desk::~Desk() {
+    model_.shell.settings.window = window_.size();
+    model_.shell.settings.panels = model_.show_panels;
+    model_.shell.settings.navigation = navigation_name(model_.navigation.mode());
+    if (const auto saved = save_settings(model_.shell.settings, config_folder()); !saved)
+        log::warn("{}", saved.error().line());
+}
+
+/// On a thread: a disk may take its time.
+void Desk::remember() {
+    writer_.push([settings = model_.shell.settings, folder = config_folder()] {
+        if (const auto saved = save_settings(settings, folder); !saved) log::warn("{}", saved.error().line());
+    });
+}
+
+/// Where the last file was.
+std::filesystem::path Desk::folder() const {
+    const auto& recent = model_.shell.settings.recent;
+    if (!recent.empty()) return std::filesystem::path(recent.front()).parent_path();
+    std::error_code unknown;
+    return std::filesystem::current_path(unknown);
+}
+
+void Desk::choose_files() {
+    if (dialog_.open() || browser_.is_open()) return;
+    for (const std::string& program : NativeDialog::programs())
+        if (dialog_.start(NativeDialog::command(program, folder().string()))) return;
+    browser_.open(folder());
+}
+
+void Desk::take_files() {
+    Shell& shell = model_.shell;
+    if (std::exchange(shell.want_file, false)) choose_files();
+    std::vector<std::string> files = window_.take_dropped_files();
+    const auto add = [&](std::vector<std::string> more) {
+        std::ranges::move(more, std::back_inserter(files));
+    };
+    add(std::exchange(shell.to_open, {}));
+    if (auto chosen = dialog_.poll()) add(std::move(*chosen));
+    if (files.empty()) return;
+    for (const std::string& file : files) shell.settings.opened(absolute(file));
+    remember();
+    scans_.open(std::move(files));
+}
+
+void Desk::draw() {
+    draw_menu_bar(model_);
+    draw_scans_panel(model_);
+    if (scans_.rows().empty()) draw_start_page(model_);
+    draw_file_browser(model_, browser_);
+    draw_closing_question(model_);
+}
+
+bool Desk::closing(bool at_once) {
+    if (!model_.close && !window_.closing()) return model_.shell.close_now;
+    if (at_once || !scans_.converting()) return true;
+    model_.close = false;
+    window_.stay();
+    model_.shell.ask_to_close = true;
+    return false;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+
+#include "viewer/shell/file_browser.h"
+#include "viewer/shell/job_queue.h"
+#include "viewer/shell/native_dialog.h"
+#include "viewer/shell/scan_set.h"
+#include "viewer/view_model.h"
+#include "viewer/window.h"
+
+namespace lucarne::viewer {
+
+/// What goes on around the picture: files are chosen and opened, settings are kept, the window is closed when
+/// that is all right.
+class Desk {
+ public:
+    Desk(Window& window, ViewModel& model, ScanSet& scans) : window_(window), model_(model), scans_(scans) {}
+    ~Desk();
+
+    /// Files that were dropped, or chosen in a dialog.
+    void take_files();
+    void draw();
+    /// Whether the window is to go; asks first where a conversion is running, unless `at_once`.
+    bool closing(bool at_once);
+
+ private:
+    void choose_files();
+    std::filesystem::path folder() const;
+    void remember();
+
+    Window& window_;
+    ViewModel& model_;
+    ScanSet& scans_;
+    NativeDialog dialog_;
+    FileBrowser browser_;
+    JobQueue writer_;
+};
+
+}  // namespace lucarne::viewer

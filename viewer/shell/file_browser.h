@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "viewer/shell/job_queue.h"
+
+namespace lucarne::viewer {
+
+/// What a folder holds that can be opened.
+struct FolderEntry {
+    std::string name;
+    bool folder = false;
+    uint64_t bytes = 0;
+};
+struct FolderListing {
+    std::filesystem::path folder;
+    std::vector<FolderEntry> entries;  ///< folders first, each by name; at most kMostEntries
+    std::string problem;               ///< why it cannot be listed; empty otherwise
+};
+inline constexpr size_t kMostEntries = 10000;
+
+/// Hidden files are left out, and what is no scan by its extension unless `all`.
+FolderListing list_folder(const std::filesystem::path& folder, bool all);
+
+/// A dialog for opening files where the desktop has none: its state, without its looks. Folders are listed by
+/// a thread.
+class FileBrowser {
+ public:
+    void open(const std::filesystem::path& folder);
+    void close() { open_ = false; }
+    bool is_open() const { return open_; }
+    void go(const std::filesystem::path& folder);
+    void show_all(bool all);
+    bool shows_all() const { return all_; }
+    void toggle(const std::string& name);  ///< chooses a file, or no longer
+    bool is_chosen(const std::string& name) const { return chosen_.contains(name); }
+
+    /// The newest listing; of another folder than folder() while that is still being listed.
+    FolderListing listing() const;
+    const std::filesystem::path& folder() const { return folder_; }
+    std::vector<std::string> chosen() const;  ///< whole paths
+
+ private:
+    struct Shared {
+        std::mutex mutex;
+        FolderListing listing;
+    };
+    void list();
+
+    bool open_ = false, all_ = false;
+    std::filesystem::path folder_;
+    std::set<std::string> chosen_;
+    std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+    JobQueue jobs_;
+};
+
+}  // namespace lucarne::viewer
