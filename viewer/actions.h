@@ -23,6 +23,7 @@ struct Action {
 std::span<const Action> file_actions();
 std::span<const Action> view_actions();
 std::span<const Action> look_actions();
+std::span<const Action> bookmark_actions();
 std::span<const Action> light_actions();
 std::span<const Action> picture_actions();
 std::span<const Action> measure_actions();

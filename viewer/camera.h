@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -27,6 +29,16 @@ class CameraRig {
     void set_pivot(const glm::dvec3& pivot) { pivot_ = pivot; }
     void set_position(const glm::dvec3& position) { position_ = position; }
 
+    bool orthographic() const { return height_ > 0; }
+    /// What lies at the pivot's depth keeps its size.
+    void set_orthographic(bool parallel);
+    /// How far an orthographic view stands back from the pivot at least, so that nothing lies behind it.
+    void set_clearance(double distance) { clearance_ = distance; }
+    /// Looks from another side at the pivot, from as far.
+    void look_along(double yaw, double pitch);
+    /// Shows the whole of a box, from where the view looks now; its middle becomes the pivot.
+    void fit(const std::array<glm::dvec3, 2>& box);
+
     /// Turns about the pivot, which stays where it is in the picture; radians to the left and up. Stops short
     /// of straight up and down.
     void orbit(double yaw, double pitch);
@@ -39,11 +51,17 @@ class CameraRig {
     void zoom(double factor, const glm::dvec3& point);
     /// Moves by a step right, up (z) and forward; the pivot comes along.
     void fly(const glm::dvec3& step);
+    /// The same on the level, whatever the pitch.
+    void walk(const glm::dvec3& step);
 
  private:
     glm::dvec3 position_{0.0}, pivot_{0.0};
     double yaw_ = 0, pitch_ = 0;  ///< of the view: from +x toward +y, and upward
     double vertical_fov_ = 1;
+    double height_ = 0;  ///< of an orthographic picture, world units; 0: perspective
+    double clearance_ = 0;
+
+    double height_at_pivot() const;
 };
 
 }  // namespace lucarne::viewer

@@ -10,7 +10,12 @@
 
 namespace lucarne::viewer {
 
-enum class NavigationMode { orbit, fly };
+enum class NavigationMode {
+    orbit,      ///< turns around the point under the cursor
+    turntable,  ///< turns around the pivot, which a double-click chooses
+    fly,
+    walk  ///< stays at eye height above the floor
+};
 /// "orbit", as settings have it.
 const char* navigation_name(NavigationMode mode);
 std::optional<NavigationMode> navigation_mode(std::string_view name);
@@ -25,23 +30,37 @@ struct NavigationInput {
     double seconds = 0;                  ///< since the last frame
 };
 
-/// Turns input into camera moves. Orbit: drags turn and pan about the pivot, scrolling goes to the pivot.
-/// Fly: drags look around, keys move, scrolling sets the speed.
+/// Turns input into camera moves. Orbit and turntable: drags turn and pan about the pivot, scrolling goes to
+/// it. Fly and walk: drags look around, keys move, scrolling sets the speed.
 class Navigation {
  public:
     /// `scene_size`: the scene's diagonal, world units; sets the first flying speed.
-    explicit Navigation(double scene_size) : speed_(scene_size / 20) {}
+    explicit Navigation(double scene_size) { set_scene(scene_size, 1); }
+    void set_scene(double scene_size, double metres_per_unit);
 
-    void set_scene_size(double scene_size) { speed_ = scene_size / 20; }
     NavigationMode mode() const { return mode_; }
     void set_mode(NavigationMode mode) { mode_ = mode; }
-    double speed() const { return speed_; }  ///< world units a second
+    /// Whether drags turn the scene rather than the head.
+    bool turns_scene() const { return mode_ == NavigationMode::orbit || mode_ == NavigationMode::turntable; }
+    double speed() const {
+        return mode_ == NavigationMode::walk ? walking_speed_ : speed_;
+    }  ///< world units a second
+    bool gravity() const { return gravity_; }
+    void set_gravity(bool gravity) { gravity_ = gravity; }
+    double eye_height() const { return eye_height_; }  ///< world units
+    /// The floor under the camera, world z, if one is known; who walks with gravity is brought to eye height
+    /// above it.
+    void set_floor(std::optional<double> floor) { floor_ = floor; }
     /// True where the camera moved.
     bool apply(const NavigationInput& input, CameraRig& rig);
 
  private:
+    bool settle(double seconds, CameraRig& rig) const;
+
     NavigationMode mode_ = NavigationMode::orbit;
-    double speed_;
+    double speed_ = 1, walking_speed_ = 1, eye_height_ = 1;
+    bool gravity_ = true;
+    std::optional<double> floor_;
 };
 
 }  // namespace lucarne::viewer

@@ -109,9 +109,12 @@ std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
     if (!best) return std::nullopt;
     const double u = 2 * (best->x + 0.5) / width - 1, v = 2 * (best->y + 0.5) / height - 1;
     const auto wide = [](const glm::vec4& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
-    const glm::dvec3 direction = wide(camera.forward) + wide(camera.right) * u - wide(camera.up) * v;
+    const glm::dvec3 across = wide(camera.right) * u - wide(camera.up) * v;
     const double along = depth[static_cast<size_t>(best->y) * size.width + best->x];
-    return local_origin + (wide(camera.origin) + direction * along) / metres_per_unit;
+    // Each ray of an orthographic view begins there, each of a pinhole ends there at a depth of 1.
+    const double apart = camera.projection == gi::kOrthographic ? 1 : along;
+    const glm::dvec3 offset = wide(camera.forward) * along + across * apart;
+    return local_origin + (wide(camera.origin) + offset) / metres_per_unit;
 }
 
 void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64_t request) {

@@ -48,6 +48,7 @@ uint64_t pool_bytes(uint64_t surfels) {
 bool same_view(const FrameRequest& a, const FrameRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target &&
            a.camera.up == b.camera.up && a.camera.vertical_fov == b.camera.vertical_fov &&
+           a.camera.orthographic_height == b.camera.orthographic_height &&
            a.size.width == b.size.width && a.size.height == b.size.height;
 }
 

@@ -20,6 +20,7 @@ struct ViewModel {
     explicit ViewModel(double its_scene_size) : scene_size(its_scene_size), navigation(its_scene_size) {}
 
     double scene_size;  ///< diagonal, world units
+    std::array<glm::dvec3, 2> box{};  ///< of what is open, world units
     CameraRig rig;
     gi::SceneCamera home;  ///< where the view starts
     Navigation navigation;
@@ -51,6 +52,10 @@ struct ViewModel {
     /// Must follow every change of `scene`.
     void scene_changed() { ++scene_version; }
     gi::SceneLight* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
+    void go_to(const gi::SceneCamera& camera) {
+        rig = CameraRig(camera);
+        rig.set_clearance(scene_size);
+    }
     Result<void> choose_preset(std::string_view name);
 };
 

@@ -24,6 +24,7 @@ bool same_request(const PictureRequest& a, const PictureRequest& b) {
     return a.frame.camera.position == b.frame.camera.position &&
            a.frame.camera.target == b.frame.camera.target &&
            a.frame.camera.vertical_fov == b.frame.camera.vertical_fov &&
+           a.frame.camera.orthographic_height == b.frame.camera.orthographic_height &&
            a.frame.size.width == b.frame.size.width && a.frame.size.height == b.frame.size.height &&
            a.engine == b.engine && a.settings == b.settings && a.budgets == b.budgets &&
            a.scene_version == b.scene_version && a.moving == b.moving;
@@ -89,9 +90,11 @@ void ViewSession::take_picture() {
 void ViewSession::take_extent() {
     const auto& start = scans_.start();
     if (!start) return;
-    model_.scene_size = start->scene_size;
+    model_.scene_size = start->scene_size();
+    model_.box = start->box;
+    model_.rig.set_clearance(model_.scene_size);
     const bool first = !std::exchange(placed_, true);
-    if (first) model_.navigation.set_scene_size(start->scene_size);
+    if (first) model_.navigation.set_scene(start->scene_size(), start->metres_per_unit);
     if (!first && model_.scene_version != own_scene_) return;
     if (!first && start->camera.position == model_.home.position &&
         start->camera.target == model_.home.target)
@@ -101,7 +104,7 @@ void ViewSession::take_extent() {
                                    CameraRig(model_.home).camera().target == camera.target);
     model_.scene = start->scene;
     model_.home = start->camera;
-    if (at_home) model_.rig = CameraRig(model_.home);
+    if (at_home) model_.go_to(model_.home);
     model_.scene_changed();
     own_scene_ = model_.scene_version;
 }
@@ -142,18 +145,26 @@ bool ViewSession::take_navigation() {
         input.keys = {axis(GLFW_KEY_A, GLFW_KEY_D), axis(GLFW_KEY_Q, GLFW_KEY_E),
                       axis(GLFW_KEY_S, GLFW_KEY_W)};
     if (!io.WantCaptureMouse) {
-        const bool orbiting = model_.navigation.mode() == NavigationMode::orbit;
+        const NavigationMode mode = model_.navigation.mode();
+        const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
         const bool starts = ImGui::IsMouseClicked(ImGuiMouseButton_Left) ||
                             ImGui::IsMouseClicked(ImGuiMouseButton_Right) ||
                             ImGui::IsMouseClicked(ImGuiMouseButton_Middle);
-        if (orbiting && (starts || io.MouseWheel != 0) && model_.picture)
-            if (const auto point = model_.picture->pick(cursor())) model_.rig.set_pivot(*point);
+        const bool goes = io.MouseWheel != 0 && model_.navigation.turns_scene();
+        if (model_.picture && (goes || twice || (starts && mode == NavigationMode::orbit)))
+            if (const auto point = model_.picture->pick(cursor())) {
+                model_.rig.set_pivot(*point);
+                if (twice)
+                    model_.message =
+                        fmt::format("turning around {:.2f} {:.2f} {:.2f}", point->x, point->y, point->z);
+            }
         input.rotate = ImGui::IsMouseDown(ImGuiMouseButton_Left);
         input.shift =
             ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
         if (!starts) input.drag = cursor_move();
         input.scroll = io.MouseWheel;
     }
+    model_.navigation.set_floor(desk_.floor());
     return model_.navigation.apply(input, model_.rig);
 }
 
@@ -176,7 +187,7 @@ void ViewSession::draw_panels() {
     draw_overlay(model_);
     desk_.draw();
     measure_.draw(model_);
-    if (model_.show_panels && !scans_.rows().empty()) {
+    if (model_.show_panels && placed_) {
         draw_settings_panel(model_);
         draw_light_panel(model_);
         if (model_.look_tools.show_panel) draw_view_panel(model_);

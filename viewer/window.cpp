@@ -74,6 +74,7 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
 Window::~Window() {
     if (imgui_) {
         glDeleteTextures(1, &texture_);
+        glDeleteTextures(static_cast<GLsizei>(small_.size()), small_.data());
         ImGui_ImplOpenGL3_Shutdown();
         ImGui_ImplGlfw_Shutdown();
         ImGui::DestroyContext();
@@ -154,6 +155,23 @@ void Window::begin_frame() {
     fit_text();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
+}
+
+unsigned Window::make_texture(const io::Image8& image) {
+    unsigned texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<int>(image.width), static_cast<int>(image.height), 0,
+                 GL_RGB, GL_UNSIGNED_BYTE, image.bytes.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    small_.push_back(texture);
+    return texture;
+}
+
+void Window::free_texture(unsigned texture) {
+    if (std::erase(small_, texture)) glDeleteTextures(1, &texture);
 }
 
 void Window::draw() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/core/options.h"
+#include "io/image/image.h"
 #include "viewer/key_chord.h"
 #include "viewer/picture_worker.h"
 
@@ -46,6 +47,10 @@ class Window {
     /// Files dropped on the window since the last call.
     std::vector<std::string> take_dropped_files() { return std::exchange(dropped_, {}); }
 
+    /// A small picture for panels; gone with the window, or before.
+    unsigned make_texture(const io::Image8& image);
+    void free_texture(unsigned texture);
+
     /// From here ImGui and show() may be used, until draw().
     void begin_frame();
     /// Fills the window with a picture, scaled without changing its shape. Uploads it when its number is new.
@@ -68,6 +73,7 @@ class Window {
     bool initialised_ = false, imgui_ = false;
     double text_size_ = 1, text_scale_ = 0;  ///< wanted; what the glyphs are of
     unsigned texture_ = 0;
+    std::vector<unsigned> small_;  ///< textures
     ImageSize texture_size_;
     uint64_t shown_ = 0;
     std::vector<KeyChord> pressed_;

@@ -1,12 +1,13 @@
 // Surfels as discs in a view: projection, and where a pixel's ray meets them. View space: x right, y down, z along
-// the view's forward axis (the depth), metres; the ray through a pixel is (x, y, 1).
+// the view's forward axis (the depth), metres. The ray through a pixel is (x, y, 1), from the eye; orthographic it is
+// (0, 0, 1), from (x, y, 0).
 #include "gi/shared/cut.glsl"
 #include "gi/shared/gbuffer.h"
 
-uniform vec4 view_right;    // unit; w: tangent of half the field
+uniform vec4 view_right;    // unit; w: tangent of half the field, or half the width (m)
 uniform vec4 view_down;     // likewise
 uniform vec4 view_forward;  // unit; w: near plane, m
-uniform vec4 view_origin;
+uniform vec4 view_origin;  // w: 1 orthographic, 0 not
 uniform uint view_width;
 uniform uint view_height;
 uniform float point_scale;   // of the radii
@@ -26,6 +27,10 @@ vec2 pixels_per_tangent() { return vec2(view_width, view_height) / (2.0 * vec2(v
 vec2 pixel_tangent(vec2 pixel) {
     return (2.0 * (pixel + 0.5) / vec2(view_width, view_height) - 1.0) * vec2(view_right.w, view_down.w);
 }
+// What widths and heights in the picture grow with.
+float view_scale(float depth) { return view_origin.w > 0.0 ? 1.0 : depth; }
+vec2 ray_slope(vec2 tangent) { return tangent * (1.0 - view_origin.w); }
+vec2 ray_start(vec2 tangent) { return tangent * view_origin.w; }
 vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz), dot(v, view_forward.xyz)); }
 
 // False where no part of the disc is before the near plane, and for stray points.
@@ -35,14 +40,15 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     if (!(disc.radius > 0.0)) return false;
     if (point_pixels > 0.0) {
         vec2 pixels = pixels_per_tangent();
-        disc.radius = 0.5 * point_pixels * max(disc.centre.z, 0.0) / min(pixels.x, pixels.y);
+        disc.radius = 0.5 * point_pixels * max(view_scale(disc.centre.z), 0.0) / min(pixels.x, pixels.y);
     }
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
     // Outside a side plane of the view: without this a disc that stands beside the eye would ask every pixel.
     vec2 side = vec2(view_right.w, view_down.w);
-    vec2 outside = (abs(disc.centre.xy) - disc.centre.z * side) * inversesqrt(1.0 + side * side);
+    vec2 outside = abs(disc.centre.xy) - view_scale(disc.centre.z) * side;
+    if (!(view_origin.w > 0.0)) outside *= inversesqrt(1.0 + side * side);
     if (max(outside.x, outside.y) > disc.radius) return false;
-    float distance2 = dot(disc.centre, disc.centre);
+    float distance2 = view_origin.w > 0.0 ? 0.0 : dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
     disc.push = kRimPush * disc.radius * toward.z;  // so far along the ray
     bool lies = surfel_has_normal(surfel) && !(point_pixels > 0.0);
@@ -55,6 +61,7 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
 // eye that touch it. With a = (1, 0, -u): (a.c)^2 = r^2 (|a|^2 - (a.n)^2), a quadratic in u.
 vec2 tangent_range(float centre, float normal, Disc disc) {
     float r2 = disc.radius * disc.radius;
+    if (view_origin.w > 0.0) return centre + disc.radius * sqrt(max(1.0 - normal * normal, 0.0)) * vec2(-1.0, 1.0);
     float a = disc.centre.z * disc.centre.z - disc.extent * disc.extent;
     float b = centre * disc.centre.z + r2 * normal * disc.normal.z;
     float c = centre * centre - r2 * (1.0 - normal * normal);
@@ -70,9 +77,9 @@ bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
     ivec2 last = ivec2(view_width, view_height) - 1;
     home = ivec2(-1);
     if (disc.centre.z > view_forward.w)
-        home = ivec2(floor(clamp(disc.centre.xy / disc.centre.z * scale + middle, vec2(-1.0), vec2(last + 1))));
+        home = ivec2(floor(clamp(disc.centre.xy / view_scale(disc.centre.z) * scale + middle, vec2(-1.0), vec2(last + 1))));
     box = ivec4(ivec2(0), last);
-    if (disc.centre.z > 1.001 * disc.extent) {  // else it reaches behind the eye
+    if (view_origin.w > 0.0 || disc.centre.z > 1.001 * disc.extent) {  // else it reaches behind the eye
         vec2 x = tangent_range(disc.centre.x, disc.normal.x, disc);
         vec2 y = tangent_range(disc.centre.y, disc.normal.y, disc);
         vec2 low = vec2(x.x, y.x) * scale + middle, high = vec2(x.y, y.y) * scale + middle;
@@ -85,18 +92,19 @@ bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
 // Depth along the forward axis where the ray meets the disc's plane, kept within the depths that the disc spans (a
 // plane seen edge-on would put its pixel anywhere).
 float disc_depth(Disc disc, vec2 ray) {
-    float slope = dot(disc.normal, vec3(ray, 1.0));
+    float slope = dot(disc.normal, vec3(ray_slope(ray), 1.0));
     if (abs(slope) < 1e-12) return disc.centre.z;
-    float z = dot(disc.normal, disc.centre) / slope;
+    float z = dot(disc.normal, disc.centre - vec3(ray_start(ray), 0.0)) / slope;
     return clamp(z, disc.centre.z - disc.extent, disc.centre.z + disc.extent);
 }
 
 // The order of the disc along the ray, or kNoKey where it is missed; bits of a positive float, so that integers
 // compare like depths. Every pass must find the same bits: precise.
 uint disc_key(Disc disc, vec2 ray, bool at_home) {
-    precise float slope = dot(disc.normal, vec3(ray, 1.0));
-    precise float z = dot(disc.normal, disc.centre) / (abs(slope) < 1e-12 ? 1e-12 : slope);
-    precise vec3 offset = vec3(ray * z, z) - disc.centre;
+    precise float slope = dot(disc.normal, vec3(ray_slope(ray), 1.0));
+    precise vec3 centre = disc.centre - vec3(ray_start(ray), 0.0);
+    precise float z = dot(disc.normal, centre) / (abs(slope) < 1e-12 ? 1e-12 : slope);
+    precise vec3 offset = vec3(ray_slope(ray) * z, z) - centre;
     precise float d2 = dot(offset, offset);
     float r2 = disc.radius * disc.radius;
     bool inside = d2 <= r2;

@@ -21,7 +21,8 @@ void set_view(const Program& program, const CameraView& view, const PointSize& s
     axis("view_right", right / tan_x, tan_x);
     axis("view_down", up / -tan_y, tan_y);
     axis("view_forward", {view.forward.x, view.forward.y, view.forward.z}, view.origin.w);
-    axis("view_origin", {view.origin.x, view.origin.y, view.origin.z}, 0.0f);
+    axis("view_origin", {view.origin.x, view.origin.y, view.origin.z},
+         view.projection == kOrthographic ? 1.0f : 0.0f);
     program.set("view_width", view.width);
     program.set("view_height", view.height);
     program.set("point_scale", size.scale);

@@ -26,6 +26,6 @@ void main() {
     float visible = spot_visibility(position, normal, texel_radius(texel));
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);
     Reflectance reflectance = make_reflectance(materials[material], texel_albedo(texel));
-    vec3 to_eye = normalize(camera.origin.xyz - position);
+    vec3 to_eye = toward_viewer(camera, position);
     radiance[at].rgb += visible * irradiance * brdf(reflectance, normal, to_light, to_eye);
 }

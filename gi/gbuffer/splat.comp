@@ -17,12 +17,12 @@ struct Ellipse {
 
 Ellipse project(Disc disc) {
     vec2 scale = pixels_per_tangent();
-    vec2 tangent = disc.centre.xy / disc.centre.z;
+    vec2 place = disc.centre.xy / view_scale(disc.centre.z), tangent = ray_slope(place);
     Ellipse e;
-    e.centre = tangent * scale + 0.5 * vec2(view_width, view_height) - 0.5;
+    e.centre = place * scale + 0.5 * vec2(view_width, view_height) - 0.5;
     float facing = dot(disc.normal, vec3(tangent, 1.0));
     if (abs(facing) < 1e-4) facing = 1e-4;
-    vec2 step = disc.centre.z / scale;  // m a pixel at the centre's depth
+    vec2 step = view_scale(disc.centre.z) / scale;  // m a pixel at the centre's depth
     e.slope = -step * disc.normal.xy / facing;
     vec3 along_x = vec3(e.slope.x * tangent + vec2(step.x, 0.0), e.slope.x);
     vec3 along_y = vec3(e.slope.y * tangent + vec2(0.0, step.y), e.slope.y);

@@ -17,7 +17,7 @@ layout(binding = 3) uniform usamplerBuffer key_texels;
 const float kSmallRadius = 8.0;
 bool is_small(Disc disc) {
     vec2 pixels = disc.radius * pixels_per_tangent();
-    return max(pixels.x, pixels.y) <= kSmallRadius * disc.centre.z;
+    return max(pixels.x, pixels.y) <= kSmallRadius * view_scale(disc.centre.z);
 }
 
 uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }

@@ -23,6 +23,7 @@ void set(const Program& program, std::string_view uniform, const CameraView& vie
     set_member(program, uniform, ".up", view.up);
     program.set(std::string(uniform).append(".width"), view.width);
     program.set(std::string(uniform).append(".height"), view.height);
+    program.set(std::string(uniform).append(".projection"), view.projection);
 }
 
 void set(const Program& program, std::string_view uniform, const Light& light) {

@@ -33,11 +33,13 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
             const GBufferTexel& texel = texels[i];
             const float x = (static_cast<float>(i % camera.width) + .5f) / static_cast<float>(camera.width);
             const float y = (static_cast<float>(i / camera.width) + .5f) / static_cast<float>(camera.height);
-            const vec3 ray = forward + right * (2 * x - 1) - up * (2 * y - 1);
+            const vec3 across = right * (2 * x - 1) - up * (2 * y - 1);
+            const bool parallel = camera.projection == kOrthographic;
+            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
             Start& start = starts[i];
             start.viewer = -glm::normalize(ray);
             if (!(texel.depth > 0)) continue;
-            start.position = eye + texel.depth * ray;
+            start.position = from + texel.depth * ray;
             start.normal = decode_octahedral(texel.normal);
             start.albedo = decode_albedo(texel.albedo);
             // A half float may have become 0 or infinite: there is a surface all the same.

@@ -49,6 +49,7 @@ struct SceneCamera {
     std::string name;
     glm::dvec3 position{0.0}, target{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};
     double vertical_fov = 1.0;
+    double orthographic_height = 0;  ///< world units that the picture is high; 0: perspective
 };
 
 enum class ToneMap { filmic, reinhard, none };

@@ -51,6 +51,7 @@ Result<SceneCamera> read_camera(JsonObject object) {
     LUCARNE_ASSIGN(camera.up, object.vector("up", kCoordinate, dvec3(0, 0, 1)));
     LUCARNE_ASSIGN(camera.vertical_fov, object.number("fov", kFovDegrees, 60));
     camera.vertical_fov = glm::radians(camera.vertical_fov);
+    LUCARNE_ASSIGN(camera.orthographic_height, object.number("orthographic_height", {0, 1e9}, 0.0));
     const dvec3 forward = camera.target - camera.position;
     if (forward == dvec3(0)) return object.wrong("is where the camera stands", "target");
     // Six millionths of a degree: closer to its axis the camera's roll is noise.

@@ -1,4 +1,4 @@
-// A pinhole camera (or a spot light's view) shared by C++ and GLSL (std140 and std430).
+// A pinhole or orthographic camera (or a light's view, a pinhole) shared by C++ and GLSL (std140 and std430).
 #ifndef LUCARNE_GI_SHARED_CAMERA_H
 #define LUCARNE_GI_SHARED_CAMERA_H
 
@@ -14,12 +14,17 @@ using vec4 = glm::vec4;
 //   d = forward + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1)
 // which is scaled so that dot(d, forward) = 1: depth along forward times d is the point. `right` and `up` carry the
 // tangents of half the field of view.
+// Orthographic, all rays have the direction `forward`, and that through (x, y) starts at
+//   origin + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1);
+// `right` and `up` carry half the width and height of what is seen, m.
+const uint kPerspective = 0u, kOrthographic = 1u;
+
 struct CameraView {
     vec4 origin;   // xyz: metres, relative to the local origin; w: near plane (m)
     vec4 forward;  // unit
-    vec4 right;    // unit * tan(half horizontal field)
-    vec4 up;       // unit * tan(half vertical field)
-    uint width, height, pad0, pad1;
+    vec4 right;    // unit * tan(half horizontal field), or half the width
+    vec4 up;       // unit * tan(half vertical field), or half the height
+    uint width, height, projection, pad0;
 #ifdef __cplusplus
     bool operator==(const CameraView&) const = default;
 #endif

@@ -10,8 +10,10 @@ const int kSamples = 10;
 const float kTurns = 7.0;
 const float kTau = 6.28318531;
 
-// Metres before the eye, along the view's axes.
-vec3 place_of(ivec2 pixel, float depth) { return depth * view_ray(camera, vec2(pixel) + 0.5); }
+// Metres from the eye, along the world's axes.
+vec3 place_of(ivec2 pixel, float depth) {
+    return view_point(camera, vec2(pixel) + 0.5, depth) - camera.origin.xyz;
+}
 
 // Where points have no normal: of the plane through the pixel and its neighbours, on either side those nearest in depth,
 // so that none is taken across an edge.
@@ -27,8 +29,11 @@ vec3 plane_normal(ivec2 pixel, float depth) {
     vec3 normal = cross(along[1], along[0]);
     float length2 = dot(normal, normal);
     normal = length2 > 0.0 ? normal * inversesqrt(length2) : -camera.forward.xyz;
-    return dot(normal, here) > 0.0 ? -normal : normal;
+    return dot(normal, toward_viewer(camera, camera.origin.xyz + here)) < 0.0 ? -normal : normal;
 }
+
+// What a reach is a share of: to the eye; orthographic, to where an eye of a field of 53 degrees would stand.
+float sight_distance(float depth) { return is_parallel(camera) ? 2.0 * length(camera.up.xyz) : depth; }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -39,8 +44,8 @@ void main() {
     if (texel.depth > 0.0) {
         vec3 here = place_of(pixel, texel.depth);
         vec3 normal = (texel.albedo & kSurfelHasNormal) != 0u ? texel_normal(texel) : plane_normal(pixel, texel.depth);
-        float radius = reach * texel.depth, radius2 = radius * radius;
-        float in_pixels = reach * float(camera.height) / (2.0 * length(camera.up.xyz));
+        float radius = reach * sight_distance(texel.depth), radius2 = radius * radius;
+        float in_pixels = radius / pixel_height(camera, texel.depth);
         // Each of the 4 x 4 pixels by another sixteenth of a turn, in an order that neighbours share little of.
         int turn = ((pixel.x & 3) * 4 + (pixel.y & 3) * 9) & 15;
         for (int i = 0; i < kSamples; ++i) {

@@ -16,16 +16,14 @@ const float kSamePlane = 1.0;   // pixel widths
 
 // Light and frames of a point in the last frame; no frames where it did not see it.
 vec4 last_known(vec3 position, vec3 normal) {
-    vec3 offset = position - last_camera.origin.xyz;
-    float depth = dot(offset, last_camera.forward.xyz);
+    float depth;
     vec2 size = vec2(last_camera.width, last_camera.height);
-    vec2 ndc = vec2(dot(offset, last_camera.right.xyz) / dot(last_camera.right.xyz, last_camera.right.xyz),
-                    -dot(offset, last_camera.up.xyz) / dot(last_camera.up.xyz, last_camera.up.xyz)) /
-               depth;
-    if (most_frames <= 0.0 || !(depth > 0.0) || any(greaterThanEqual(abs(ndc), vec2(1.0)))) return vec4(0.0);
-    vec2 at = (ndc * 0.5 + 0.5) * size - 0.5;
+    vec2 place = view_place(last_camera, position, depth);
+    bool outside = any(lessThanEqual(place, vec2(0.0))) || any(greaterThanEqual(place, size));
+    if (most_frames <= 0.0 || !(depth > 0.0) || outside) return vec4(0.0);
+    vec2 at = place - 0.5;
     vec2 corner = floor(at), share = at - corner;
-    float pixel_width = 2.0 * length(last_camera.up.xyz) / size.y * depth;
+    float pixel_width = pixel_height(last_camera, depth);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; ++i) {
@@ -35,7 +33,7 @@ vec4 last_known(vec3 position, vec3 normal) {
         int index = pixel.y * int(last_camera.width) + pixel.x;
         uvec2 surface = texelFetch(last_surfaces, index).xy;
         float there = uintBitsToFloat(surface.x);
-        vec3 seen = last_camera.origin.xyz + there * view_ray(last_camera, vec2(pixel) + 0.5);
+        vec3 seen = view_point(last_camera, vec2(pixel) + 0.5, there);
         bool same = there > 0.0 && abs(dot(normal, seen - position)) < kSamePlane * pixel_width &&
                     dot(decode_octahedral(surface.y), normal) > kSameNormal;
         vec2 near = mix(1.0 - share, share, step);

@@ -26,7 +26,7 @@ void main() {
     int n = int(interleave);
     vec3 position = texel_position(camera, pixel, texel);
     vec3 normal = texel_normal(texel);
-    float sigma_z = float(n) * texel.depth * 2.0 * length(camera.up.xyz) / float(camera.height);
+    float sigma_z = float(n) * pixel_height(camera, texel.depth);
     uint candidates = 0u, missing = 0u;
     for (int i = 0; i < n * n; ++i) {
         bool found = false;

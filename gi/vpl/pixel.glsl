@@ -19,7 +19,7 @@ Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     receiver.position = texel_position(camera, pixel, texel);
     receiver.normal = texel_normal(texel);
     receiver.radius = texel_radius(texel);
-    receiver.to_viewer = normalize(camera.origin.xyz - receiver.position);
+    receiver.to_viewer = toward_viewer(camera, receiver.position);
     receiver.reflectance = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
     return receiver;
 }

@@ -1,5 +1,7 @@
 #include "viewer/navigation.h"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -99,6 +101,79 @@ TEST(Navigation, FlyingMovesWithTheKeysAndScrollSetsTheSpeed) {
     EXPECT_TRUE(navigation.apply({.keys = {0, 0, 1}, .seconds = 60}, rig));
     EXPECT_LE(glm::distance(rig.position(), before), navigation.speed() * 0.25 + 1e-9)
         << "a stalled frame is no leap";
+}
+
+TEST(CameraRig, AnOrthographicViewKeepsWhatLiesAtThePivotAsLargeAsItWas) {
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const gi::SceneCamera before = rig.camera();
+    rig.set_orthographic(true);
+    const gi::SceneCamera parallel = rig.camera();
+    EXPECT_NEAR(parallel.orthographic_height,
+                2 * std::tan(before.vertical_fov / 2) * glm::distance(before.position, before.target), 1e-9);
+    rig.set_orthographic(false);
+    EXPECT_LT(glm::distance(rig.position(), before.position), 1e-9);
+    EXPECT_EQ(rig.camera().orthographic_height, 0);
+}
+
+TEST(CameraRig, OrthographicZoomKeepsThePointInPlaceAndStandsClearOfTheScene) {
+    CameraRig rig = rig_at({10, 0, 0}, {0, 0, 0});
+    rig.set_orthographic(true);
+    rig.set_clearance(50);
+    const glm::dvec3 point(1, 2, 1);
+    const auto place = [&] {
+        const glm::dvec3 offset = point - rig.camera().position;
+        return glm::dvec2(glm::dot(offset, rig.right()), glm::dot(offset, rig.up())) /
+               rig.camera().orthographic_height;
+    };
+    const glm::dvec2 before = place();
+    const double height = rig.camera().orthographic_height;
+    rig.zoom(0.25, point);
+    EXPECT_NEAR(rig.camera().orthographic_height, height / 4, 1e-12);
+    EXPECT_LT(glm::distance(place(), before), 1e-9);
+    EXPECT_NEAR(glm::dot(point - rig.camera().position, rig.forward()), 50, 1e-9);
+    const CameraRig again(rig.camera());
+    EXPECT_LT(glm::distance(again.camera().position, rig.camera().position), 1e-9)
+        << "a bookmark stays where it was set";
+}
+
+TEST(CameraRig, LooksFromTheSidesAndFitsAllIn) {
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const std::array<glm::dvec3, 2> box = {glm::dvec3(-1, -2, -3), glm::dvec3(3, 2, 1)};
+    rig.look_along(M_PI / 2, -M_PI / 2);
+    rig.fit(box);
+    EXPECT_LT(glm::distance(rig.forward(), {0, 0, -1}), 1e-4) << "from above";
+    EXPECT_LT(glm::distance(rig.up(), {0, 1, 0}), 1e-4) << "north is up";
+    EXPECT_LT(glm::distance(rig.pivot(), {1, 0, -1}), 1e-12);
+    const double tangent = std::tan(rig.camera().vertical_fov / 2);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(box[corner & 1].x, box[corner >> 1 & 1].y, box[corner >> 2].z);
+        EXPECT_LE(glm::length(seen(rig, p)), tangent * (1 + 1e-9));
+    }
+}
+
+TEST(Navigation, WalkingStaysOnTheLevelAndSettlesAtEyeHeight) {
+    Navigation navigation(20);
+    navigation.set_mode(NavigationMode::walk);
+    CameraRig rig = rig_at({0, 0, 5}, {10, 0, 0});  // looks down
+    EXPECT_TRUE(navigation.apply({.keys = {0, 0, 1}, .seconds = 0.1}, rig));
+    EXPECT_EQ(rig.position().z, 5);
+    EXPECT_NEAR(rig.position().x, 0.1 * navigation.speed(), 1e-12);
+    navigation.set_floor(1.0);
+    for (int i = 0; i < 200; ++i) navigation.apply({.seconds = 0.02}, rig);
+    EXPECT_NEAR(rig.position().z, 1 + navigation.eye_height(), 0.01);
+    navigation.set_gravity(false);
+    navigation.set_floor(0.0);
+    EXPECT_FALSE(navigation.apply({.seconds = 0.1}, rig));
+    EXPECT_TRUE(navigation.apply({.keys = {0, 1, 0}, .seconds = 0.1}, rig)) << "without gravity one rises";
+}
+
+TEST(Navigation, ModesAreCalledInSettingsAsTheyAreReadFromThem) {
+    for (const char* name : {"orbit", "turntable", "fly", "walk"}) {
+        const auto mode = navigation_mode(name);
+        ASSERT_TRUE(mode);
+        EXPECT_STREQ(navigation_name(*mode), name);
+    }
+    EXPECT_FALSE(navigation_mode("swim"));
 }
 
 }  // namespace

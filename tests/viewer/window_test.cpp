@@ -1,156 +1,17 @@
-// The viewer in a real window: an X server without a screen (Xvfb), driven as a user would (xdotool).
-#include <chrono>
-#include <cmath>
+// The viewer in a real window, see window_fixture.h.
+#include "tests/viewer/window_fixture.h"
+
 #include <fstream>
-#include <optional>
-#include <thread>
-#include <vector>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <signal.h>
 
-#include "io/image/image.h"
 #include "tests/viewer/measured_scan.h"
-#include "tests/viewer/program.h"
 
 namespace lucarne {
 namespace {
 
-using test::Outcome;
-using test::shell;
-using test::TemporaryFolder;
+using namespace test;
 using testing::HasSubstr;
-
-constexpr int kWidth = 480, kHeight = 360;
-constexpr auto kPatience = std::chrono::seconds(120);  ///< ends a test that hangs; nothing is measured by it
-
-bool installed(const std::string& program) {
-    return shell("command -v " + program).code == 0;
-}
-
-/// A program in the background, ended with this object.
-class Background {
- public:
-    explicit Background(const std::string& command) {
-        pid_ = fork();
-        if (pid_ == 0) {
-            execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
-            _exit(127);
-        }
-    }
-    ~Background() {
-        if (running()) {
-            kill(pid_, SIGTERM);
-            waitpid(pid_, nullptr, 0);
-        }
-    }
-    Background(const Background&) = delete;
-    Background& operator=(const Background&) = delete;
-
-    bool running() {
-        int status = 0;
-        if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
-            code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-            pid_ = -1;
-        }
-        return pid_ > 0;
-    }
-    std::optional<int> code() const { return code_; }
-
- private:
-    pid_t pid_ = -1;
-    std::optional<int> code_;
-};
-
-/// Polls until `there` holds; false once patience ends.
-template <class Condition>
-bool eventually(const Condition& there) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < end) {
-        if (there()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return false;
-}
-
-double difference(const io::Image8& a, const io::Image8& b) {  ///< mean, of 255
-    double sum = 0;
-    for (size_t i = 0; i < a.bytes.size(); ++i) sum += std::abs(double(a.bytes[i]) - double(b.bytes[i]));
-    return sum / static_cast<double>(a.bytes.size());
-}
-
-double deviation(const io::Image8& image) {  ///< standard, of 255
-    double sum = 0, squares = 0;
-    for (const uint8_t byte : image.bytes) {
-        sum += byte;
-        squares += double(byte) * byte;
-    }
-    const double n = static_cast<double>(image.bytes.size());
-    return std::sqrt(squares / n - (sum / n) * (sum / n));
-}
-
-class ViewerWindow : public testing::Test {
- protected:
-    void SetUp() override {
-        if (!installed("Xvfb") || !installed("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool";
-        const std::string number = folder_ / "display";
-        server_.emplace("Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset 3>" + number +
-                        " 2>/dev/null");
-        ASSERT_TRUE(eventually([&] { return test::bytes_of(number).find('\n') != std::string::npos; }))
-            << "Xvfb does not start";
-        display_ = "DISPLAY=:" + test::bytes_of(number).substr(0, test::bytes_of(number).size() - 1) + " ";
-        cache_ = make_cornell(folder_);
-    }
-
-    void start(const std::string& more = "") {
-        // LeakSanitizer would report what X's and Mesa's drivers, unloaded by then, have left: modules
-        // without a name, which no suppression can match.
-        const std::string environment = display_ + "ASAN_OPTIONS=detect_leaks=0 ";
-        viewer_.emplace("env -C " + folder_.path().string() + " " + environment + LUCARNE_BINARY + " view " +
-                        cache_ + " --engine direct --size " + std::to_string(kWidth) + "x" +
-                        std::to_string(kHeight) + more);
-        ASSERT_TRUE(
-            eventually([&] { return !viewer_->running() || xdo("search --name 'Lucarne - '").code == 0; }));
-        ASSERT_TRUE(viewer_->running()) << "it ended at once";
-    }
-    Outcome xdo(const std::string& command) const { return shell(display_ + "xdotool " + command); }
-    void drag(int button, int from_x, int from_y, int to_x, int to_y) const {
-        const auto at = [](int x, int y) { return std::to_string(x) + " " + std::to_string(y); };
-        std::string moves = "mousemove " + at(from_x, from_y) + " sleep 0.3 mousedown " +
-                            std::to_string(button) + " sleep 0.3";
-        for (int step = 1; step <= 5; ++step)
-            moves += " mousemove " +
-                     at(from_x + (to_x - from_x) * step / 5, from_y + (to_y - from_y) * step / 5) +
-                     " sleep 0.1";
-        EXPECT_EQ(xdo(moves + " mouseup " + std::to_string(button)).code, 0);
-    }
-
-    /// The picture at rest: saved by the viewer's own key until it is whole and `wanted` accepts it.
-    template <class Wanted>
-    std::optional<io::Image8> picture(const Wanted& wanted) {
-        std::optional<io::Image8> result;
-        eventually([&] {
-            if (!viewer_->running()) return true;
-            const std::string file = folder_ / "lucarne-0001.png";
-            std::error_code ignored;
-            std::filesystem::remove(file, ignored);
-            xdo("key F12");
-            for (int i = 0; i < 20 && !std::filesystem::exists(file); ++i)
-                std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            const auto saved = io::read_png(file);
-            if (!saved || saved->width != kWidth || saved->height != kHeight || !wanted(*saved)) return false;
-            result = *saved;
-            return true;
-        });
-        return result;
-    }
-    static bool lit(const io::Image8& image) { return deviation(image) > 10; }
-
-    TemporaryFolder folder_;
-    std::optional<Background> server_, viewer_;
-    std::string display_, cache_;
-};
 
 TEST_F(ViewerWindow, OrbitsAndMovesTheLightAndComesHome) {
     start();
@@ -250,20 +111,29 @@ TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
         << "the picture stays another than the cache's";
 }
 
-TEST_F(ViewerWindow, ClosedWhileItConvertsItEndsWellAndLeavesNoHalfOfACache) {
-    cache_ = folder_ / "large.las";
-    ASSERT_EQ(test::lucarne("generate nave --points 400k -o " + cache_).code, 0);
-    start();
-    ASSERT_TRUE(picture(lit));
-    xdo("key ctrl+q");
+TEST_F(ViewerWindow, ClosingDuringAConversionAsksAndTheNextOneGoesOn) {
+    const std::string scan = folder_ / "large.las";
+    ASSERT_EQ(lucarne("generate nave --points 600k -o " + scan).code, 0);
+    const auto cached = [&] { return std::filesystem::exists(scan + ".luc"); };
+    start_with(scan);
+    ASSERT_TRUE(eventually(
+        [&] { return xdo("search --name 'Lucarne - .*(normals|building)'").code == 0 || cached(); }));
+    xdo("key ctrl+q sleep 0.3");
+    if (!cached()) {
+        EXPECT_TRUE(viewer_->running()) << "it did not ask";
+    }
+    xdo("key Escape sleep 0.3");
+    if (!cached()) {
+        EXPECT_TRUE(viewer_->running()) << "staying closes it";
+    }
+    xdo("key ctrl+q sleep 0.3 key Return");
     ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
     EXPECT_EQ(viewer_->code(), 0);
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
-        const std::string name = entry.path().filename();
-        EXPECT_EQ(name.find(".part"), std::string::npos) << name;
-        if (name == "large.las.luc") {
-            EXPECT_EQ(test::lucarne("verify " + entry.path().string()).code, 0);
-        }
+    const bool interrupted = !cached();
+    start_with(scan);
+    ASSERT_TRUE(eventually(cached));
+    if (interrupted) {
+        EXPECT_THAT(log(), HasSubstr("going on after"));
     }
 }
 
@@ -311,6 +181,49 @@ TEST_F(ViewerWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigi
     const size_t at = csv.find("Distance 1,distance,length,");
     ASSERT_NE(at, std::string::npos) << csv;
     EXPECT_NEAR(std::stod(csv.substr(at + 27)), 56 * 0.05 * test::MeasuredScan::kFoot, 1e-9) << "metres";
+}
+
+TEST_F(ViewerWindow, OpensWithNothingTakesFilesFromTheDesktopsDialogAndOutlivesABrokenOne) {
+    // A dialog that answers at once stands for the desktop's: what is tested is our side of it.
+    const std::string dialog = folder_ / "zenity";
+    std::ofstream(dialog) << "#!/bin/sh\necho " << folder_ / "broken.las"
+                          << "\necho " << cache_ << "\n";
+    std::filesystem::permissions(dialog, std::filesystem::perms::owner_all);
+    std::ofstream(folder_ / "broken.las") << "LASF and no more";
+    start_with("", "PATH=" + folder_.path().string() + ":$PATH");
+    ASSERT_TRUE(eventually([&] { return xdo("search --name 'nothing is open'").code == 0; }));
+    xdo("key ctrl+o");
+    ASSERT_TRUE(picture(lit)) << log();
+    EXPECT_THAT(log(), HasSubstr("broken.las"));
+    // A bookmark from above is found again by the next window, as are the files.
+    xdo("key 9 key 5");
+    std::optional<io::Image8> before;
+    const auto from_above = picture([&](const io::Image8& now) {
+        const bool same = before && difference(now, *before) < 0.05;
+        before = now;
+        return same;
+    });
+    ASSERT_TRUE(from_above);
+    xdo("key ctrl+b sleep 0.5 key ctrl+q");
+    ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
+    EXPECT_EQ(viewer_->code(), 0);
+    const std::string settings = bytes_of(folder_ / "config/settings.json");
+    EXPECT_THAT(settings, HasSubstr(cache_));
+    start_with((folder_ / "broken.las") + " " + cache_);
+    ASSERT_TRUE(picture([&](const io::Image8& now) { return lit(now) && difference(now, *from_above) > 2; }));
+    EXPECT_TRUE(picture([&](const io::Image8& now) {
+        xdo("key alt+1 sleep 0.5");
+        return difference(now, *from_above) < 1;
+    })) << "the bookmark does not lead there";
+}
+
+TEST_F(ViewerWindow, ABrokenSettingsFileIsReportedAndPutAside) {
+    std::filesystem::create_directory(folder_ / "config");
+    std::ofstream(folder_ / "config/settings.json") << "{ this is no JSON";
+    start();
+    EXPECT_THAT(log(), HasSubstr("settings.json.broken"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "config/settings.json.broken"));
+    EXPECT_TRUE(picture(lit));
 }
 
 TEST(Viewer, WithoutADisplayItSaysSoInOneLine) {

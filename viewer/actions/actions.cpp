@@ -69,10 +69,13 @@ void run_actions(ViewModel& model, std::span<const KeyChord> chords) {
 
 std::span<const Gesture> gestures() {
     static constexpr std::array kGestures = {
-        Gesture{"left drag", "turn around the point under the cursor (orbit), look around (fly)"},
+        Gesture{"left drag",
+                "turn around the point under the cursor (orbit), around the pivot (turntable); look around "
+                "(fly, walk)"},
         Gesture{"right or middle drag", "shift the view"},
-        Gesture{"scroll", "go to the point under the cursor (orbit), speed (fly)"},
-        Gesture{"W A S D, E Q", "fly; with Shift faster"},
+        Gesture{"scroll", "go to the point under the cursor (orbit, turntable); speed (fly, walk)"},
+        Gesture{"double-click", "choose the point to turn around"},
+        Gesture{"W A S D, E Q", "fly or walk; with Shift faster"},
         Gesture{"click", "measure the point there, with a tool; select what a label belongs to"},
         Gesture{"left drag on a clip's handle", "move the box's face, or the plane"},
         Gesture{"Shift + left drag", "aim the light at the point under the cursor"},

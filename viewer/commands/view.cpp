@@ -36,8 +36,8 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
     LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
-    const auto [low, high] = octree::bulk_of(source);
-    start.scene_size = std::max(glm::distance(low, high), 1e-6);
+    start.box = octree::bulk_of(source);
+    start.metres_per_unit = source.header().metres_per_unit;
     return start;
 }
 

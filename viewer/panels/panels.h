@@ -11,6 +11,7 @@ void draw_menu_bar(ViewModel& model);  ///< of the table of actions, with their 
 void draw_start_page(ViewModel& model);   ///< with nothing open
 void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how far loads and conversions are
 
+void draw_bookmarks(ViewModel& model);
 void draw_file_browser(ViewModel& model, FileBrowser& browser);
 void draw_closing_question(ViewModel& model);  ///< where a conversion is running
 

@@ -67,11 +67,6 @@ void draw_settings_panel(ViewModel& model) {
                              ImGuiSliderFlags_AlwaysClamp))
             model.settings.only_bounce = only;
         exposure(model);
-        const bool flying = model.navigation.mode() == NavigationMode::fly;
-        if (ImGui::RadioButton("orbit", !flying)) model.navigation.set_mode(NavigationMode::orbit);
-        ImGui::SameLine();
-        if (ImGui::RadioButton("fly", flying)) model.navigation.set_mode(NavigationMode::fly);
-        ImGui::SameLine();
         if (ImGui::Button("Save picture")) model.save_picture = true;
         ImGui::TextDisabled("F1: all keys");
     }

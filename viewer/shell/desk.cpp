@@ -64,7 +64,55 @@ void Desk::take_files() {
     scans_.open(std::move(files));
 }
 
+/// They belong to the scan that was opened first.
+void Desk::follow_bookmarks() {
+    Shell& shell = model_.shell;
+    const auto& rows = scans_.rows();
+    const auto of = rows.empty() ? std::filesystem::path()
+                                 : bookmark_folder(config_folder(), absolute(rows.front().paths.front()));
+    if (of != bookmarks_of_) {
+        for (const Bookmark& bookmark : shell.bookmarks) window_.free_texture(bookmark.texture);
+        shell.bookmarks.clear();
+        bookmarks_of_ = of;
+        if (!of.empty())
+            writer_.push([read = read_, of] {
+                LoadedBookmarks loaded = load_bookmarks(of);
+                const std::lock_guard lock(read->mutex);
+                read->bookmarks = std::move(loaded);
+            });
+    }
+    std::optional<LoadedBookmarks> loaded;
+    {
+        const std::lock_guard lock(read_->mutex);
+        loaded.swap(read_->bookmarks);
+    }
+    if (loaded && loaded->folder == bookmarks_of_) {
+        if (!loaded->problem.empty()) log::warn("{}", model_.message = loaded->problem);
+        shell.bookmarks.insert(shell.bookmarks.begin(), std::make_move_iterator(loaded->bookmarks.begin()),
+                               std::make_move_iterator(loaded->bookmarks.end()));
+    }
+    for (Bookmark& bookmark : shell.bookmarks)
+        if (!bookmark.texture && bookmark.thumbnail.width)
+            bookmark.texture = window_.make_texture(bookmark.thumbnail);
+    for (const unsigned texture : std::exchange(shell.stale_textures, {})) window_.free_texture(texture);
+    if (!std::exchange(shell.bookmarks_changed, false)) return;
+    writer_.push([bookmarks = shell.bookmarks, folder = bookmarks_of_] {
+        if (const auto saved = save_bookmarks(bookmarks, folder); !saved)
+            log::warn("{}", saved.error().line());
+    });
+}
+
+std::optional<double> Desk::floor() {
+    const double eye = model_.navigation.eye_height();
+    if (model_.navigation.mode() != NavigationMode::walk || !model_.navigation.gravity()) return std::nullopt;
+    floor_.look(scans_.source(), model_.rig.position(), eye);
+    return floor_.found();
+}
+
 void Desk::draw() {
+    follow_bookmarks();
+    draw_bookmarks(model_);
+
     draw_menu_bar(model_);
     draw_scans_panel(model_);
     if (scans_.rows().empty()) draw_start_page(model_);

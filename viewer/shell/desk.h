@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "viewer/shell/file_browser.h"
+#include "viewer/shell/floor_finder.h"
 #include "viewer/shell/job_queue.h"
 #include "viewer/shell/native_dialog.h"
 #include "viewer/shell/scan_set.h"
@@ -21,6 +22,8 @@ class Desk {
     /// Files that were dropped, or chosen in a dialog.
     void take_files();
     void draw();
+    /// The floor under the camera, world z, once it has been looked for; for walking.
+    std::optional<double> floor();
     /// Whether the window is to go; asks first where a conversion is running, unless `at_once`.
     bool closing(bool at_once);
 
@@ -28,12 +31,20 @@ class Desk {
     void choose_files();
     std::filesystem::path folder() const;
     void remember();
+    void follow_bookmarks();
 
     Window& window_;
     ViewModel& model_;
     ScanSet& scans_;
     NativeDialog dialog_;
     FileBrowser browser_;
+    std::filesystem::path bookmarks_of_;  ///< the folder that the bookmarks are kept in; empty: none yet
+    struct Read {
+        std::mutex mutex;
+        std::optional<LoadedBookmarks> bookmarks;
+    };
+    std::shared_ptr<Read> read_ = std::make_shared<Read>();
+    FloorFinder floor_;
     JobQueue writer_;
 };
 

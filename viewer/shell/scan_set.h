@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -9,6 +11,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "gi/scene/scene.h"
 #include "viewer/input.h"
@@ -49,7 +53,9 @@ struct ScanRow {
 struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
-    double scene_size = 1;  ///< diagonal, world units
+    std::array<glm::dvec3, 2> box{};  ///< to look at, world units
+    double metres_per_unit = 1;
+    double scene_size() const { return std::max(glm::distance(box[0], box[1]), 1e-6); }  ///< its diagonal
 };
 
 /// The scans that are open in the window: they are opened, converted, hidden and closed while it goes on

@@ -66,17 +66,21 @@ fs::path config_folder() {
     return {};
 }
 
+std::string put_aside(const fs::path& file, const Error& reason) {
+    const fs::path aside = file.string() + ".broken";
+    std::error_code error;
+    fs::rename(file, aside, error);
+    return fmt::format("{}; it is left out, the file is {}", reason.line(),
+                       error ? "still there: " + error.message() : "now " + aside.string());
+}
+
 LoadedSettings load_settings(const fs::path& folder) {
     std::error_code error;
     const fs::path file = folder / kFile;
     if (folder.empty() || !fs::exists(file, error)) return {};
     auto settings = read(file);
     if (settings) return {std::move(*settings), {}};
-    const fs::path aside = file.string() + ".broken";
-    fs::rename(file, aside, error);
-    return {{},
-            fmt::format("{}; the settings are the first ones again, the file is {}", settings.error().line(),
-                        error ? "still there: " + error.message() : "now " + aside.string())};
+    return {{}, put_aside(file, settings.error())};
 }
 
 Result<void> save_settings(const Settings& settings, const fs::path& folder) {

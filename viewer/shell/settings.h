@@ -30,6 +30,9 @@ inline constexpr size_t kMostRecent = 20;
 /// ~/.config/lucarne; empty where there is none of them.
 std::filesystem::path config_folder();
 
+/// A file that cannot be read is moved to *.broken; a sentence that says so, for people.
+std::string put_aside(const std::filesystem::path& file, const Error& error);
+
 /// What was read, and what the user has to know of it.
 struct LoadedSettings {
     Settings settings;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/shell/bookmarks.h"
 #include "viewer/shell/settings.h"
 
 namespace lucarne::viewer {
@@ -18,6 +19,12 @@ struct Shell {
     bool ask_to_close = false;  ///< the question is on the screen
     bool close_now = false;     ///< and was answered
     Settings settings;
+
+    std::vector<Bookmark> bookmarks;
+    bool bookmarks_changed = false;        ///< by the user; they are to be written
+    std::vector<unsigned> stale_textures;  ///< of bookmarks that are gone
+    bool show_bookmarks = false;
+    size_t bookmark = 0;  ///< the last that was gone to
 };
 
 }  // namespace lucarne::viewer

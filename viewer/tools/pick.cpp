@@ -61,8 +61,9 @@ std::optional<Projection> project(const Picture& picture, const glm::dvec3& worl
     const glm::dvec3 right = wide(view.right), up = wide(view.up);
     const double depth = glm::dot(offset, wide(view.forward));
     if (!(depth > 0)) return std::nullopt;
-    const glm::dvec2 ndc(glm::dot(offset, right) / glm::dot(right, right) / depth,
-                         -glm::dot(offset, up) / glm::dot(up, up) / depth);
+    const double scale = view.projection == gi::kOrthographic ? 1 : depth;
+    const glm::dvec2 ndc(glm::dot(offset, right) / glm::dot(right, right) / scale,
+                         -glm::dot(offset, up) / glm::dot(up, up) / scale);
     return Projection{(ndc + 1.0) / 2.0 * glm::dvec2(picture.size.width, picture.size.height), depth};
 }
 

@@ -252,5 +252,33 @@ TEST_F(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
     EXPECT_EQ(view.width, 128u);
 }
 
+TEST_F(GBufferTest, AnOrthographicViewDrawsAlikeAtAnyDepthAndPutsTexelsOnTheirSurface) {
+    CameraView view{};
+    view.origin = {0, 0, 0, 0.01f};
+    view.forward = {0, 1, 0, 0};
+    view.right = {4, 0, 0, 0};  // m
+    view.up = {0, 0, 3, 0};
+    view.width = 80;
+    view.height = 60;
+    view.projection = kOrthographic;
+    const auto half = [&](float depth) {  // large discs and small ones
+        const Picture p = draw(wall(depth, 1.5f, depth > 10 ? 0.3f : 0.03f, kRed, 3), view);
+        size_t covered = 0;
+        for (uint32_t y = 0; y < 60; ++y)
+            for (uint32_t x = 0; x < 80; ++x) {
+                const size_t at = size_t{y} * 80 + x;
+                if (p.empty(at)) continue;
+                ++covered;
+                EXPECT_NEAR(p.texels[at].depth, depth, 0.05f);
+                const float across = 4 * (2 * (static_cast<float>(x) + .5f) / 80 - 1);
+                EXPECT_LT(std::abs(across), 2.2f);
+            }
+        return covered;
+    };
+    const auto near = static_cast<double>(half(3)), far = static_cast<double>(half(30));
+    EXPECT_NEAR(near, 30 * 30, 0.12 * 900);
+    EXPECT_NEAR(far, near, 0.35 * near);  // its rim is ten times as coarse
+}
+
 }  // namespace
 }  // namespace lucarne::gi

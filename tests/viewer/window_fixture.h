@@ -1,0 +1,153 @@
+// A viewer in a real window: an X server without a screen (Xvfb), driven as a user would (xdotool).
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include "io/image/image.h"
+#include "tests/viewer/program.h"
+
+namespace lucarne::test {
+
+inline constexpr int kWidth = 480, kHeight = 360;  ///< of the window
+inline constexpr auto kPatience =
+    std::chrono::seconds(120);  ///< ends a test that hangs; nothing is measured by it
+
+inline bool installed(const std::string& program) {
+    return shell("command -v " + program).code == 0;
+}
+
+/// A program in the background, ended with this object.
+class Background {
+ public:
+    explicit Background(const std::string& command) {
+        pid_ = fork();
+        if (pid_ == 0) {
+            execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
+            _exit(127);
+        }
+    }
+    ~Background() {
+        if (running()) {
+            kill(pid_, SIGTERM);
+            waitpid(pid_, nullptr, 0);
+        }
+    }
+    Background(const Background&) = delete;
+    Background& operator=(const Background&) = delete;
+
+    bool running() {
+        int status = 0;
+        if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+            code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+            pid_ = -1;
+        }
+        return pid_ > 0;
+    }
+    std::optional<int> code() const { return code_; }
+
+ private:
+    pid_t pid_ = -1;
+    std::optional<int> code_;
+};
+
+/// Polls until `there` holds; false once patience ends.
+template <class Condition>
+bool eventually(const Condition& there) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
+        if (there()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+}
+
+inline double difference(const io::Image8& a, const io::Image8& b) {  ///< mean, of 255
+    double sum = 0;
+    for (size_t i = 0; i < a.bytes.size(); ++i) sum += std::abs(double(a.bytes[i]) - double(b.bytes[i]));
+    return sum / static_cast<double>(a.bytes.size());
+}
+
+inline double deviation(const io::Image8& image) {  ///< standard, of 255
+    double sum = 0, squares = 0;
+    for (const uint8_t byte : image.bytes) {
+        sum += byte;
+        squares += double(byte) * byte;
+    }
+    const double n = static_cast<double>(image.bytes.size());
+    return std::sqrt(squares / n - (sum / n) * (sum / n));
+}
+
+class ViewerWindow : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (!installed("Xvfb") || !installed("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool";
+        const std::string number = folder_ / "display";
+        server_.emplace("Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset 3>" + number +
+                        " 2>/dev/null");
+        ASSERT_TRUE(eventually([&] { return bytes_of(number).find('\n') != std::string::npos; }))
+            << "Xvfb does not start";
+        display_ = "DISPLAY=:" + bytes_of(number).substr(0, bytes_of(number).size() - 1) + " ";
+        cache_ = make_cornell(folder_);
+    }
+
+    void start(const std::string& more = "") { start_with(cache_ + more); }
+    /// `arguments` follow `lucarne view`; `variables`: of the environment.
+    void start_with(const std::string& arguments, const std::string& variables = "") {
+        // LeakSanitizer would report what X's and Mesa's drivers, unloaded by then, have left: modules
+        // without a name, which no suppression can match.
+        const std::string environment = display_ + "LUCARNE_CONFIG=" + (folder_ / "config") +
+                                        " ASAN_OPTIONS=detect_leaks=0 " + variables + " ";
+        viewer_.emplace("env -C " + folder_.path().string() + " " + environment + LUCARNE_BINARY + " view " +
+                        arguments + " --engine direct --size " + std::to_string(kWidth) + "x" +
+                        std::to_string(kHeight) + " 2>>" + (folder_ / "log"));
+        ASSERT_TRUE(
+            eventually([&] { return !viewer_->running() || xdo("search --name 'Lucarne - '").code == 0; }));
+        ASSERT_TRUE(viewer_->running()) << "it ended at once";
+    }
+    std::string log() const { return bytes_of(folder_ / "log"); }
+    Outcome xdo(const std::string& command) const { return shell(display_ + "xdotool " + command); }
+    void drag(int button, int from_x, int from_y, int to_x, int to_y) const {
+        const auto at = [](int x, int y) { return std::to_string(x) + " " + std::to_string(y); };
+        std::string moves = "mousemove " + at(from_x, from_y) + " sleep 0.3 mousedown " +
+                            std::to_string(button) + " sleep 0.3";
+        for (int step = 1; step <= 5; ++step)
+            moves += " mousemove " +
+                     at(from_x + (to_x - from_x) * step / 5, from_y + (to_y - from_y) * step / 5) +
+                     " sleep 0.1";
+        EXPECT_EQ(xdo(moves + " mouseup " + std::to_string(button)).code, 0);
+    }
+
+    /// The picture at rest: saved by the viewer's own key until it is whole and `wanted` accepts it.
+    template <class Wanted>
+    std::optional<io::Image8> picture(const Wanted& wanted) {
+        std::optional<io::Image8> result;
+        eventually([&] {
+            if (!viewer_->running()) return true;
+            const std::string file = folder_ / "lucarne-0001.png";
+            std::error_code ignored;
+            std::filesystem::remove(file, ignored);
+            xdo("key F12");
+            for (int i = 0; i < 20 && !std::filesystem::exists(file); ++i)
+                std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            const auto saved = io::read_png(file);
+            if (!saved || saved->width != kWidth || saved->height != kHeight || !wanted(*saved)) return false;
+            result = *saved;
+            return true;
+        });
+        return result;
+    }
+    static bool lit(const io::Image8& image) { return deviation(image) > 10; }
+
+    TemporaryFolder folder_;
+    std::optional<Background> server_, viewer_;
+    std::string display_, cache_;
+};
+
+}  // namespace lucarne::test
