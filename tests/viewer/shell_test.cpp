@@ -2,6 +2,7 @@
 #include <fstream>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
@@ -64,7 +65,7 @@ TEST(Settings, ABrokenFileIsPutAsideAndReported) {
 
 TEST(Settings, RecentFilesAreBounded) {
     Settings settings;
-    for (int i = 0; i < 100; ++i) settings.opened("/" + std::to_string(i));
+    for (int i = 0; i < 100; ++i) settings.opened(fmt::format("/{}", i));
     EXPECT_EQ(settings.recent.size(), kMostRecent);
     EXPECT_EQ(settings.recent.front(), "/99");
 }

@@ -84,7 +84,7 @@ std::span<const Action> view_actions() {
         Action{{GLFW_KEY_O}, kModes, "Orbit", navigate<orbit>, nullptr, navigates<orbit>},
         Action{{GLFW_KEY_T}, kModes, "Turntable", navigate<turntable>, nullptr, navigates<turntable>},
         Action{{GLFW_KEY_F}, kModes, "Fly", navigate<fly>, nullptr, navigates<fly>},
-        Action{{GLFW_KEY_K}, kModes, "Walk", navigate<walk>, nullptr, navigates<walk>},
+        Action{{GLFW_KEY_H}, kModes, "Walk", navigate<walk>, nullptr, navigates<walk>},
         Action{{GLFW_KEY_J}, kModes, "Gravity while walking", toggle_gravity, nullptr, gravity},
     };
     return kActions;
