@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "io/input/controller.h"
 #include "viewer/camera.h"
 #include "viewer/navigation.h"
 #include "viewer/overlay/look_tools.h"
@@ -14,12 +15,20 @@
 
 namespace lucarne::viewer {
 
+/// The 6-DoF controller as panels show it; its mapping is in the settings.
+struct ControllerModel {
+    io::ControllerStatus status;
+    io::SixDofState cap;        ///< as it is now
+    bool holds_object = false;  ///< the cap is what is looked at, not the camera
+    bool show_panel = false;
+};
+
 /// All that the user can change in the viewer, and what the panels show. Actions and panels write it; the
 /// session turns it into requests.
 struct ViewModel {
     explicit ViewModel(double its_scene_size) : scene_size(its_scene_size), navigation(its_scene_size) {}
 
-    double scene_size;  ///< diagonal, world units
+    double scene_size;                ///< diagonal, world units
     std::array<glm::dvec3, 2> box{};  ///< of what is open, world units
     CameraRig rig;
     gi::SceneCamera home;  ///< where the view starts
@@ -38,6 +47,8 @@ struct ViewModel {
     MeasureModel measure;
 
     LookTools look_tools;  ///< beside scene.look
+
+    ControllerModel controller;
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

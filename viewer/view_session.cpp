@@ -170,6 +170,7 @@ bool ViewSession::take_navigation() {
 
 void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
+    if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard && !model_.shell.ask_to_close) run_actions(model_, keys);
     if (take_clip_handles(model_)) return;
@@ -193,6 +194,7 @@ void ViewSession::draw_panels() {
         if (model_.look_tools.show_panel) draw_view_panel(model_);
         draw_statistics_panel(model_);
     }
+    if (model_.controller.show_panel) draw_controller_panel(model_);
     if (model_.show_help) draw_help(model_);
     if (const auto error = worker_.error(); !error) model_.message = error.error().line();
     draw_message(model_, scans_.source() && (!model_.picture || model_.picture->request != sent_number_));

@@ -9,6 +9,7 @@
 #include "viewer/measure_session.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
+#include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"
 #include "viewer/view_model.h"
@@ -64,6 +65,7 @@ class ViewSession {
     Desk desk_;
     bool placed_ = false;  ///< there has been a view to begin with
     bool first_told_ = false;
+    ControllerInput controller_{&Window::wake};
     MovingQuality quality_;
     FrameBudget budget_;
     MeasureSession measure_{&Window::wake};

@@ -35,6 +35,9 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     loaded.settings.window = {800, 600};
     loaded.settings.navigation = "walk";
     loaded.settings.panels = false;
+    loaded.settings.controller.sensitivity = 2.5;
+    loaded.settings.controller.from[1] = 2;
+    loaded.settings.controller.scale[5] = -0.5;
     loaded.settings.opened("/a.las");
     loaded.settings.opened("/b \xff.las");  // no UTF-8
     loaded.settings.opened("/a.las");
@@ -44,6 +47,7 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     EXPECT_EQ(again.settings.window.width, 800u);
     EXPECT_EQ(again.settings.navigation, "walk");
     EXPECT_FALSE(again.settings.panels);
+    EXPECT_EQ(again.settings.controller, loaded.settings.controller);
     ASSERT_EQ(again.settings.recent.size(), 2u);
     EXPECT_EQ(again.settings.recent.front(), "/a.las");
     EXPECT_EQ(again.settings.others["of_tomorrow"]["a"][1], 2);
@@ -51,7 +55,8 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
 
 TEST(Settings, ABrokenFileIsPutAsideAndReported) {
     for (const std::string text :
-         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})", R"({"window": {"width": 0}})"}) {
+         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})",
+          R"({"controller": {"up": {"from": "left"}}})", R"({"window": {"width": 0}})"}) {
         const TemporaryFolder folder;
         write(folder / "settings.json", text);
         const LoadedSettings loaded = load_settings(folder.path());

@@ -28,6 +28,13 @@ bool shows_scans(const ViewModel& model) {
     return model.shell.show_scans;
 }
 
+void toggle_controller(ViewModel& model) {
+    model.controller.show_panel = !model.controller.show_panel;
+}
+bool shows_controller(const ViewModel& model) {
+    return model.controller.show_panel;
+}
+
 constexpr double kTextStep = 1.1;
 void scale_text(ViewModel& model, double by) {
     double& size = model.shell.settings.text_size;
@@ -46,6 +53,7 @@ std::span<const Action> window_actions() {
     static constexpr std::array kActions = {
         Action{{GLFW_KEY_TAB}, "Window", "Panels", toggle_panels, nullptr, shows_panels},
         Action{{GLFW_KEY_TAB, GLFW_MOD_SHIFT}, "Window", "Scans", toggle_scans, nullptr, shows_scans},
+        Action{{GLFW_KEY_F6}, "Window", "6-DoF controller", toggle_controller, nullptr, shows_controller},
         Action{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
         Action{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
         Action{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},

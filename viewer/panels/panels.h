@@ -22,6 +22,7 @@ void draw_light_panel(ViewModel& model);               ///< the selected spot
 void draw_statistics_panel(ViewModel& model);          ///< the last picture's figures
 void draw_measure_panel(ViewModel& model);             ///< tools, measurements, points
 void draw_measurements(ViewModel& model);              ///< over the picture
+void draw_controller_panel(ViewModel& model);          ///< its mapping
 void draw_help(ViewModel& model);                      ///< every action and gesture
 
 inline constexpr float kViewPanelWidth = 22;  ///< of the font's height

@@ -1,6 +1,7 @@
 #include "viewer/shell/settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <system_error>
 
@@ -17,6 +18,35 @@ namespace fs = std::filesystem;
 constexpr const char* kFile = "settings.json";
 constexpr int64_t kLargestWindow = 16384;
 
+/// In the order of the mapping's axes.
+constexpr std::array<const char*, io::SixDofMapping::kAxes> kAxes = {"right",   "up",        "forward",
+                                                                     "nose_up", "nose_left", "roll_right"};
+
+/// {"sensitivity": 1, "dead_zone": 0.05, "up": {"from": "forward", "scale": -1}}; axes that are not named are
+/// as the device has them.
+Result<io::SixDofMapping> read_mapping(JsonObject& object) {
+    io::SixDofMapping mapping;
+    LUCARNE_ASSIGN(mapping.sensitivity, object.number("sensitivity", {0.01, 100}, mapping.sensitivity));
+    LUCARNE_ASSIGN(mapping.dead_zone, object.number("dead_zone", {0, 0.9}, mapping.dead_zone));
+    for (size_t i = 0; i < kAxes.size(); ++i) {
+        LUCARNE_ASSIGN(auto axis, object.object(kAxes[i]));
+        if (!axis) continue;
+        LUCARNE_ASSIGN(const std::string from, axis->text("from", kAxes[i]));
+        const auto at = std::ranges::find(kAxes, from);
+        if (at == kAxes.end()) return axis->wrong("is no axis", "from");
+        mapping.from[i] = static_cast<uint8_t>(at - kAxes.begin());
+        LUCARNE_ASSIGN(mapping.scale[i], axis->number("scale", {-100, 100}, mapping.scale[i]));
+    }
+    return mapping;
+}
+
+nlohmann::json mapping_json(const io::SixDofMapping& mapping) {
+    nlohmann::json json = {{"sensitivity", mapping.sensitivity}, {"dead_zone", mapping.dead_zone}};
+    for (size_t i = 0; i < kAxes.size(); ++i)
+        json[kAxes[i]] = {{"from", kAxes[mapping.from[i]]}, {"scale", mapping.scale[i]}};
+    return json;
+}
+
 Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     Settings settings;
     LUCARNE_ASSIGN(JsonObject object, JsonObject::of(json, name));
@@ -29,6 +59,10 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     LUCARNE_ASSIGN(settings.navigation, object.text("navigation", ""));
     LUCARNE_ASSIGN(settings.text_size, object.number("text_size", {0.5, 4}, 1.0));
     LUCARNE_ASSIGN(settings.panels, object.boolean("panels", true));
+    LUCARNE_ASSIGN(auto controller, object.object("controller"));
+    if (controller) {
+        LUCARNE_ASSIGN(settings.controller, read_mapping(*controller));
+    }
     if (const auto recent = json.find("recent"); recent != json.end()) {
         if (!recent->is_array()) return object.wrong("is no list", "recent");
         for (const auto& path : *recent) {
@@ -37,7 +71,7 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
         }
     }
     settings.others = json;
-    for (const char* known : {"window", "navigation", "text_size", "panels", "recent"})
+    for (const char* known : {"window", "navigation", "text_size", "panels", "controller", "recent"})
         settings.others.erase(known);
     return settings;
 }
@@ -96,6 +130,7 @@ Result<void> save_settings(const Settings& settings, const fs::path& folder) {
     if (!settings.navigation.empty()) json["navigation"] = settings.navigation;
     json["text_size"] = settings.text_size;
     json["panels"] = settings.panels;
+    if (!(settings.controller == io::SixDofMapping{})) json["controller"] = mapping_json(settings.controller);
     json["recent"] = settings.recent;
     // Names of files may hold any bytes.
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -8,6 +8,7 @@
 
 #include "io/core/error.h"
 #include "io/core/options.h"
+#include "io/input/six_dof.h"
 
 namespace lucarne::viewer {
 
@@ -18,6 +19,7 @@ struct Settings {
     std::string navigation;           ///< "orbit", "turntable", "fly" or "walk"; empty: not chosen yet
     double text_size = 1;             ///< beside the screen's own scale
     bool panels = true;
+    io::SixDofMapping controller;
     nlohmann::json others = nlohmann::json::object();  ///< keys that this version does not know; kept
 
     /// Puts a path in the front.
