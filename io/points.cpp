@@ -73,6 +73,25 @@ void store_scalar(ScalarType type, std::byte* at, double value) {
     }
 }
 
+void add_loss(Losses& losses, std::string_view what, uint64_t count) {
+    if (count == 0) return;
+    const auto known = std::find_if(losses.begin(), losses.end(), [&](const Loss& l) { return l.what == what; });
+    if (known == losses.end())
+        losses.push_back({std::string(what), count});
+    else
+        known->count += count;
+}
+
+void add_losses(Losses& losses, const Losses& more) {
+    for (const Loss& loss : more) add_loss(losses, loss.what, loss.count);
+}
+
+Losses PointReader::losses() const {
+    Losses losses;
+    add_loss(losses, lost::no_number, dropped());
+    return losses;
+}
+
 Result<void> PointSource::pick(std::span<const uint64_t>, PointBatch&) const {
     return failed(info().path, "its points can only be read one after the other");
 }

@@ -122,6 +122,24 @@ struct Station {
     glm::dvec3 position{0.0};
 };
 
+/// What a file has, or should have, that is not among the points read from it, and why. `what` follows the count:
+/// "points whose state is invalid".
+struct Loss {
+    std::string what;
+    uint64_t count = 0;
+    bool operator==(const Loss&) const = default;
+};
+using Losses = std::vector<Loss>;
+/// Nothing for a count of 0; counts of the same kind are added up.
+void add_loss(Losses& losses, std::string_view what, uint64_t count);
+void add_losses(Losses& losses, const Losses& more);
+namespace lost {
+inline constexpr std::string_view no_number = "points with a coordinate that is no number",
+                                  cut_off = "points that are not there: the file ends before them",
+                                  damaged = "points in damaged parts of the file",
+                                  cut_scan = "scans that are cut off before their first point";
+}  // namespace lost
+
 /// What a file says besides its points.
 struct ScanInfo {
     std::string path;
@@ -135,6 +153,9 @@ struct ScanInfo {
     uint32_t color_bits = 8;
     std::vector<Station> stations;
     std::string details = "{}";         ///< JSON object: what export needs to write the same format again
+    std::string coordinate_system;      ///< its name, as the file has it; empty where it says nothing
+    uint32_t epsg = 0;                  ///< its code in the EPSG registry; 0 where the file says none
+    Losses losses;                      ///< what is known before a pass; a cache's: all that its build left out
 };
 
 /// The value of a colour component that means full intensity: 255, 65535, or 1 for 0 bits.
@@ -149,6 +170,8 @@ class PointReader {
     /// Replaces `batch` by up to `most` points; 0 at the end. Points with a non-finite coordinate are dropped.
     virtual Result<size_t> read(PointBatch& batch, size_t most) = 0;
     virtual uint64_t dropped() const = 0;  ///< how many so far; who made the pass tells the user
+    /// What the pass left out so far, dropped points among it, besides the losses of the scan's info.
+    virtual Losses losses() const;
 };
 
 /// A scan that can be read as often as one likes, with bounded memory. Outlives its readers.

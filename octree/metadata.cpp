@@ -95,7 +95,7 @@ json scan_json(const io::ScanInfo& scan) {
     json stations = json::array();
     for (const auto& s : scan.stations)
         stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
-    return {{"path", scan.path},
+    json result{{"path", scan.path},
             {"format", scan.format},
             {"declared_points", scan.declared_points},
             {"file_bytes", scan.file_bytes},
@@ -104,6 +104,11 @@ json scan_json(const io::ScanInfo& scan) {
             {"color_bits", scan.color_bits},
             {"stations", std::move(stations)},
             {"details", scan.details}};
+    if (!scan.coordinate_system.empty()) result["coordinate_system"] = scan.coordinate_system;
+    if (scan.epsg) result["epsg"] = scan.epsg;
+    for (const auto& loss : scan.losses)
+        result["losses"].push_back({{"what", loss.what}, {"count", loss.count}});
+    return result;
 }
 
 io::ScanInfo scan_of(const json& value) {
@@ -120,6 +125,11 @@ io::ScanInfo scan_of(const json& value) {
     for (const auto& s : value.at("stations"))
         scan.stations.push_back({s.at("id").get<uint32_t>(), vector_of(s.at("position"))});
     scan.details = value.at("details").get<std::string>();
+    scan.coordinate_system = value.value("coordinate_system", std::string());
+    scan.epsg = value.value("epsg", uint32_t{0});
+    if (value.contains("losses"))
+        for (const auto& loss : value.at("losses"))
+            scan.losses.push_back({loss.at("what").get<std::string>(), loss.at("count").get<uint64_t>()});
     return scan;
 }
 
@@ -167,6 +177,7 @@ std::string metadata_text(const SourceHeader& header) {
               {"points", header.points},
               {"metres_per_unit", header.metres_per_unit},
               {"scans", std::move(scans)}};
+    if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
     // File names are bytes, not always UTF-8: what is not becomes U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
@@ -193,6 +204,7 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         header.points = root.at("points").get<uint64_t>();
         header.metres_per_unit = number(root.at("metres_per_unit"));
         require(header.metres_per_unit > 0, "a unit without length");
+        header.options = root.value("options", std::string());
         for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
         return header;
     } catch (const std::exception& error) {

@@ -52,6 +52,7 @@ struct SourceHeader {
     uint64_t points = 0;
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
+    std::string options;  ///< how the scans were read where not as usual: io::options_text
 };
 
 /// What the keys and records of a node follow. A source is one part, or joins several: each with a root, a

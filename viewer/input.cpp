@@ -37,11 +37,13 @@ Result<Scans> open_scans(const InputOptions& options) {
     Scans scans;
     std::vector<io::ScanInfo> infos;
     for (const auto& path : options.paths) {
-        LUCARNE_ASSIGN(auto scan, io::open_scan(path, options.read));
-        infos.push_back(scan->info());
-        scans.inputs.push_back(std::move(scan));
+        auto scan = io::open_scan(path, options.read);
+        if (!scan) return tl::unexpected(io::with_salvage_advice(scan.error(), path, options.read));
+        infos.push_back((*scan)->info());
+        scans.inputs.push_back(std::move(*scan));
     }
-    const KeptCache kept(infos);
+    const KeptCache kept(infos, io::options_text(options.read));
+    scans.build.read_options = io::options_text(options.read);
     if (!options.no_cache) {
         scans.cache = kept.find();
         if (scans.cache) return scans;
@@ -108,6 +110,8 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
         ->excludes("--spacing");
     command.add_flag("--vertices", options.mesh.vertices,
                      "The vertices of a mesh are the points; its faces are passed over");
+    command.add_flag("--salvage", options.salvage,
+                     "Read what can be read of damaged and truncated scan files, and say what cannot");
 }
 
 void add_input_options(CLI::App& command, InputOptions& options) {
@@ -146,7 +150,9 @@ Result<Source> open_input(const InputOptions& options) {
     LUCARNE_ASSIGN(Scans scans, open_scans(options));
     if (scans.cache) return scans.cache;
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
-    LUCARNE_TRY(octree::build_cache(scans.build));
+    if (auto built = octree::build_cache(scans.build); !built)
+        return tl::unexpected(
+            io::with_salvage_advice(built.error(), built.error().what, options.read));
     // The open file lives on after its name is gone with the folder.
     LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
     return Source(std::move(cache));

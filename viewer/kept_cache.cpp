@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,7 +50,7 @@ bool same_file_name(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-KeptCache::KeptCache(const Scans& scans) : scans_(scans) {
+KeptCache::KeptCache(const Scans& scans, std::string options) : scans_(scans), options_(std::move(options)) {
     const path first = absolute(scans_.front().path);
     const uint64_t hash = hash_of(scans_);
     const std::string name = first.filename().string();
@@ -63,6 +64,7 @@ KeptCache::KeptCache(const Scans& scans) : scans_(scans) {
 
 bool KeptCache::made_of(const octree::NodeSource& cache, bool same_state) const {
     const auto& made = cache.header().scans;
+    if (same_state && cache.header().options != options_) return false;
     return std::equal(
         made.begin(), made.end(), scans_.begin(), scans_.end(), [&](const auto& was, const auto& is) {
             return same_file_name(was.path, is.path) &&
@@ -77,7 +79,7 @@ std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
         auto cache = octree::open_cache(file);
         if (cache && made_of(**cache, true)) return std::move(*cache);
         log::info("{}: {}; it is not used", file.string(),
-                  cache ? "was made from another state of the scan" : cache.error().why);
+                  cache ? "was made from another state of the scan, or with other options" : cache.error().why);
     }
     return nullptr;
 }

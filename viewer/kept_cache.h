@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "io/points.h"
@@ -18,11 +19,12 @@ namespace lucarne::viewer {
 class KeptCache {
  public:
     using Scans = std::vector<io::ScanInfo>;
-    /// `scans`: of the inputs, with their paths, sizes and times.
-    explicit KeptCache(const Scans& scans);
+    /// `scans`: of the inputs, with their paths, sizes and times. `options`: how they are read
+    /// (io::options_text).
+    explicit KeptCache(const Scans& scans, std::string options = {});
 
-    /// The cache, if one is kept that was made from the scans as they are now: the same files, sizes and
-    /// times.
+    /// The cache, if one is kept that was made from the scans as they are now, read as they are now: the same
+    /// files, sizes, times and options.
     std::shared_ptr<const octree::NodeSource> find() const;
     /// The file to write: the first place that can be written and holds nothing but, at most, an older cache
     /// of the same scans. Makes the cache folder. Empty: there is no such place.
@@ -32,6 +34,7 @@ class KeptCache {
     bool made_of(const octree::NodeSource& cache, bool same_state) const;
 
     Scans scans_;
+    std::string options_;
     std::filesystem::path beside_, in_folder_;  ///< the latter is empty where the user has no cache folder
 };
 

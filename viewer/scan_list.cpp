@@ -48,20 +48,23 @@ Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& 
     return files;
 }
 
-bool SetAside::take(const Error& error, std::vector<std::string>& inputs) {
+Result<void> SetAside::take(Error error, std::vector<std::string>& inputs) {
     const auto broken = std::ranges::find(inputs, error.what);
-    if (error.kind != ErrorKind::input_rejected || inputs_ < 2 || broken == inputs.end()) return false;
+    if (error.kind != ErrorKind::input_rejected || broken == inputs.end())
+        return tl::unexpected(std::move(error));
+    error = io::with_salvage_advice(std::move(error), *broken, options_);
+    if (inputs_ < 2) return tl::unexpected(std::move(error));
     log::warn("{}; it is left out", error.line());
     lines_.push_back(error.line());
     inputs.erase(broken);
-    return true;
+    return {};
 }
 
-Result<void> SetAside::result(const std::string& output) const {
+Result<void> SetAside::result(const std::string& output, std::string_view fate) const {
     if (lines_.empty()) return {};
     std::string all;
     for (const std::string& line : lines_) all += (all.empty() ? "" : "; ") + line;
-    return rejected(output, fmt::format("{} of {} inputs are not in it: {}", lines_.size(), inputs_, all));
+    return rejected(output, fmt::format("{} of {} inputs {}: {}", lines_.size(), inputs_, fate, all));
 }
 
 }  // namespace lucarne::viewer

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/core/error.h"
+#include "io/formats/scan.h"
 
 namespace lucarne::viewer {
 
@@ -17,18 +18,20 @@ std::span<const std::string_view> scan_extensions();
 /// be read or hold none.
 Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& inputs);
 
-/// Inputs that were left out of a conversion, and why: one broken file of many stops only itself.
+/// Inputs that were left out, and why: one broken file of many stops only itself.
 class SetAside {
  public:
-    explicit SetAside(size_t inputs) : inputs_(inputs) {}
+    SetAside(size_t inputs, io::ReadOptions options) : inputs_(inputs), options_(std::move(options)) {}
 
-    /// Whether the error is that of one input of several whose bytes are not what they claim to be; notes it.
-    bool take(const Error& error, std::vector<std::string>& inputs);
+    /// Takes the input whose bytes are not what they claim to be out of several and notes it, with how many
+    /// points could be saved of it. Any other error is given back, with the same advice.
+    Result<void> take(Error error, std::vector<std::string>& inputs);
     /// Fails with the summary where any input was left out.
-    Result<void> result(const std::string& output) const;
+    Result<void> result(const std::string& output, std::string_view fate = "are not in it") const;
 
  private:
     size_t inputs_;
+    io::ReadOptions options_;
     std::vector<std::string> lines_;
 };
 

@@ -7,6 +7,7 @@
 #include "io/core/log.h"
 #include "io/formats/e57/layout.h"
 #include "io/formats/format.h"
+#include "io/formats/wkt.h"
 
 namespace lucarne::io {
 namespace {
@@ -17,6 +18,8 @@ struct E57 {
     e57::Document document;
     std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
     e57::Layout layout;
+    bool salvage = false;
+    Losses losses;
 };
 
 class E57Reader final : public PointReader {
@@ -33,20 +36,29 @@ class E57Reader final : public PointReader {
             const size_t block = std::min(wanted - batch.count, e57::kBlockRecords);
             LUCARNE_ASSIGN(const size_t count, records_->read(block));
             if (count == 0) {
+                add_loss(lost_, lost::damaged, records_->left());
                 records_.reset();
                 continue;
             }
             batch.bytes.resize((batch.count + count) * schema.stride);
-            const size_t kept =
+            const auto [kept, invalid] =
                 e57::convert_block(schema, e57_.document.scans[scan_], e57_.layout.scans[scan_], *records_,
                                    count, batch.bytes.data() + batch.count * schema.stride);
             batch.count += kept;
             dropped_ += count - kept;
+            invalid_ += invalid;
         }
         batch.bytes.resize(batch.count * schema.stride);
         return batch.count;
     }
     uint64_t dropped() const override { return dropped_; }
+    Losses losses() const override {
+        Losses losses;
+        add_loss(losses, "points whose state is invalid", invalid_);
+        add_loss(losses, lost::no_number, dropped_ - invalid_);
+        add_losses(losses, lost_);
+        return losses;
+    }
 
  private:
     bool open_next() {
@@ -54,14 +66,15 @@ class E57Reader final : public PointReader {
         while (next_ < scans.size() && scans[next_].records == 0) ++next_;
         if (next_ == scans.size()) return false;
         scan_ = next_++;
-        records_.emplace(e57_.file, e57_.sections[scan_], scans[scan_]);
+        records_.emplace(e57_.file, e57_.sections[scan_], scans[scan_], e57_.salvage);
         return true;
     }
 
     const E57& e57_;
     std::optional<e57::RecordReader> records_;
     size_t scan_ = 0, next_ = 0;
-    uint64_t dropped_ = 0;
+    uint64_t dropped_ = 0, invalid_ = 0;
+    Losses lost_;
 };
 
 class E57Source final : public PointSource {
@@ -72,10 +85,20 @@ class E57Source final : public PointSource {
         info_.format = fmt::format("E57 1.0, {} scan{}, {} image{}", document.scans.size(),
                                    document.scans.size() == 1 ? "" : "s", document.images.size(),
                                    document.images.size() == 1 ? "" : "s");
+        info_.file_bytes = e57_.file->size();
+        info_.modified = e57_.file->modified();
         info_.color_bits = e57_.layout.color_bits;
+        info_.losses = e57_.losses;
+        add_loss(info_.losses, "images, which are listed but not read", document.images.size());
+        const auto system = wkt_system(document.coordinate_system);
+        info_.coordinate_system = system.name;
+        info_.epsg = system.epsg;
         for (size_t i = 0; i < document.scans.size(); ++i) {
             const e57::Scan& scan = document.scans[i];
             info_.declared_points += scan.records;
+            for (const e57::Field& field : scan.fields)
+                if (field.kind == e57::Field::Kind::text)
+                    add_loss(info_.losses, "texts of points, which are not read", scan.records);
             // Spherical coordinates count from the scanner; others without a pose may count from anywhere.
             if (scan.records > 0 && (scan.pose || e57_.layout.scans[i].spherical))
                 info_.stations.push_back(
@@ -121,18 +144,24 @@ Result<void> check_apart(const std::string& name, const e57::FileHeader& header,
     return {};
 }
 
-Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
+                                              const ReadOptions& options) {
     const std::string name = file->path().string();
-    LUCARNE_ASSIGN(const auto header, e57::read_file_header(file));
+    LUCARNE_ASSIGN(const auto header, e57::read_file_header(file, options.salvage));
     LUCARNE_ASSIGN(std::string xml, read_xml(file, header));
     E57 e57;
     LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
-    for (const e57::Scan& scan : e57.document.scans) {
-        e57::Section section;
-        if (scan.records > 0) {
-            LUCARNE_ASSIGN(section, e57::read_section(file, header, scan));
+    e57.salvage = options.salvage;
+    for (e57::Scan& scan : e57.document.scans) {
+        Result<e57::Section> section;
+        if (scan.records > 0) section = e57::read_section(file, header, scan, options.salvage);
+        if (!section && (!options.salvage || section.error().kind != ErrorKind::input_rejected))
+            return tl::unexpected(std::move(section).error());
+        if (!section) {
+            add_loss(e57.losses, lost::damaged, scan.records);
+            scan.records = 0;
         }
-        e57.sections.push_back(section);
+        e57.sections.push_back(section.value_or(e57::Section{}));
     }
     LUCARNE_TRY(check_apart(name, header, e57));
     LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));

@@ -30,6 +30,8 @@ const Format& pcd_format();
 const Format& ptx_format();
 const Format& obj_format();
 const Format& text_format();  ///< XYZ, PTS and the like
+const Format& txt_format();
+const Format& csv_format();
 
 /// A batch holds at most this many bytes of records, however wide they are.
 inline constexpr size_t kLargestBatch = size_t{64} << 20;
@@ -42,6 +44,9 @@ inline size_t batch_limit(const Schema& schema, size_t most) {
 inline bool usable(double coordinate) {
     return coordinate <= 1e30 && coordinate >= -1e30;
 }
+
+/// The path's extension with its dot.
+std::string lower_extension(const std::filesystem::path& path);
 
 /// `name` in printable ASCII, at most 64 characters, never empty.
 std::string printable(std::string_view name);

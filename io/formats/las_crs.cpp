@@ -1,7 +1,7 @@
 #include "io/formats/las_crs.h"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "io/core/log.h"
@@ -11,6 +11,8 @@ namespace {
 
 constexpr uint16_t kWktBit = 1 << 4;  // of the global encoding
 constexpr uint16_t kModelTypeKey = 1024, kLinearUnitsKey = 3076, kLinearUnitSizeKey = 3077;
+constexpr uint16_t kProjectedKey = 3072, kGeodeticKey = 2048, kGeoTextsRecord = 34737;
+constexpr std::array<uint16_t, 3> kCitations = {3073, 1026, 2049};
 constexpr uint16_t kModelGeographic = 2, kUserDefined = 32767;
 
 bool plausible(double metres) {
@@ -44,15 +46,32 @@ std::optional<double> epsg_unit(uint16_t code) {
 }
 
 struct GeoKeys {
-    std::optional<uint16_t> model, unit;
+    std::optional<uint16_t> model, unit, projected, geodetic;
+    std::array<std::string, 3> names;  ///< of the projected system, of all, of the geodetic system
     std::optional<double> unit_size;
 };
 
-GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte> doubles) {
+/// A citation: `count` characters at `first` of the record, up to its bar.
+std::string citation(std::string_view texts, size_t first, size_t count) {
+    std::string name;
+    for (const char c : texts.substr(std::min(first, texts.size()), count)) {
+        if (c == '|' || c == '\0') break;
+        name += c >= ' ' && c < 0x7f ? c : '?';
+    }
+    return name;
+}
+
+GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte> doubles,
+                 std::string_view texts = {}) {
     GeoKeys keys;
     for (size_t at = 8; directory.size() >= 8 && directory.size() - at >= 8; at += 8) {
         const auto id = load<uint16_t>(&directory[at]), location = load<uint16_t>(&directory[at + 2]);
         const auto value = load<uint16_t>(&directory[at + 6]);
+        if (id == kProjectedKey && location == 0) keys.projected = value;
+        if (id == kGeodeticKey && location == 0) keys.geodetic = value;
+        for (size_t i = 0; i < kCitations.size(); ++i)
+            if (id == kCitations[i] && location == kGeoTextsRecord)
+                keys.names[i] = citation(texts, value, load<uint16_t>(&directory[at + 4]));
         if (id == kModelTypeKey && location == 0) keys.model = value;
         if (id == kLinearUnitsKey && location == 0) keys.unit = value;
         if (id == kLinearUnitSizeKey && location == kGeoDoublesRecord && (value + 1u) * 8u <= doubles.size())
@@ -62,67 +81,7 @@ GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte
     return keys;
 }
 
-/// Walks the brackets of a well-known text and reports every keyword with its depth and parent.
-class WktUnits {
- public:
-    explicit WktUnits(std::string_view text) : text_(text) {}
-
-    std::optional<double> find() {
-        for (size_t at = 0; at < text_.size(); ++at) {
-            const char c = text_[at];
-            if (c == '"') {
-                at = text_.find('"', at + 1);
-                if (at == std::string_view::npos) break;
-            } else if (c == '[' || c == '(') {
-                if (depth_ == kMostDepth) return std::nullopt;
-                stack_[depth_++] = word_before(at);
-                if (const auto unit = unit_at(at)) return unit;
-            } else if (c == ']' || c == ')') {
-                if (depth_ > 0) --depth_;
-            }
-        }
-        return std::nullopt;
-    }
-
- private:
-    static constexpr size_t kMostDepth = 32;
-    static bool holds_lengths(std::string_view word) {
-        return word == "PROJCS" || word == "PROJCRS" || word == "PROJECTEDCRS" || word == "LOCAL_CS" ||
-               word == "ENGCRS" || word == "ENGINEERINGCRS" || word == "GEOCCS";
-    }
-    std::string_view word_before(size_t bracket) const {
-        size_t first = bracket;
-        while (first > 0 && ((text_[first - 1] >= 'A' && text_[first - 1] <= 'Z') || text_[first - 1] == '_'))
-            --first;
-        return text_.substr(first, bracket - first);
-    }
-    /// UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
-    std::optional<double> unit_at(size_t bracket) const {
-        const auto word = stack_[depth_ - 1];
-        if ((word != "UNIT" && word != "LENGTHUNIT") || depth_ < 2) return std::nullopt;
-        const auto parent = stack_[depth_ - 2];
-        if (!holds_lengths(parent) && !(parent == "AXIS" && depth_ > 2 && holds_lengths(stack_[depth_ - 3])))
-            return std::nullopt;
-        const size_t open = text_.find('"', bracket);
-        const size_t close = open == std::string_view::npos ? open : text_.find('"', open + 1);
-        size_t at = close == std::string_view::npos ? close : text_.find_first_not_of(" \t\r\n,", close + 1);
-        if (at == std::string_view::npos) return std::nullopt;
-        double metres = 0;
-        std::from_chars(text_.data() + at, text_.data() + text_.size(), metres);
-        if (!plausible(metres)) return std::nullopt;
-        return metres;
-    }
-
-    std::string_view text_;
-    std::array<std::string_view, kMostDepth> stack_{};
-    size_t depth_ = 0;
-};
-
 }  // namespace
-
-std::optional<double> wkt_metres_per_unit(std::string_view wkt) {
-    return WktUnits(wkt).find();
-}
 
 std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directory,
                                               std::span<const std::byte> doubles) {
@@ -146,6 +105,22 @@ double metres_per_unit(const std::string& file, const Header& header) {
     if (geo_keys(keys->data, numbers).model == kModelGeographic)
         log::warn("{}: its coordinates are degrees, not lengths", file);
     return geotiff_metres_per_unit(keys->data, numbers).value_or(1.0);
+}
+
+CoordinateSystem coordinate_system(const Header& header) {
+    const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
+    const Vlr* directory = header.find(kProjectionUser, kGeoKeyRecord);
+    const Vlr* texts = header.find(kProjectionUser, kGeoTextsRecord);
+    if (wkt && ((header.global_encoding & kWktBit) || !directory)) return wkt_system(wkt->text());
+    if (!directory) return {};
+    const GeoKeys keys = geo_keys(directory->data, {}, texts ? texts->text() : std::string_view());
+    const bool geographic = keys.model == kModelGeographic;
+    const uint16_t code = (geographic ? keys.geodetic : keys.projected).value_or(0);
+    CoordinateSystem system;
+    for (const size_t i : geographic ? std::array<size_t, 3>{2, 1, 0} : std::array<size_t, 3>{0, 1, 2})
+        if (system.name.empty()) system.name = keys.names[i];
+    system.epsg = code == kUserDefined ? 0 : code;
+    return system;
 }
 
 }  // namespace lucarne::io::las

@@ -26,7 +26,8 @@ std::string text_field(const std::byte* at, size_t width) {
 /// Reads records of one kind from [at, end). Stops with a warning at the first that does not fit.
 class RecordReader {
  public:
-    RecordReader(const InputFile& file, std::vector<Vlr>& out) : file_(file), out_(out) {}
+    RecordReader(const InputFile& file, Header& header)
+        : file_(file), out_(header.vlrs), losses_(header.losses) {}
 
     Result<void> read(bool extended, uint32_t count, uint64_t at, uint64_t end) {
         const uint64_t head_bytes = extended ? kEvlrHeader : kVlrHeader;
@@ -54,6 +55,7 @@ class RecordReader {
  private:
     Result<void> stop(uint32_t found, uint32_t promised, const char* kind) {
         log::warn("{}: {} {} promised, {} there", file_.path().string(), promised, kind, found);
+        add_loss(losses_, fmt::format("{} that are not there", kind), promised - found);
         return {};
     }
     Result<void> keep(Vlr vlr, uint64_t at, uint64_t bytes) {
@@ -61,6 +63,7 @@ class RecordReader {
         if (bytes > kMostRecordBytes - kept_) {
             log::warn("{}: the record {} {} of {} bytes is too large to be kept", file_.path().string(),
                       vlr.user_id, vlr.record_id, bytes);
+            add_loss(losses_, "records that are too large to be kept", 1);
             return {};
         }
         kept_ += bytes;
@@ -72,6 +75,7 @@ class RecordReader {
 
     const InputFile& file_;
     std::vector<Vlr>& out_;
+    Losses& losses_;
     uint64_t kept_ = 0;
 };
 
@@ -144,15 +148,23 @@ Result<void> check_sizes(const InputFile& file, const Header& h, const RawHeader
     return {};
 }
 
-Result<void> check_points(const InputFile& file, const Header& h) {
+Result<void> check_points(const InputFile& file, Header& h, bool salvage) {
+    const uint64_t bytes = file.size() - h.points_offset;
+    if (salvage) {
+        const uint64_t most = h.compressed ? bytes * kMostPointsAByte : bytes / h.record_length;
+        if (h.points > most) {
+            add_loss(h.losses, lost::cut_off, h.points - most);
+            h.points = most;
+        }
+    }
     if (h.compressed) {
-        if (h.points / kMostPointsAByte > file.size() - h.points_offset)
+        if (h.points / kMostPointsAByte > bytes)
             return rejected(
                 file.path().string(),
                 fmt::format("promises {} points, more than its {} bytes can hold", h.points, file.size()));
         return {};
     }
-    const uint64_t there = (file.size() - h.points_offset) / h.record_length;
+    const uint64_t there = bytes / h.record_length;
     if (h.points > there)
         return rejected(
             file.path().string(),
@@ -171,7 +183,7 @@ const Vlr* Header::find(std::string_view user, uint16_t record) const {
     return found == vlrs.end() ? nullptr : &*found;
 }
 
-Result<Header> read_header(const InputFile& file) {
+Result<Header> read_header(const InputFile& file, bool salvage) {
     const std::string name = file.path().string();
     std::array<std::byte, 375> block{};
     LUCARNE_ASSIGN(const size_t got, file.read_some(0, block));
@@ -185,11 +197,11 @@ Result<Header> read_header(const InputFile& file) {
     RawHeader raw;
     Header h = parse_block(block, raw);
     LUCARNE_TRY(check_sizes(file, h, raw));
-    RecordReader records(file, h.vlrs);
+    RecordReader records(file, h);
     LUCARNE_TRY(records.read(false, raw.vlr_count, raw.header_size, h.points_offset));
     h.compressed = (raw.format_byte & 0xc0) != 0 || h.find("laszip encoded", 22204) != nullptr;
     LUCARNE_TRY(check_format(name, h));
-    LUCARNE_TRY(check_points(file, h));
+    LUCARNE_TRY(check_points(file, h, salvage));
     if (raw.evlr_count > 0) {
         if (raw.evlr_offset < h.points_offset + (h.compressed ? 0 : h.points * h.record_length))
             log::warn("{}: its extended records begin inside the points, they are left out", name);

@@ -44,6 +44,7 @@ struct Header {
     uint16_t wave_bytes = 0;     ///< of the file's records behind their fields: skipped; 0 for writing
     glm::dvec3 scale{1.0}, offset{0.0};
     std::vector<Vlr> vlrs;
+    Losses losses;  ///< found while reading; of no use for writing
 
     const Vlr* find(std::string_view user, uint16_t record) const;
 };
@@ -77,8 +78,9 @@ constexpr bool has_color(uint8_t f) {
 
 /// Everything before the points, and the extended records behind them. Rejects what is not LAS
 /// of a known point format, and files that cannot hold the points they promise. Records that are broken or
-/// too large to keep (kMostRecordBytes in all) are left out with a warning.
-Result<Header> read_header(const InputFile& file);
+/// too large to keep (kMostRecordBytes in all) are left out with a warning. With `salvage` the points are those
+/// that are there, or could be, and the missing ones are a loss.
+Result<Header> read_header(const InputFile& file, bool salvage = false);
 
 inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
 inline constexpr uint32_t kMostRecords = 100'000;

@@ -57,9 +57,9 @@ class LasSource final : public PointSource {
     LasSource(std::shared_ptr<const InputFile> file, las::Header header)
         : file_(std::move(file)), header_(std::move(header)), schema_(las::make_schema(header_)) {}
 
-    Result<void> describe() {
+    Result<void> describe(bool salvage) {
         const std::string name = file_->path().string();
-        if (header_.compressed) LUCARNE_TRY(find_chunks());
+        if (header_.compressed) LUCARNE_TRY(find_chunks(salvage));
         info_.path = name;
         info_.format =
             fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
@@ -69,11 +69,15 @@ class LasSource final : public PointSource {
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
         info_.metres_per_unit = las::metres_per_unit(name, header_);
+        const auto system = las::coordinate_system(header_);
+        info_.coordinate_system = system.name;
+        info_.epsg = system.epsg;
+        info_.losses = header_.losses;
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
         if (const Attribute* color = schema_.find(names::color)) {
-            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color));
+            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, salvage));
         }
         las::Header kept = header_;
         kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
@@ -102,7 +106,7 @@ class LasSource final : public PointSource {
 
  private:
     void skip_waves() {
-        log::warn("{}: the wave packets of its points are skipped", file_->path().string());
+        add_loss(header_.losses, "wave packets of points, which are not read", header_.points);
         // Descriptors (100 to 354) and packets (65535) that nothing points to any more.
         std::erase_if(header_.vlrs, [](const las::Vlr& vlr) {
             const bool wave = (vlr.record_id >= 100 && vlr.record_id < 355) || vlr.record_id == 65535;
@@ -112,10 +116,16 @@ class LasSource final : public PointSource {
         header_.global_encoding &= static_cast<uint16_t>(~kWaveBits);
     }
 
-    Result<void> find_chunks() {
+    Result<void> find_chunks(bool salvage) {
         LUCARNE_ASSIGN(auto compression, laz::read_compression(file_->path().string(), header_));
-        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression));
-        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks)};
+        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression, salvage));
+        if (salvage) {
+            uint64_t there = 0;
+            for (const auto& chunk : chunks) there += chunk.points;
+            add_loss(header_.losses, lost::cut_off, header_.points - there);
+            header_.points = there;
+        }
+        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks), salvage};
         // What a writer of plain LAS must not repeat.
         std::erase_if(header_.vlrs,
                       [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });
@@ -137,13 +147,15 @@ class LasSource final : public PointSource {
 
     /// The specification wants colour spread over 16 bits, many writers store 0-255: told by blocks of points
     /// spread evenly over the file. Nothing is converted, so a wrong guess loses nothing.
-    Result<uint32_t> sample_color_bits(const Attribute& color) const {
+    Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
         constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
         const uint64_t step = std::max<uint64_t>(kBlockPoints, header_.points / kBlocks);
         std::vector<std::byte> record(schema_.stride);
         for (uint64_t first = 0; first < header_.points; first += step) {
             const uint64_t count = std::min(kBlockPoints, header_.points - first);
-            LUCARNE_ASSIGN(const auto raw, raw_records(first, count));
+            auto records = raw_records(first, count);
+            if (!records && salvage) continue;
+            LUCARNE_ASSIGN(const auto raw, std::move(records));
             for (size_t at = 0; at < raw.size(); at += header_.record_length) {
                 las::decode(header_, &raw[at], 1, record.data(), schema_.stride);
                 for (size_t c = 0; c < 3; ++c)
@@ -160,10 +172,10 @@ class LasSource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions&) {
-    LUCARNE_ASSIGN(auto header, las::read_header(*file));
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto header, las::read_header(*file, options.salvage));
     auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
-    LUCARNE_TRY(source->describe());
+    LUCARNE_TRY(source->describe(options.salvage));
     return source;
 }
 

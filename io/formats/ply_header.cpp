@@ -32,8 +32,9 @@ constexpr std::array<TypeWords, 8> kTypes = {{{ScalarType::i8, "char", "int8"},
 
 class HeaderParser {
  public:
-    explicit HeaderParser(const std::shared_ptr<const InputFile>& file)
+    HeaderParser(const std::shared_ptr<const InputFile>& file, bool salvage)
         : name_(file->path().string()),
+          salvage_(salvage),
           size_(file->size()),
           input_(file, 0, std::min<uint64_t>(size_, kMostHeaderBytes)) {}
 
@@ -113,7 +114,7 @@ class HeaderParser {
         if (e.name.empty() || !count) return wrong("an element needs a name and a count");
         if (header_.elements.size() == kMostElements) return wrong("there are too many elements");
         // Every entry has at least one byte.
-        if (*count > size_)
+        if (*count > size_ && !salvage_)
             return wrong(
                 fmt::format("{} entries of '{}' are promised in a file of {} bytes", *count, e.name, size_));
         e.count = *count;
@@ -162,6 +163,7 @@ class HeaderParser {
     }
 
     std::string name_;
+    bool salvage_;
     uint64_t size_;
     BufferedInput input_;
     Header header_;
@@ -180,8 +182,8 @@ uint64_t Element::record_bytes() const {
     return bytes;
 }
 
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file) {
-    return HeaderParser(file).parse();
+Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage) {
+    return HeaderParser(file, salvage).parse();
 }
 
 std::optional<ScalarType> type_of(std::string_view word) {

@@ -20,14 +20,20 @@ namespace {
 
 using namespace ply;
 
+struct Salvage {
+    bool wanted = false;
+    bool open_end = false;  ///< the file's last line lacks its end
+};
+
 class PlyReader final : public PointReader {
  public:
     PlyReader(std::shared_ptr<const InputFile> file, const ply::Header& header, const ply::Layout& layout,
-              uint64_t offset)
+              uint64_t offset, Salvage salvage)
         : end_(file->size()),
           input_(std::move(file), offset, end_),
           header_(header),
           layout_(layout),
+          salvage_(salvage),
           left_(header.vertices().count),
           packed_(layout.packed_bytes) {}
 
@@ -42,18 +48,43 @@ class PlyReader final : public PointReader {
                 LUCARNE_TRY(read_fixed(batch, wanted));
                 continue;
             }
-            if (text)
-                LUCARNE_TRY(parse_line());
-            else
-                LUCARNE_TRY(walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data()));
+            const uint64_t before = input_.position();
+            auto done =
+                text ? parse_line()
+                     : walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data());
+            if (salvage_.wanted) {
+                LUCARNE_ASSIGN(const bool good, salvaged(std::move(done), text, before));
+                if (!good) continue;
+            } else if (!done) {
+                return tl::unexpected(std::move(done).error());
+            }
             take_point(packed_.data(), batch);
         }
         batch.bytes.resize(batch.count * stride);
         return batch.count;
     }
     uint64_t dropped() const override { return dropped_; }
+    Losses losses() const override {
+        Losses losses = PointReader::losses();
+        add_losses(losses, lost_);
+        return losses;
+    }
 
  private:
+    /// Whether the vertex was read; else it, or where nothing more can be read all that are left, are lost.
+    Result<bool> salvaged(Result<void> done, bool text, uint64_t before) {
+        if (!done && done.error().kind != ErrorKind::input_rejected)
+            return tl::unexpected(std::move(done).error());
+        const bool at_end = input_.position() >= end_;
+        // Nobody knows how the last line went on where others are missing behind it.
+        const bool cut = text && at_end && left_ > 1 && salvage_.open_end;
+        if (done && !cut) return true;
+        const bool only_this = text && !at_end && input_.position() > before;
+        add_loss(lost_, only_this ? lost::damaged : lost::cut_off, only_this ? 1 : left_);
+        left_ -= only_this ? 1 : left_;
+        return false;
+    }
+
     void take_point(const std::byte* packed, PointBatch& batch) {
         const bool good = layout_.unpack(packed, batch.bytes.data() + batch.count * layout_.schema.stride);
         batch.count += good;
@@ -105,20 +136,25 @@ class PlyReader final : public PointReader {
     BufferedInput input_;
     const ply::Header& header_;
     const ply::Layout& layout_;
+    Salvage salvage_;
     uint64_t left_, dropped_ = 0;
+    Losses lost_;
     std::vector<std::byte> packed_;  ///< a vertex put together from words or around lists
 };
 
 class PlySource final : public PointSource {
  public:
-    PlySource(std::shared_ptr<const InputFile> file, ply::Header header)
+    PlySource(std::shared_ptr<const InputFile> file, ply::Header header, bool salvage, bool mesh)
         : file_(std::move(file)),
           header_(std::move(header)),
+          salvage_{salvage, false},
+          mesh_(mesh),
           layout_(ply::make_layout(header_.vertices().properties, header_.encoding)) {}
 
     Result<void> describe() {
         const std::string name = file_->path().string();
         LUCARNE_TRY(find_vertices());
+        note_what_is_not_read();
         constexpr std::array kEncodings = {"ASCII", "binary little endian", "binary big endian"};
         info_.path = name;
         info_.format = fmt::format("PLY, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
@@ -139,7 +175,7 @@ class PlySource final : public PointSource {
     const Schema& schema() const override { return layout_.schema; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override {
-        return std::make_unique<PlyReader>(file_, header_, layout_, vertices_offset_);
+        return std::make_unique<PlyReader>(file_, header_, layout_, vertices_offset_, salvage_);
     }
     bool seekable() const override { return fixed(); }
     Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
@@ -167,11 +203,41 @@ class PlySource final : public PointSource {
             header_.encoding == ply::Encoding::ascii ? 2 * vertices.properties.size() : layout_.packed_bytes;
         const uint64_t there =
             (file_->size() - vertices_offset_ + (header_.encoding == ply::Encoding::ascii)) / least;
+        if (salvage_.wanted) return clamp_vertices(there);
         if (vertices.count > there)
             return rejected(file_->path().string(),
                             fmt::format("is truncated: its header promises {} points, at most {} are there",
                                         vertices.count, there));
         return {};
+    }
+
+    Result<void> clamp_vertices(uint64_t there) {
+        uint64_t& count = header_.elements[header_.vertex].count;
+        if (count > there) {
+            add_loss(info_.losses, lost::cut_off, count - there);
+            count = there;
+        }
+        std::array<std::byte, 1> last{};
+        LUCARNE_TRY(file_->read_at(file_->size() - 1, last));
+        salvage_.open_end = static_cast<char>(last[0]) != header_.line_end;
+        return {};
+    }
+
+    void note_what_is_not_read() {
+        for (size_t e = 0; e < header_.elements.size(); ++e) {
+            const auto& element = header_.elements[e];
+            if (mesh_ && element.name == "face") continue;
+            if (e != header_.vertex) {
+                add_loss(info_.losses, fmt::format("entries of '{}', which are not read", printable(element.name)),
+                         element.count);
+                continue;
+            }
+            for (const auto& p : element.properties)
+                if (p.count)
+                    add_loss(info_.losses,
+                             fmt::format("lists '{}' of points, which are not read", printable(p.name)),
+                             element.count);
+        }
     }
 
     /// Full intensity is told by the largest component of a sample: spread over the file where vertices can
@@ -187,7 +253,7 @@ class PlySource final : public PointSource {
         double largest = 0;
         for (uint64_t first = 0; first < count; first += step) {
             PlyReader reader(file_, header_, layout_,
-                             vertices_offset_ + (fixed() ? first * layout_.packed_bytes : 0));
+                             vertices_offset_ + (fixed() ? first * layout_.packed_bytes : 0), salvage_);
             PointBatch batch;
             const auto points =
                 static_cast<size_t>(fixed() ? std::min(kBlockPoints, count - first) : kBlocks * kBlockPoints);
@@ -205,15 +271,17 @@ class PlySource final : public PointSource {
 
     std::shared_ptr<const InputFile> file_;
     ply::Header header_;
+    Salvage salvage_;
+    bool mesh_;  ///< faces are read as well
     ply::Layout layout_;
     uint64_t vertices_offset_ = 0;
     ScanInfo info_;
 };
 
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
-    LUCARNE_ASSIGN(auto header, ply::read_header(file));
-    const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
-    auto source = std::make_unique<PlySource>(file, header);
+    LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
+    const bool mesh = ply::has_faces(header) && !options.mesh.vertices && !options.salvage;
+    auto source = std::make_unique<PlySource>(file, header, options.salvage, mesh);
     LUCARNE_TRY(source->describe());
     if (mesh) return ply::open_mesh(file, header, std::move(source), options);
     return source;

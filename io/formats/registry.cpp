@@ -15,7 +15,7 @@ namespace {
 // Text comes last: other formats are text as well.
 auto formats() {
     return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(),
-                      &pcd_format(), &ptx_format(), &obj_format(), &text_format()};
+                      &pcd_format(), &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
 }
 
 constexpr size_t kHeadBytes = 4096;
@@ -51,15 +51,20 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
     if (copc::is_name(path))
         return bad_arguments(path.string(), "COPC is an octree, and this is none yet",
                              "convert to a cache and export that");
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string extension = lower_extension(path);
     for (const Format* format : formats())
         if (format->create && format->extension == extension)
             return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
-                         "end the name in .las, .laz, .ply or .pcd");
+                         "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz");
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return extension;
 }
 
 std::string printable(std::string_view name) {

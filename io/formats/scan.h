@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -24,13 +25,31 @@ struct ReadOptions {
     std::string columns;
     bool quiet = false;  ///< guesses are not said again: the file was open before
     MeshOptions mesh;
+    /// What can be read of a damaged or truncated file is; `losses` of its info and readers say what is not.
+    bool salvage = false;
 };
+/// What of the options changes the points; empty where all are as usual. Kept with a cache, so that one that
+/// was made with others is not taken for it.
+std::string options_text(const ReadOptions& options);
 
 /// Opens a scan file; its format is told by its content, by its name only among text files whose rows look the
 /// same. Reads the header only, and a sample of a text file.
 /// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
                                                const ReadOptions& options = {});
+
+/// What one pass over all points tells.
+struct Contents {
+    uint64_t points = 0;
+    glm::dvec3 min{0.0}, max{0.0};  ///< where there are points
+    Losses losses;                  ///< those of the info as well
+};
+/// Makes that pass. `progress` is told how many more points were seen.
+Result<Contents> survey(const PointSource& scan, const std::function<void(uint64_t)>& progress = {});
+
+/// The error of a file that was rejected with these options, and what to do: how many points --salvage would
+/// read, which is found out by reading it.
+Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options);
 
 struct WriteOptions {
     bool overwrite = false;
@@ -39,7 +58,7 @@ struct WriteOptions {
     std::optional<std::array<glm::dvec3, 2>> bounds;
 };
 
-/// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd); the file appears when `finish`
+/// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file appears when `finish`
 /// succeeds. `info.details` of a source of the same format restores its header (version, point format, VLRs,
 /// types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,

@@ -156,10 +156,8 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                        return resumable(work, "scan", ScanFacts::restore,
                                         [&] { return scan_inputs(inputs, memory.batch_bytes); });
                    }));
-    if (facts.dropped)
-        log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
-
-    const SourceHeader bare = header_of(inputs, facts, inputs.schema());
+    SourceHeader bare = header_of(inputs, facts, inputs.schema());
+    bare.options = options.read_options;
     if (options.listener) options.listener->scanned(bare);
     LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
                        return resumable(
@@ -195,10 +193,15 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     report.stages.back().cpu_seconds -= encoding;
     report.stages.push_back({"encode", 0, encoding});
     LUCARNE_TRY(
-        timed(report, "write", [&] { return writer.finish(header_of(inputs, facts, loader.schema())); }));
+        timed(report, "write", [&] {
+            SourceHeader header = bare;
+            header.schema = loader.schema();
+            return writer.finish(header);
+        }));
     work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;
+    report.inputs = facts.inputs;
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();
     report.bytes = writer.bytes();

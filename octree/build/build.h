@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/scan.h"
 #include "io/points.h"
 #include "octree/build/workspace.h"
 #include "octree/normals/normals.h"
@@ -29,6 +30,7 @@ struct BuildOptions {
     std::filesystem::path temp_folder;    ///< for scratch files; empty: the output's folder
     bool overwrite = false;
     Resume resume = Resume::never;
+    std::string read_options;  ///< how the inputs were opened (io::options_text), to be kept with the cache
     uint32_t neighbours = 16;  ///< for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
     BuildListener* listener = nullptr;  ///< told how it goes on (build_listener.h); outlives the build
@@ -41,7 +43,8 @@ struct StageTime {
 
 struct BuildReport {
     uint64_t points = 0;
-    uint64_t dropped = 0;  ///< points with a coordinate that is no number
+    uint64_t dropped = 0;  ///< points that were read and left out: those without a number for a coordinate, invalid ones
+    std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
     std::vector<StageTime> stages;
 };

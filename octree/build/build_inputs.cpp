@@ -35,7 +35,10 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
     SourceHeader header{
         .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
     header.metres_per_unit = inputs.source(0).info().metres_per_unit;
-    for (size_t i = 0; i < inputs.inputs(); ++i) header.scans.push_back(inputs.source(i).info());
+    for (size_t i = 0; i < inputs.inputs(); ++i) {
+        header.scans.push_back(inputs.source(i).info());
+        if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;
+    }
     return header;
 }
 

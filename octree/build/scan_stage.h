@@ -1,5 +1,6 @@
 #pragma once
 
+#include "io/formats/scan.h"
 #include "octree/build/chunk_store.h"
 #include "octree/build/unify.h"
 
@@ -10,6 +11,7 @@ struct ScanFacts {
     uint64_t points = 0, dropped = 0;
     glm::dvec3 min{0.0}, max{0.0};
     Cube root;  ///< the smallest cube at `min` that holds every point
+    std::vector<io::Contents> inputs;
 
     std::vector<std::byte> save() const;
     static Result<ScanFacts> restore(std::span<const std::byte> record);
@@ -21,7 +23,7 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max);
 /// A pass over the points of all inputs, in the unified schema, input after input.
 Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
 
-/// Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
+/// Says what each input lost. Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
 Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes);
 
 }  // namespace lucarne::octree

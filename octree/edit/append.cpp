@@ -108,7 +108,10 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     header.min = glm::min(before.min, facts.min);
     header.max = glm::max(before.max, facts.max);
     header.points = before.points + facts.points;
-    for (size_t i = 1; i < inputs.inputs(); ++i) header.scans.push_back(inputs.source(i).info());
+    for (size_t i = 1; i < inputs.inputs(); ++i) {
+        header.scans.push_back(inputs.source(i).info());
+        header.scans.back().losses = facts.inputs[i].losses;
+    }
     return header;
 }
 
@@ -128,8 +131,6 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     }
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
-    if (facts.dropped)
-        log::warn("{} points have a coordinate that is no number and were dropped", facts.dropped);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
     change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);
@@ -137,6 +138,7 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     LUCARNE_ASSIGN(EditReport report, rewrite(std::move(opened), change, options));
     report.added = facts.points;
     report.dropped = facts.dropped;
+    report.inputs.assign(facts.inputs.begin() + 1, facts.inputs.end());  // the cache is the first
     return report;
 }
 

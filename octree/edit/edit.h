@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/points.h"
+#include "io/formats/scan.h"
 #include "octree/normals/normals.h"
 
 namespace lucarne::octree {
@@ -25,7 +25,8 @@ struct Selection {
 
 struct EditReport {
     uint64_t added = 0, removed = 0, points = 0;
-    uint64_t dropped = 0;  ///< of what was added: points with a coordinate that is no number
+    uint64_t dropped = 0;              ///< of what was added, as in BuildReport
+    std::vector<io::Contents> inputs;  ///< of what was added
     uint64_t rewritten_points = 0, kept_nodes = 0, nodes = 0, bytes = 0;
 };
 

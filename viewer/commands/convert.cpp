@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "octree/normals/normals.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
+#include "viewer/describe.h"
 #include "viewer/input.h"
 #include "viewer/scan_list.h"
 
@@ -56,6 +59,7 @@ class ClosedScan final : public io::PointSource {
             return reader_->read(batch, most);
         }
         uint64_t dropped() const override { return reader_->dropped(); }
+        io::Losses losses() const override { return reader_->losses(); }
 
      private:
         std::unique_ptr<io::PointSource> scan_;
@@ -75,16 +79,33 @@ class ClosedScan final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report) {
+/// What each input holds, and what all of them lost.
+struct Summary {
+    nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
+    io::Losses losses;
+
+    Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents) {
+        for (size_t i = 0; i < std::min(scans.size(), contents.size()); ++i) {
+            inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i]));
+            io::add_losses(losses, contents[i].losses);
+        }
+    }
+    std::string text() const { return losses.empty() ? "" : "; left out: " + losses_text(losses); }
+};
+
+Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report,
+                          const Summary& summary) {
     nlohmann::json stages = nlohmann::json::array();
     for (const auto& stage : report.stages)
         stages.push_back(
             {{"name", stage.name}, {"wall_seconds", stage.wall_seconds}, {"cpu_seconds", stage.cpu_seconds}});
     const nlohmann::json root{{"points", report.points}, {"dropped", report.dropped},
                               {"nodes", report.nodes},   {"chunks", report.chunks},
-                              {"bytes", report.bytes},   {"stages", std::move(stages)}};
+                              {"bytes", report.bytes},   {"stages", std::move(stages)},
+                              {"left_out", losses_json(summary.losses)},
+                              {"inputs", summary.inputs}};
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(root.dump(2) + "\n"));
+    LUCARNE_TRY(file.append(root.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
     return file.commit();
 }
 
@@ -98,8 +119,8 @@ Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
         if (scan) {
             scans.push_back(std::move(*scan));
             ++i;
-        } else if (!aside.take(scan.error(), options.inputs)) {
-            return tl::unexpected(std::move(scan).error());
+        } else {
+            LUCARNE_TRY(aside.take(std::move(scan).error(), options.inputs));
         }
     }
     if (scans.empty()) return rejected("convert", "none of the inputs can be read");
@@ -109,13 +130,15 @@ Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
 /// Builds from what opens, and once more without an input that turns out broken on the way: the first stage
 /// reads all of them.
 template <class Build>
-auto build_of_the_sound(ConvertOptions& options, SetAside& aside, const Build& build) -> decltype(build()) {
+auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, const Build& build)
+    -> decltype(build()) {
     for (;;) {
-        LUCARNE_ASSIGN(const Scans scans, open_scans(options, aside));
+        LUCARNE_ASSIGN(scans, open_scans(options, aside));
         options.build.inputs.clear();
         for (const auto& scan : scans) options.build.inputs.push_back(scan.get());
         auto done = build();
-        if (done || !aside.take(done.error(), options.inputs)) return done;
+        if (done) return done;
+        LUCARNE_TRY(aside.take(std::move(done).error(), options.inputs));
     }
 }
 
@@ -123,12 +146,13 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     const auto& build = options.build;
     const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
                                    build.neighbours};
-    LUCARNE_ASSIGN(const auto report, build_of_the_sound(options, aside, [&] {
+    Scans scans;
+    LUCARNE_ASSIGN(const auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
                    }));
-    log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed",
+    log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed{}",
               build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
-              report.nodes);
+              report.nodes, Summary(build.inputs, report.inputs).text());
     if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
     return aside.result(build.output.string());
 }
@@ -139,19 +163,22 @@ Result<void> convert(ConvertOptions options) {
     if (!options.append) LUCARNE_TRY(check_output(build.output, build.overwrite));
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
     LUCARNE_ASSIGN(options.inputs, expand_folders(options.inputs));
-    SetAside aside(options.inputs.size());
+    SetAside aside(options.inputs.size(), options.read);
+    build.read_options = io::options_text(options.read);
     if (options.append) return append(std::move(options), aside);
+    Scans scans;
     LUCARNE_ASSIGN(const auto report,
-                   build_of_the_sound(options, aside, [&] { return octree::build_cache(build); }));
+                   build_of_the_sound(options, aside, scans, [&] { return octree::build_cache(build); }));
     double cpu = 0, wall = 0;
     for (const auto& stage : report.stages) {
         log::info("{:<8}{:8.2f} s, {:8.2f} CPU-s", stage.name, stage.wall_seconds, stage.cpu_seconds);
         cpu += stage.cpu_seconds;
         wall += stage.wall_seconds;
     }
-    log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s)", build.output.string(),
-              report.points, report.nodes, bytes_text(report.bytes), wall, cpu);
-    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report));
+    const Summary summary(build.inputs, report.inputs);
+    log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
+              report.points, report.nodes, bytes_text(report.bytes), wall, cpu, summary.text());
+    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary));
     return aside.result(build.output.string());
 }
 

@@ -46,7 +46,7 @@ void add_export(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
     auto* command = app.add_subcommand("export", "Write a cache back to a scan file, losing nothing");
     command->add_option("cache", options->cache, "The cache (or COPC file) to read")->required()->type_name("CACHE");
-    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz or .ply")
+    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         ->required()
         ->type_name("FILE");
     command->add_flag("--normals", options->content.normals, "Write the estimated normals as well");

@@ -1,6 +1,8 @@
 #include <cstdio>
-#include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,10 +11,13 @@
 #include "io/core/file.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
+#include "io/core/progress.h"
 #include "octree/cache.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
+#include "viewer/describe.h"
 #include "viewer/input.h"
+#include "viewer/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -20,45 +25,16 @@ namespace {
 using json = nlohmann::ordered_json;
 
 struct Options {
-    std::filesystem::path input;
+    std::vector<std::string> inputs;
     io::ReadOptions read;
+    bool quick = false;
     std::string json_file;
     bool overwrite = false;
 };
 
-json vector_json(const glm::dvec3& v) {
-    return json::array({v.x, v.y, v.z});
-}
-
-json attributes_json(const io::Schema& schema) {
-    json list = json::array();
-    for (const auto& a : schema.attributes)
-        list.push_back({{"name", a.name}, {"type", io::scalar_name(a.type)}, {"components", a.components}});
-    return list;
-}
-
 /// File names need not be UTF-8: what is not becomes U+FFFD.
 std::string text_of(const json& value, int indent = -1) {
     return value.dump(indent, ' ', false, json::error_handler_t::replace);
-}
-
-json describe_scan(const io::PointSource& scan) {
-    const auto& info = scan.info();
-    json stations = json::array();
-    for (const auto& s : info.stations)
-        stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
-    json described = {{"kind", "scan"},
-                      {"format", info.format},
-                      {"declared_points", info.declared_points},
-                      {"bytes_per_point", scan.schema().stride},
-                      {"metres_per_unit", info.metres_per_unit},
-                      {"stations", std::move(stations)},
-                      {"attributes", attributes_json(scan.schema())}};
-    // What a file of several scans says of each, and its images, which are not read (E57); of a mesh.
-    const json details = json::parse(info.details, nullptr, false);
-    for (const char* list : {"scans", "images", "mesh"})
-        if (details.is_object() && details.contains(list)) described[list] = details[list];
-    return described;
 }
 
 json describe_octree(const octree::NodeSource& cache, const char* kind) {
@@ -72,7 +48,12 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
     }
     json scans = json::array();
     for (const auto& scan : header.scans)
-        scans.push_back({{"path", scan.path}, {"format", scan.format}, {"stations", scan.stations.size()}});
+        scans.push_back({{"path", scan.path},
+                         {"format", scan.format},
+                         {"coordinate_system", scan.coordinate_system},
+                         {"epsg", scan.epsg ? json(scan.epsg) : json()},
+                         {"stations", scan.stations.size()},
+                         {"left_out", losses_json(scan.losses)}});
     return {{"kind", kind},
             {"points", header.points},
             {"nodes", cache.nodes().size()},
@@ -81,32 +62,64 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
             {"max", vector_json(header.max)},
             {"root_size", header.root.size},
             {"bytes_per_point", header.schema.stride},
+            {"unit", unit_name(header.metres_per_unit)},
             {"metres_per_unit", header.metres_per_unit},
             {"attributes", attributes_json(header.schema)},
             {"scans", std::move(scans)}};
 }
 
-Result<void> info(const Options& options) {
-    json described;
-    if (octree::is_octree(options.input)) {
-        LUCARNE_ASSIGN(const auto source, octree::open_octree(options.input));
-        described = describe_octree(*source, octree::is_cache(options.input) ? "cache" : "copc");
-    } else {
-        LUCARNE_ASSIGN(const auto scan, io::open_scan(options.input, options.read));
-        described = describe_scan(*scan);
-    }
+Result<json> describe_scan(const std::string& path, const Options& options) {
+    constexpr uint64_t kLong = 20'000'000;  // points: some seconds
+    LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
+    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr);
+    std::optional<Progress> progress;
+    const uint64_t declared = scan->info().declared_points;
+    if (declared > kLong) progress.emplace("looking through", declared, "points");
+    LUCARNE_ASSIGN(const auto contents, io::survey(*scan, [&](uint64_t points) {
+                       if (progress) progress->add(points);
+                   }));
+    return scan_json(scan->info(), scan->schema(), &contents);
+}
+
+Result<json> describe(const std::string& path, const Options& options) {
+    if (!octree::is_octree(path)) return describe_scan(path, options);
+    LUCARNE_ASSIGN(const auto source, octree::open_octree(path));
+    return describe_octree(*source, octree::is_cache(path) ? "cache" : "copc");
+}
+
+void print(const json& described) {
     for (const auto& [name, value] : described.items()) {
         if (!value.is_array() || value.empty() || !value[0].is_object()) {
-            fmt::print("{:<17}{}\n", name, value.is_string() ? value.get<std::string>() : text_of(value));
+            fmt::print("{:<17} {}\n", name, value.is_string() ? value.get<std::string>() : text_of(value));
             continue;
         }
         fmt::print("{}\n", name);
         for (const auto& item : value) fmt::print("    {}\n", text_of(item));
     }
-    if (options.json_file.empty()) return {};
-    LUCARNE_ASSIGN(auto file, OutputFile::create(options.json_file, options.overwrite));
-    LUCARNE_TRY(file.append(text_of(described, 2) + "\n"));
-    return file.commit();
+}
+
+Result<void> info(const Options& options) {
+    LUCARNE_ASSIGN(const auto inputs, expand_folders(options.inputs));
+    const bool several = inputs.size() > 1;
+    SetAside aside(inputs.size(), options.read);
+    json all = json::array();
+    for (const std::string& input : inputs) {
+        auto described = describe(input, options);
+        if (described) {
+            if (!all.empty()) fmt::print("\n");
+            print(*described);
+            all.push_back(std::move(*described));
+        } else {
+            auto only = std::vector{input};
+            LUCARNE_TRY(aside.take(std::move(described).error(), only));
+        }
+    }
+    if (!options.json_file.empty()) {
+        LUCARNE_ASSIGN(auto file, OutputFile::create(options.json_file, options.overwrite));
+        LUCARNE_TRY(file.append(text_of(several ? all : all[0], 2) + "\n"));
+        LUCARNE_TRY(file.commit());
+    }
+    return aside.result("info", "cannot be read");
 }
 
 }  // namespace
@@ -114,9 +127,15 @@ Result<void> info(const Options& options) {
 void add_info(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
     auto* command = app.add_subcommand("info", "Say what a cache or a scan holds");
-    command->add_option("input", options->input, "A cache or any scan file")->required()->type_name("INPUT");
+    command
+        ->add_option("inputs", options->inputs,
+                     "Caches, scan files, folders of them. A broken one of several is left out")
+        ->required()
+        ->type_name("INPUT");
+    command->add_flag("--quick", options->quick,
+                      "Do not read the points of scans: no bounds, and what was left out as far as it is known");
     add_read_options(*command, options->read);
-    command->add_option("--json", options->json_file, "Write it there as well, for machines")
+    command->add_option("--json", options->json_file, "Write it there as well, for machines: an object, of several inputs a list")
         ->type_name("FILE");
     command->add_flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
     command->callback([options, &chosen] { chosen = [options] { return info(*options); }; });

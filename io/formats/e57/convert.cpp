@@ -175,7 +175,7 @@ void write_colors(const Scan& scan, const ScanLayout& layout, const RecordReader
 
 }  // namespace
 
-size_t convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
+Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
                      const RecordReader& reader, size_t count, std::byte* to) {
     std::array<Column, 3> p;
     Column states;
@@ -185,9 +185,11 @@ size_t convert_block(const Schema& schema, const Scan& scan, const ScanLayout& l
     Kept kept;
     kept.stride = schema.stride;
     kept.to = to;
+    size_t invalid = 0;
     for (size_t i = 0; i < count; ++i) {
-        const bool good =
-            usable(p[0][i]) && usable(p[1][i]) && usable(p[2][i]) && (!layout.invalid || states[i] == 0);
+        const bool valid = !layout.invalid || states[i] == 0;
+        const bool good = valid && usable(p[0][i]) && usable(p[1][i]) && usable(p[2][i]);
+        invalid += !valid;
         kept.rows[kept.count] = static_cast<uint16_t>(i);
         kept.count += good;
     }
@@ -195,7 +197,7 @@ size_t convert_block(const Schema& schema, const Scan& scan, const ScanLayout& l
     if (schema.find(names::color)) write_colors(scan, layout, reader, kept);
     if (schema.find(names::normal)) write_normals(schema, scan, layout, reader, count, kept);
     for (const Target& target : layout.targets) write_target(scan, reader, target, kept);
-    return kept.count;
+    return {kept.count, invalid};
 }
 
 }  // namespace lucarne::io::e57

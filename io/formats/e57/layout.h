@@ -39,8 +39,11 @@ struct Layout {
 Result<Layout> make_layout(const std::string& file, const Document& document);
 
 /// Writes the block that `reader` holds behind one another at `to`, without the points that are invalid or
-/// not finite; returns how many were written.
-size_t convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
+/// not finite.
+struct Converted {
+    size_t kept = 0, invalid = 0;
+};
+Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
                      const RecordReader& reader, size_t count, std::byte* to);
 
 }  // namespace lucarne::io::e57

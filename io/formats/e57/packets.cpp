@@ -26,7 +26,7 @@ uint64_t record_bits(const Scan& scan) {
 }  // namespace
 
 Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
-                             const Scan& scan) {
+                             const Scan& scan, bool salvage) {
     const std::string name = file->path().string();
     const auto wrong = [&](const std::string& why) {
         return rejected(name, fmt::format("has a section of points at {} that {}", scan.section, why));
@@ -37,7 +37,9 @@ Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const
     PageInput input(file, section.begin, section.begin + kSectionHeaderBytes);
     LUCARNE_ASSIGN(const auto raw, input.peek(kSectionHeaderBytes));
     if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is none");
-    const auto bytes = load<uint64_t>(&raw[8]), data = load<uint64_t>(&raw[16]);
+    auto bytes = load<uint64_t>(&raw[8]);
+    const auto data = load<uint64_t>(&raw[16]);
+    if (salvage) bytes = std::min(bytes, header.bytes - section.begin);
     if (bytes < kSectionHeaderBytes || bytes > header.bytes - section.begin)
         return wrong("reaches beyond its end");
     section.end = section.begin + bytes;
@@ -46,7 +48,7 @@ Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const
         return wrong("has its packets elsewhere");
     const uint64_t bits = record_bits(scan), there = 8 * (section.end - section.data);
     const uint64_t most = bits == 0 ? kMostConstant : there / bits;
-    if (scan.records > most)
+    if (scan.records > most && (!salvage || bits == 0))
         return wrong(fmt::format("promises {} points, at most {} are there", scan.records, most));
     return section;
 }
@@ -72,9 +74,10 @@ void unpack_bits(const std::byte* bytes, uint64_t first, unsigned bits, size_t c
 }
 
 RecordReader::RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section,
-                           const Scan& scan)
-    : input_(file, section.data, section.end),
+                           const Scan& scan, bool salvage)
+    : input_(file, section.data, section.end, salvage),
       left_(scan.records),
+      salvage_(salvage),
       streams_(scan.fields.size()),
       columns_(scan.fields.size() * kBlockRecords) {
     for (size_t i = 0; i < streams_.size(); ++i) {
@@ -102,10 +105,13 @@ size_t RecordReader::held() const {
 Result<size_t> RecordReader::read(size_t most) {
     const uint64_t wanted = std::min<uint64_t>({most, kBlockRecords, left_});
     uint64_t count = complete(wanted);
-    while (count < wanted && input_.left() >= kPacketHeaderBytes) {
-        LUCARNE_TRY(next_data_packet());
+    while (count < wanted && !broken_ && input_.left() >= kPacketHeaderBytes) {
+        auto packet = next_data_packet();
+        broken_ = salvage_ && !packet && packet.error().kind == ErrorKind::input_rejected;
+        if (!packet && !broken_) return tl::unexpected(std::move(packet).error());
         count = complete(wanted);
     }
+    if (count == 0 && salvage_) return size_t{0};
     if (count == 0 && wanted > 0)
         return rejected(input_.path(), fmt::format("ends early: {} points of a scan are missing", left_));
     for (size_t i = 0; i < streams_.size(); ++i) {

@@ -14,9 +14,10 @@ struct Section {
 };
 
 /// Reads and checks the header of a scan's section. Errors: no such section, one that reaches beyond the
-/// file, more records than its bits can hold (kMostConstant where they take none).
+/// file, more records than its bits can hold (kMostConstant where they take none). With `salvage` what lies
+/// beyond the file is left out.
 Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
-                             const Scan& scan);
+                             const Scan& scan, bool salvage = false);
 
 inline constexpr uint64_t kMostConstant = uint64_t{1} << 16;
 inline constexpr size_t kBlockRecords = 1024;
@@ -25,11 +26,13 @@ inline constexpr size_t kBlockRecords = 1024;
 /// streams runs ahead of others, at most kMostAhead bytes.
 class RecordReader {
  public:
-    RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section, const Scan& scan);
+    RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section, const Scan& scan,
+                 bool salvage = false);
 
     /// Reads up to min(most, kBlockRecords) records; 0 at the end of the scan. Errors: damaged packets, and
-    /// packets that end before the records do.
+    /// packets that end before the records do; with `salvage` the scan ends before them.
     Result<size_t> read(size_t most);
+    uint64_t left() const { return left_; }  ///< records that were not read
     /// The values of a field in the last block: the bits of a float, or an integer less its minimum.
     const uint64_t* column(size_t field) const { return &columns_[field * kBlockRecords]; }
 
@@ -53,6 +56,7 @@ class RecordReader {
 
     PageInput input_;
     uint64_t left_;
+    bool salvage_, broken_ = false;
     std::vector<Stream> streams_;
     std::vector<uint64_t> columns_;
 };

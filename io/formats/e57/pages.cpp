@@ -17,17 +17,18 @@ constexpr uint64_t kPagesAtOnce = 256;
 
 }  // namespace
 
-Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file) {
+Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file, bool salvage) {
     const std::string name = file->path().string();
     std::array<std::byte, kHeaderBytes> raw{};
     LUCARNE_TRY(file->read_at(0, raw));
     const auto major = load<uint32_t>(&raw[8]), minor = load<uint32_t>(&raw[12]);
-    const auto physical_bytes = load<uint64_t>(&raw[16]);
+    auto physical_bytes = load<uint64_t>(&raw[16]);
     const auto xml_offset = load<uint64_t>(&raw[24]), xml_bytes = load<uint64_t>(&raw[32]);
     const auto page_bytes = load<uint64_t>(&raw[40]);
     if (major != 1) return rejected(name, fmt::format("is E57 {}.{}; only 1.x is known", major, minor));
     if (page_bytes != kPageBytes)
         return rejected(name, fmt::format("has pages of {} bytes instead of {}", page_bytes, kPageBytes));
+    if (salvage && physical_bytes > file->size()) physical_bytes = file->size() / kPageBytes * kPageBytes;
     if (physical_bytes > file->size())
         return rejected(name, fmt::format("is truncated: its header promises {} bytes, {} are there",
                                           physical_bytes, file->size()));
@@ -57,10 +58,11 @@ Result<uint64_t> logical_offset(const std::string& file, const FileHeader& heade
     return page * kPageContent + within;
 }
 
-PageInput::PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end)
+PageInput::PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end, bool salvage)
     : file_(std::move(file)),
       next_page_(begin / kPageContent),
       end_(end),
+      salvage_(salvage),
       skip_first_(static_cast<size_t>(begin % kPageContent)) {
     if (end <= begin) return;
     const uint64_t pages = (end + kPageContent - 1) / kPageContent - next_page_;
@@ -94,6 +96,13 @@ Result<void> PageInput::fill() {
         const auto content = read.subspan(static_cast<size_t>(page * kPageBytes), kPageContent);
         const auto stored = load<uint32_t>(content.data() + kPageContent);
         const uint32_t checksum = crc32c(content);
+        if (stored != __builtin_bswap32(checksum) && salvage_) {
+            next_page_ += page;
+            end_ = std::min(end_, next_page_ * kPageContent);
+            first_ += std::exchange(skip_first_, 0);
+            first_ = std::min(first_, last_);
+            return {};
+        }
         if (stored != __builtin_bswap32(checksum))
             return rejected(path(), fmt::format("is damaged: the checksum of the page at byte {} is wrong",
                                                 (next_page_ + page) * kPageBytes));

@@ -21,8 +21,8 @@ struct FileHeader {
 };
 
 /// Errors: versions and page sizes other than the standard's, a file shorter than its header says or than its
-/// XML.
-Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file);
+/// XML. With `salvage` the file may be shorter than its header says, as long as its XML is there.
+Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file, bool salvage = false);
 
 /// The logical offset of `physical`, which names `what` in errors: inside the file, not inside a checksum.
 Result<uint64_t> logical_offset(const std::string& file, const FileHeader& header, uint64_t physical,
@@ -32,7 +32,8 @@ Result<uint64_t> logical_offset(const std::string& file, const FileHeader& heade
 /// one buffer is held, no larger than the range needs.
 class PageInput {
  public:
-    PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end);
+    /// With `salvage` the range ends before the first page whose checksum is wrong.
+    PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end, bool salvage = false);
 
     /// At least `bytes` (at most kLargestPeek); fewer left in the range is an error. Valid until the next
     /// call.
@@ -49,6 +50,7 @@ class PageInput {
 
     std::shared_ptr<const InputFile> file_;
     uint64_t next_page_, end_;
+    bool salvage_;
     size_t skip_first_;  ///< bytes of the first page that lie before the range
     std::vector<std::byte> buffer_;
     size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed

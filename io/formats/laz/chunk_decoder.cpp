@@ -59,6 +59,7 @@ class PointWise {
     }
     bool failed() const { return decoder_.failed(); }
     const std::byte* end() const { return decoder_.position(); }
+    bool at_end() const { return decoder_.at_end(); }
 
  private:
     Decoder decoder_;
@@ -102,6 +103,20 @@ Result<Layers> read_layers(const std::string& file, const Compression& compressi
 }
 
 }  // namespace
+
+size_t layered_head_bytes(const Compression& compression) {
+    return record_bytes(compression) + sizeof(uint32_t) * (1 + Layered<Decoder>::layer_count(compression));
+}
+
+Result<LayeredSize> layered_size(const std::string& file, const Compression& compression,
+                                 std::span<const std::byte> head) {
+    if (head.size() < layered_head_bytes(compression)) return cut_off(file);
+    size_t at = record_bytes(compression);
+    LayeredSize size{load<uint32_t>(&head[at]), head.size()};
+    for (at += sizeof(uint32_t); at < head.size(); at += sizeof(uint32_t))
+        size.bytes += load<uint32_t>(&head[at]);
+    return size;
+}
 
 struct ChunkDecoder::State {
     std::string file;
@@ -155,6 +170,13 @@ Result<void> ChunkDecoder::decode(uint64_t count, std::byte* records) {
         state_->layered ? state_->layered->code(records) : state_->point_wise->decode(records);
     if (state_->failed()) return cut_off(state_->file);
     return {};
+}
+
+bool ChunkDecoder::ends_well() const {
+    if (state_->point_wise) return state_->point_wise->at_end();
+    const auto layers = state_->layered->layers();
+    return std::all_of(layers.begin(), layers.end(),
+                       [](const auto& layer) { return !layer.changes || layer.coder.at_end(); });
 }
 
 uint64_t ChunkDecoder::consumed() const {

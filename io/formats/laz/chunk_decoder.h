@@ -20,11 +20,23 @@ class ChunkDecoder {
     Result<void> decode(uint64_t count, std::byte* records);
     /// After the last point: how many of the bytes were the chunk.
     uint64_t consumed() const;
+    /// After the last point: whether its code ended just where the chunk does. Where it does not, something
+    /// in between was read wrongly.
+    bool ends_well() const;
 
  private:
     struct State;
     explicit ChunkDecoder(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
+
+/// What a layered chunk says of itself, in its first layered_head_bytes.
+struct LayeredSize {
+    uint64_t points = 0, bytes = 0;
+};
+size_t layered_head_bytes(const Compression& compression);
+/// Errors: `head` is cut off.
+Result<LayeredSize> layered_size(const std::string& file, const Compression& compression,
+                                 std::span<const std::byte> head);
 
 }  // namespace lucarne::io::laz

@@ -73,48 +73,81 @@ Result<std::vector<ChunkPlace>> parse_table(const InputFile& file, const las::He
     return chunks;
 }
 
-/// Chunk after chunk, decoding what does not say how long it is.
-Result<std::vector<ChunkPlace>> walk(const InputFile& file, const las::Header& header,
-                                     const Compression& compression) {
-    const std::string name = file.path().string();
-    if (compression.chunk_points == kVariableChunks)
-        return rejected(name, "has chunks of any size and no chunk table that says which");
-    if (compression.chunked) log::warn("{}: has no chunk table; its points are looked through first", name);
-    std::vector<ChunkPlace> chunks;
-    std::vector<std::byte> records;
-    uint64_t offset = header.points_offset + (compression.chunked ? kOffsetBytes : 0);
-    for (uint64_t done = 0; done < header.points;) {
-        ChunkPlace chunk{offset, 0, header.points - done};
-        if (compression.chunked) chunk.points = std::min<uint64_t>(chunk.points, compression.chunk_points);
-        const uint64_t longest = std::min(file.size() - std::min(offset, file.size()),
-                                          kLongestCode * chunk.points * header.record_length + 1024);
-        if (!compression.chunked) {
-            chunk.bytes = longest;
-        } else {
-            if (longest > kMostChunkBytes)
-                return rejected(name,
-                                fmt::format("has a chunk of {} points, too large to be read", chunk.points));
-            LUCARNE_ASSIGN(const auto bytes, read_up_to(file, offset, longest));
-            LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name, compression, chunk.points, bytes));
-            records.resize(std::min<uint64_t>(chunk.points, 1000) * header.record_length);
-            for (uint64_t left = chunk.points; left > 0;) {
-                const uint64_t part = std::min<uint64_t>(left, 1000);
-                LUCARNE_TRY(decoder.decode(part, records.data()));
-                left -= part;
-            }
-            chunk.bytes = decoder.consumed();
+/// Goes from chunk to chunk without a table: layered ones say how long they are, others are decoded.
+class Walk {
+ public:
+    Walk(const InputFile& file, const las::Header& header, const Compression& compression)
+        : file_(file), header_(header), compression_(compression), name_(file.path().string()) {}
+
+    Result<std::vector<ChunkPlace>> go(bool salvage) {
+        if (compression_.chunk_points == kVariableChunks && !compression_.layered)
+            return rejected(name_, "has chunks of any size and no chunk table that says which");
+        if (compression_.chunked)
+            log::warn("{}: has no chunk table; its points are looked through first", name_);
+        std::vector<ChunkPlace> chunks;
+        uint64_t offset = header_.points_offset + (compression_.chunked ? kOffsetBytes : 0);
+        for (uint64_t done = 0; done < header_.points;) {
+            ChunkPlace chunk{offset, 0, header_.points - done};
+            if (compression_.chunked)
+                chunk.points = std::min<uint64_t>(chunk.points, compression_.chunk_points);
+            auto measured = measure(chunk);
+            const bool sound = measured.has_value();
+            if (!sound && (!salvage || measured.error().kind != ErrorKind::input_rejected))
+                return tl::unexpected(std::move(measured).error());
+            // What comes before the cut can be read where points follow each other.
+            if (sound || (!compression_.layered && chunk.bytes > 0)) chunks.push_back(chunk);
+            if (!sound) break;
+            done += chunk.points;
+            offset += chunk.bytes;
         }
-        chunks.push_back(chunk);
-        done += chunk.points;
-        offset += chunk.bytes;
+        return chunks;
     }
-    return chunks;
-}
+
+ private:
+    /// Finds the chunk's bytes; where it is not sound, those up to the end of the file.
+    Result<void> measure(ChunkPlace& chunk) const {
+        if (compression_.layered) return measure_layers(chunk);
+        const uint64_t left = file_.size() - std::min(chunk.offset, file_.size());
+        chunk.bytes = std::min(left, kLongestCode * chunk.points * header_.record_length + 1024);
+        if (!compression_.chunked) return {};
+        if (chunk.bytes > kMostChunkBytes)
+            return rejected(name_,
+                            fmt::format("has a chunk of {} points, too large to be read", chunk.points));
+        LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, chunk.bytes));
+        LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name_, compression_, chunk.points, bytes));
+        std::vector<std::byte> records(std::min<uint64_t>(chunk.points, 1000) * header_.record_length);
+        for (uint64_t to_go = chunk.points; to_go > 0;) {
+            const uint64_t part = std::min<uint64_t>(to_go, 1000);
+            LUCARNE_TRY(decoder.decode(part, records.data()));
+            to_go -= part;
+        }
+        chunk.bytes = decoder.consumed();
+        return {};
+    }
+
+    Result<void> measure_layers(ChunkPlace& chunk) const {
+        LUCARNE_ASSIGN(const auto head, read_up_to(file_, chunk.offset, layered_head_bytes(compression_)));
+        LUCARNE_ASSIGN(const auto size, layered_size(name_, compression_, head));
+        const bool variable = compression_.chunk_points == kVariableChunks;
+        if (size.points == 0 || size.points > chunk.points || (!variable && size.points != chunk.points))
+            return rejected(name_, "has a chunk whose number of points cannot be");
+        if (size.bytes > file_.size() - chunk.offset)
+            return rejected(name_, "has compressed points that are cut off or damaged");
+        chunk.points = size.points;
+        chunk.bytes = size.bytes;
+        return {};
+    }
+
+    const InputFile& file_;
+    const las::Header& header_;
+    const Compression& compression_;
+    std::string name_;
+};
 
 }  // namespace
 
 Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
-                                            const Compression& compression) {
+                                            const Compression& compression, bool salvage) {
     if (header.points == 0) return std::vector<ChunkPlace>();
     std::vector<ChunkPlace> chunks;
     if (compression.chunked) {
@@ -124,7 +157,7 @@ Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::He
         }
     }
     if (chunks.empty()) {
-        LUCARNE_ASSIGN(chunks, walk(file, header, compression));
+        LUCARNE_ASSIGN(chunks, Walk(file, header, compression).go(salvage));
     }
     for (const ChunkPlace& chunk : chunks)
         if (chunk.bytes > kMostChunkBytes)

@@ -13,8 +13,10 @@ struct ChunkPlace {
 
 /// Where the chunks of a file are: from its chunk table, wherever a writer left it. Where there is none,
 /// point-wise files are one stream that only a walk from the start divides: `bytes` of each then reaches to
-/// the end of the points. Errors: tables that do not fit the file or its number of points.
+/// the end of the points. Errors: tables that do not fit the file or its number of points. With `salvage`
+/// chunks that are cut off or damaged, and those behind them that no table leads to, are no error: the chunks
+/// may then hold fewer points than the header promises, and the last of them may be cut off.
 Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
-                                            const Compression& compression);
+                                            const Compression& compression, bool salvage = false);
 
 }  // namespace lucarne::io::laz

@@ -33,6 +33,10 @@ Result<OpenChunk> open_chunk(const Points& points, size_t index) {
     return chunk;
 }
 
+bool ends_with_file(const Points& points, size_t index) {
+    return points.chunks[index].offset + points.chunks[index].bytes >= points.file->size();
+}
+
 /// The next `count` points of an open chunk, in records of the schema.
 Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk, uint64_t count,
                     std::byte* to) {
@@ -46,7 +50,23 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
         to += piece * schema.stride;
         count -= piece;
     }
+    if (chunk.left == 0 && points.compression.chunked && !chunk.decoder->ends_well())
+        return rejected(points.file->path().string(), "has a chunk of compressed points that is damaged");
     return {};
+}
+
+/// How many points of a damaged chunk can be trusted: where the file ends within one whose points follow each
+/// other, those before that; else none.
+Result<uint64_t> sound_points(const Points& points, size_t index) {
+    const ChunkPlace& place = points.chunks[index];
+    if (points.compression.layered || !ends_with_file(points, index)) return 0u;
+    auto chunk = open_chunk(points, index);
+    if (!chunk && chunk.error().kind == ErrorKind::input_rejected) return 0u;
+    if (!chunk) return tl::unexpected(std::move(chunk).error());
+    std::vector<std::byte> record(points.header.record_length);
+    uint64_t sound = 0;
+    while (sound < place.points && chunk->decoder->decode(1, record.data())) ++sound;
+    return sound;
 }
 
 class Reader final : public PointReader {
@@ -57,7 +77,8 @@ class Reader final : public PointReader {
           side_by_side_(std::max(1u, std::thread::hardware_concurrency())) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
-        if (taken_ == ready_.size()) LUCARNE_TRY(fill());
+        while (taken_ == ready_.size() && (large_.decoder || next_ < points_.chunks.size()))
+            LUCARNE_TRY(fill());
         const size_t count = std::min(batch_limit(schema_, most), (ready_.size() - taken_) / schema_.stride);
         const auto from = ready_.begin() + static_cast<std::ptrdiff_t>(taken_);
         batch.bytes.assign(from, from + static_cast<std::ptrdiff_t>(count * schema_.stride));
@@ -66,6 +87,7 @@ class Reader final : public PointReader {
         return count;
     }
     uint64_t dropped() const override { return 0; }
+    Losses losses() const override { return losses_; }
 
  private:
     uint64_t most_ready() const { return std::max<uint64_t>(1, kMostReadyBytes / schema_.stride); }
@@ -74,9 +96,41 @@ class Reader final : public PointReader {
         taken_ = 0;
         ready_.clear();
         if (!large_.decoder && next_ < points_.chunks.size() && points_.chunks[next_].points > most_ready()) {
-            LUCARNE_ASSIGN(large_, open_chunk(points_, next_++));
+            return begin_large();
         }
         return large_.decoder ? fill_from_large() : fill_side_by_side();
+    }
+
+    Result<void> begin_large() {
+        const size_t index = next_++;
+        uint64_t sound = points_.chunks[index].points;
+        if (points_.salvage) {
+            LUCARNE_ASSIGN(sound, sound_of_large(index));
+            lose(index, points_.chunks[index].points - sound);
+            if (sound == 0) return {};
+        }
+        LUCARNE_ASSIGN(large_, open_chunk(points_, index));
+        large_.left = sound;
+        return {};
+    }
+
+    /// It is handed out while it is decoded, so it is decoded once before to see whether it is sound.
+    Result<uint64_t> sound_of_large(size_t index) const {
+        auto chunk = open_chunk(points_, index);
+        Result<void> done = chunk ? Result<void>() : tl::unexpected(chunk.error());
+        std::vector<std::byte> records(kPiecePoints * points_.header.record_length);
+        for (uint64_t left = points_.chunks[index].points; done && left > 0;) {
+            const uint64_t piece = std::min(left, kPiecePoints);
+            done = chunk->decoder->decode(piece, records.data());
+            left -= piece;
+        }
+        if (done) return points_.chunks[index].points;
+        if (done.error().kind != ErrorKind::input_rejected) return tl::unexpected(std::move(done).error());
+        return sound_points(points_, index);
+    }
+
+    void lose(size_t index, uint64_t points) {
+        add_loss(losses_, ends_with_file(points_, index) ? lost::cut_off : lost::damaged, points);
     }
 
     Result<void> fill_from_large() {
@@ -98,20 +152,47 @@ class Reader final : public PointReader {
             count += more;
         }
         ready_.resize(count * schema_.stride);
+        std::vector<uint64_t> kept(begins.size());
         FirstError error;
         parallel_ranges(begins.size(), 1, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
-                auto chunk = open_chunk(points_, first + i);
-                Result<void> done;
-                if (chunk)
-                    done = unpack(points_, schema_, *chunk, chunk->left,
-                                  ready_.data() + begins[i] * schema_.stride);
+                const auto sound = take_chunk(first + i, ready_.data() + begins[i] * schema_.stride);
+                if (sound)
+                    kept[i] = *sound;
                 else
-                    done = tl::unexpected(chunk.error());
-                if (!done) error.report(i, std::move(done).error());
+                    error.report(i, sound.error());
             }
         });
+        if (points_.salvage) close_gaps(first, begins, kept);
         return error.result();
+    }
+
+    /// All points of a chunk, or with `salvage` those that are sound.
+    Result<uint64_t> take_chunk(size_t index, std::byte* to) const {
+        const uint64_t points = points_.chunks[index].points;
+        auto done = take_points(index, points, to);
+        if (done) return points;
+        if (!points_.salvage || done.error().kind != ErrorKind::input_rejected)
+            return tl::unexpected(std::move(done).error());
+        LUCARNE_ASSIGN(const uint64_t sound, sound_points(points_, index));
+        if (sound > 0) LUCARNE_TRY(take_points(index, sound, to));
+        return sound;
+    }
+    Result<void> take_points(size_t index, uint64_t count, std::byte* to) const {
+        LUCARNE_ASSIGN(auto chunk, open_chunk(points_, index));
+        return unpack(points_, schema_, chunk, count, to);
+    }
+
+    /// `kept` of the points that begin at `begins` stay.
+    void close_gaps(size_t first, const std::vector<uint64_t>& begins, const std::vector<uint64_t>& kept) {
+        size_t end = 0;
+        for (size_t i = 0; i < begins.size(); ++i) {
+            const size_t bytes = kept[i] * schema_.stride;
+            std::memmove(ready_.data() + end, ready_.data() + begins[i] * schema_.stride, bytes);
+            end += bytes;
+            lose(first + i, points_.chunks[first + i].points - kept[i]);
+        }
+        ready_.resize(end);
     }
 
     const Points& points_;
@@ -121,6 +202,7 @@ class Reader final : public PointReader {
     OpenChunk large_;
     std::vector<std::byte> ready_;
     size_t taken_ = 0;
+    Losses losses_;
 };
 
 }  // namespace

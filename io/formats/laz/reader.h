@@ -12,6 +12,7 @@ struct Points {
     las::Header header;
     Compression compression;
     std::vector<ChunkPlace> chunks;
+    bool salvage = false;  ///< a chunk that is damaged is a loss and no error
 };
 
 /// The first `count` points of chunk number `index`, or all it has, as records of a LAS file.

@@ -122,15 +122,18 @@ class CompressedReader final : public PointReader {
 
 class PcdSource final : public PointSource {
  public:
-    PcdSource(std::shared_ptr<const InputFile> file, Header header)
-        : file_(std::move(file)), header_(std::move(header)), layout_(pcd::make_layout(header_)) {}
+    PcdSource(std::shared_ptr<const InputFile> file, Header header, bool salvage)
+        : file_(std::move(file)), header_(std::move(header)), salvage_(salvage), layout_(pcd::make_layout(header_)) {}
 
     Result<void> describe() {
+        const bool organised = header_.height > 1;
         LUCARNE_TRY(check_size());
         if (header_.encoding == Encoding::compressed) LUCARNE_TRY(find_fields());
-        if (header_.encoding == Encoding::ascii)
+        if (header_.encoding == Encoding::ascii) {
+            layout_.rows.salvage = salvage_;
             sections_.push_back(
                 {header_.data_offset, file_->size(), layout_.rows, header_.points, header_.data_line});
+        }
         constexpr std::array kEncodings = {"ascii", "binary", "binary_compressed"};
         info_.path = file_->path().string();
         info_.format = fmt::format("PCD, {}", kEncodings[static_cast<size_t>(header_.encoding)]);
@@ -145,7 +148,7 @@ class PcdSource final : public PointSource {
         const auto& v = header_.viewpoint;
         const glm::dvec3 viewpoint(v[0], v[1], v[2]);
         // Who writes a cloud without a grid often leaves the viewpoint at its default.
-        if (info_.stations.empty() && (header_.height > 1 || viewpoint != glm::dvec3(0.0)))
+        if (info_.stations.empty() && (organised || viewpoint != glm::dvec3(0.0)))
             info_.stations.push_back({1, viewpoint});
         info_.details = nlohmann::json{{"format", "pcd"},
                                        {"color_bits", info_.color_bits},
@@ -183,17 +186,28 @@ class PcdSource final : public PointSource {
 
  private:
     /// That the file can hold what its header promises.
-    Result<void> check_size() const {
+    Result<void> check_size() {
         const uint64_t there = file_->size() - header_.data_offset;
         uint64_t most = there / layout_.binary.packed_bytes;
         // A value of text takes two bytes with what separates it, but for the very last; three bytes of LZF
         // become at most 264.
         if (header_.encoding == Encoding::ascii) most = (there + 1) / (2 * layout_.rows.fields.size());
         if (header_.encoding == Encoding::compressed) most = there * 88 / layout_.binary.packed_bytes;
-        if (header_.points <= most) return {};
+        if (header_.points <= most || (salvage_ && header_.encoding != Encoding::binary)) return {};
+        if (salvage_) {
+            keep_first(most);
+            return {};
+        }
         return rejected(file_->path().string(),
                         fmt::format("is truncated: its header promises {} points, at most {} are there",
                                     header_.points, most));
+    }
+
+    /// The others are cut off.
+    void keep_first(uint64_t points) {
+        add_loss(info_.losses, lost::cut_off, header_.points - points);
+        header_.points = header_.width = points;
+        header_.height = 1;
     }
 
     /// Decodes all once, so that it is known to be whole.
@@ -204,11 +218,12 @@ class PcdSource final : public PointSource {
         const auto packed = load<uint32_t>(sizes.data()), unpacked = load<uint32_t>(sizes.data() + 4);
         compressed_.begin = header_.data_offset + sizes.size();
         compressed_.end = compressed_.begin + packed;
+        if (salvage_) compressed_.end = std::min(compressed_.end, file_->size());
         if (compressed_.end > file_->size())
             return rejected(file_->path().string(),
                             fmt::format("is truncated: it promises {} compressed bytes, {} are there", packed,
                                         file_->size() - compressed_.begin));
-        if (unpacked != header_.points * layout_.binary.packed_bytes)
+        if (header_.points > UINT32_MAX || unpacked != header_.points * layout_.binary.packed_bytes)
             return rejected(file_->path().string(),
                             fmt::format("its {} points take {} bytes, {} are compressed", header_.points,
                                         header_.points * layout_.binary.packed_bytes, unpacked));
@@ -218,7 +233,14 @@ class PcdSource final : public PointSource {
             compressed_.fields.push_back(input.state());
             for (uint64_t left = header_.points * field.bytes(); left > 0;) {
                 const auto bytes = static_cast<size_t>(std::min<uint64_t>(left, passed.size()));
-                LUCARNE_TRY(input.read(std::span(passed).first(bytes)));
+                auto done = input.read(std::span(passed).first(bytes));
+                if (!done && salvage_ && &field == &header_.fields.back()) {
+                    // The other fields are whole: points as far as this one goes.
+                    const uint64_t before = header_.points * (layout_.binary.packed_bytes - field.bytes());
+                    keep_first((input.state().decoded - before) / field.bytes());
+                    return {};
+                }
+                LUCARNE_TRY(std::move(done));
                 left -= bytes;
             }
         }
@@ -227,15 +249,17 @@ class PcdSource final : public PointSource {
 
     std::shared_ptr<const InputFile> file_;
     Header header_;
+    bool salvage_;
     Layout layout_;
     std::vector<text::Section> sections_;
     Compressed compressed_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> file,
+                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
-    auto source = std::make_unique<PcdSource>(std::move(file), std::move(header));
+    auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);
     LUCARNE_TRY(source->describe());
     return source;
 }

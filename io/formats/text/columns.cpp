@@ -184,6 +184,12 @@ class LayoutMaker {
     }
 
     RowLayout make() {
+        if (std::all_of(kAxes.begin(), kAxes.end(), [&](std::string_view axis) {
+                return columns_[index_of(columns_, axis)].type == ScalarType::f32;
+            })) {
+            layout_.schema.position = PositionType::f32;
+            layout_.schema.stride = static_cast<uint32_t>(position_bytes(PositionType::f32));
+        }
         for (size_t i = 0; i < columns_.size(); ++i) {
             Field& field = layout_.fields[i];
             field.name = columns_[i].name;
@@ -226,7 +232,9 @@ class LayoutMaker {
     }
     ScalarType color_type() const {
         const auto given = stated(kColor);
-        if (given == ScalarType::u8 || given == ScalarType::u16 || given == ScalarType::f32) return *given;
+        if (given == ScalarType::u8 || given == ScalarType::u16 || given == ScalarType::f32 ||
+            given == ScalarType::f64)
+            return *given;
         for (const auto member : kColor)
             if (const Look look = look_at(sample_, index_of(columns_, member)); look.numbers && !look.whole)
                 return ScalarType::f32;
@@ -290,6 +298,18 @@ Result<std::vector<Column>> parse_columns(std::string_view text) {
         columns.push_back(std::move(column));
     }
     if (!has_axes(columns)) return wrong("x, y and z have to be among them, each once");
+    return columns;
+}
+
+std::optional<std::vector<Column>> written_columns(std::string_view text) {
+    std::vector<Column> columns;
+    for (const auto cell : split(text, ',')) {
+        const size_t colon = cell.rfind(':');  // names may have one
+        const auto type = colon == cell.npos ? std::nullopt : scalar_type(cell.substr(colon + 1));
+        if (!type || colon == 0) return std::nullopt;
+        columns.push_back({printable(cell.substr(0, colon)), type});
+    }
+    if (!has_axes(columns)) return std::nullopt;
     return columns;
 }
 

@@ -27,6 +27,8 @@ struct Sample {
 
 /// "x,y,z,-,intensity:f32,r,g,b". Errors (bad arguments): an unknown type, x, y or z missing or named twice.
 Result<std::vector<Column>> parse_columns(std::string_view text);
+/// The same as our writer says it: every column with its type, under its own name. Nothing where it is not so.
+std::optional<std::vector<Column>> written_columns(std::string_view text);
 
 /// The cells of a line.
 std::vector<std::string_view> split(std::string_view line, char separator);
@@ -38,7 +40,8 @@ std::optional<std::vector<Column>> named_columns(const std::vector<std::string_v
 /// x, y, z; then what looks like unit normals, colours, an intensity.
 std::vector<Column> guess_columns(const Sample& sample);
 
-/// The records that these columns make. Types that are not stated follow from the sample: whole numbers and
+/// The records that these columns make: positions double, or float where all three are said to be. Types that
+/// are not stated follow from the sample: whole numbers and
 /// colours as small as they are, normals float, anything else double.
 RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample);
 

@@ -20,7 +20,7 @@ namespace {
 using namespace text;
 
 struct Scan {
-    uint64_t rows = 0;
+    uint64_t rows = 0;  ///< that it promises
     RowLayout::Pose pose;
     glm::dvec3 station{0.0};
     uint64_t begin = 0, end = 0, first_line = 0;
@@ -48,8 +48,10 @@ std::optional<uint64_t> whole(std::string_view line) {
 /// Finds the scans: the whole file is passed over, because only its lines tell where the next scan begins.
 class ScanFinder {
  public:
-    ScanFinder(std::shared_ptr<const InputFile> file, char line_end)
-        : size_(file->size()), line_end_(line_end), input_(std::move(file), 0, size_) {}
+    /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that can
+    /// be made out is left out.
+    ScanFinder(std::shared_ptr<const InputFile> file, char line_end, bool salvage)
+        : size_(file->size()), line_end_(line_end), salvage_(salvage), input_(std::move(file), 0, size_) {}
 
     Result<std::vector<Scan>> find() {
         std::vector<Scan> scans;
@@ -57,11 +59,17 @@ class ScanFinder {
             LUCARNE_ASSIGN(const bool more, skip_blank_lines());
             if (!more) return scans;
             if (scans.size() + 1 >= kMostStations) return wrong("has too many scans");
-            LUCARNE_ASSIGN(Scan scan, read_header());
-            LUCARNE_TRY(pass_rows(scan));
-            scans.push_back(scan);
+            auto scan = read_scan();
+            if (!scan && salvage_ && scan.error().kind == ErrorKind::input_rejected) {
+                if (cut_off_) scans.push_back(*cut_off_);
+                lost_ = !cut_off_;
+                if (!scans.empty()) return scans;
+            }
+            if (!scan) return tl::unexpected(std::move(scan).error());
+            scans.push_back(*scan);
         }
     }
+    bool lost_a_scan() const { return lost_; }
 
  private:
     tl::unexpected<Error> wrong(std::string why) const { return rejected(input_.path(), std::move(why)); }
@@ -87,6 +95,17 @@ class ScanFinder {
         return *line;
     }
 
+    Result<Scan> read_scan() {
+        LUCARNE_ASSIGN(Scan scan, read_header());
+        auto done = pass_rows(scan);
+        if (!done && input_.position() >= size_ && (scan.values == 3 || scan.values == 4 || scan.values == 7)) {
+            scan.end = size_;
+            cut_off_ = scan;
+        }
+        if (!done) return tl::unexpected(std::move(done).error());
+        return scan;
+    }
+
     Result<Scan> read_header() {
         Scan scan;
         std::array<uint64_t, 2> size{};
@@ -96,7 +115,8 @@ class ScanFinder {
             if (!value) return wrong_line("the number of columns or rows of a scan");
             extent = *value;
         }
-        if (size[0] > size_ || size[1] > size_ || (size[0] > 0 && size[1] > size_ / size[0]))
+        const uint64_t most = salvage_ ? UINT32_MAX : size_;
+        if (size[0] > most || size[1] > most || (size[0] > 0 && size[1] > most / size[0]))
             return wrong(fmt::format("is truncated: the scan before line {} has {} x {} points", line_,
                                      size[0], size[1]));
         scan.rows = size[0] * size[1];
@@ -178,14 +198,18 @@ class ScanFinder {
 
     uint64_t size_;
     char line_end_;
+    bool salvage_, lost_ = false;
     BufferedInput input_;
     uint64_t line_ = 0;  ///< the last that was read, from 1
+    std::optional<Scan> cut_off_;
 };
 
 class PtxSource final : public PointSource {
  public:
-    PtxSource(std::shared_ptr<const InputFile> file, const std::vector<Scan>& scans, char line_end)
-        : file_(std::move(file)) {
+    PtxSource(std::shared_ptr<const InputFile> file, const std::vector<Scan>& scans, char line_end,
+              bool salvage, bool lost_a_scan)
+        : file_(std::move(file)), salvage_(salvage) {
+        add_loss(info_.losses, lost::cut_scan, lost_a_scan);
         info_.path = file_->path().string();
         info_.format = fmt::format("PTX, {} {}", scans.size(), scans.size() == 1 ? "scan" : "scans");
         info_.file_bytes = file_->size();
@@ -214,6 +238,7 @@ class PtxSource final : public PointSource {
         layout.schema = schema_;
         layout.line_end = line_end;
         layout.zero_is_missed = true;
+        layout.salvage = salvage_;
         layout.pose = scan.pose;
         layout.blank.resize(schema_.stride);
         if (const Attribute* source = schema_.find(names::point_source_id))
@@ -236,17 +261,21 @@ class PtxSource final : public PointSource {
     }
 
     std::shared_ptr<const InputFile> file_;
+    bool salvage_;
     Schema schema_;
     std::vector<Section> sections_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> file, const ReadOptions&) {
+Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> file,
+                                              const ReadOptions& options) {
     std::array<std::byte, 4096> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));
     const char line_end = line_end_of({reinterpret_cast<const char*>(bytes.data()), got});
-    LUCARNE_ASSIGN(const auto scans, ScanFinder(file, line_end).find());
-    return std::make_unique<PtxSource>(std::move(file), scans, line_end);
+    ScanFinder finder(file, line_end, options.salvage);
+    LUCARNE_ASSIGN(const auto scans, finder.find());
+    return std::make_unique<PtxSource>(std::move(file), scans, line_end, options.salvage,
+                                       finder.lost_a_scan());
 }
 
 /// Two counts and three numbers.

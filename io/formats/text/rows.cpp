@@ -94,15 +94,19 @@ class RowParser {
                 std::memset(record, 0, stride);
             else
                 std::memcpy(record, layout_.blank.data(), stride);
+            piece_.ends_in_point = false;
             if (!parse_row(record)) {
                 failed_ = at_;
                 at_ = line;
                 if (!odd_row(line)) break;
                 continue;
             }
-            if (finish_point(record)) {
+            if (is_missed()) {
+                ++piece_.missed;
+            } else if (finish_point(record)) {
                 record += stride;
                 ++piece_.points;
+                piece_.ends_in_point = true;
             } else {
                 ++piece_.dropped;
             }
@@ -224,9 +228,12 @@ class RowParser {
         return true;
     }
 
+    bool is_missed() const {
+        return layout_.zero_is_missed && position_ == std::array<double, 3>{};
+    }
+
     bool finish_point(std::byte* record) {
         glm::dvec3 p(position_[0], position_[1], position_[2]);
-        if (layout_.zero_is_missed && p == glm::dvec3(0.0)) return false;
         if (layout_.pose) p = layout_.pose->axes * p + layout_.pose->origin;
         for (int axis = 0; axis < 3; ++axis) {
             if (!usable(p[axis])) return false;
@@ -249,7 +256,7 @@ class RowParser {
         if (const auto count = parse_number<uint64_t>(first); layout_.has_counts && alone && count) {
             if (*count > std::numeric_limits<uint64_t>::max() - piece_.promised) {
                 piece_.problem = fmt::format("the count {} cannot be", first);
-                return false;
+                return false;  // also with `salvage`
             }
             piece_.promised += *count;
             at_ = last + 1;
@@ -257,7 +264,12 @@ class RowParser {
         }
         if (layout_.zero_is_missed && parse_number<double>(first) == 0.0 &&
             parse_number<double>(next_word(rest)) == 0.0 && parse_number<double>(next_word(rest)) == 0.0) {
-            ++piece_.dropped;
+            ++piece_.missed;
+            at_ = last + 1;
+            return true;
+        }
+        if (layout_.salvage) {
+            ++piece_.bad;
             at_ = last + 1;
             return true;
         }
@@ -331,7 +343,15 @@ class RowReader final : public PointReader {
         }
         return batch.count;
     }
-    uint64_t dropped() const override { return dropped_; }
+    uint64_t dropped() const override { return dropped_ + missed_; }
+    Losses losses() const override {
+        Losses losses;
+        add_loss(losses, "rays that met nothing", missed_);
+        add_loss(losses, lost::no_number, dropped_);
+        add_loss(losses, lost::damaged, bad_);
+        add_loss(losses, lost::cut_off, cut_off_);
+        return losses;
+    }
 
  private:
     void begin_section() {
@@ -345,8 +365,10 @@ class RowReader final : public PointReader {
         if (!piece.problem.empty())
             return rejected(file_->path().string(),
                             fmt::format("cannot be read from line {} on: {}", line_ - 1, piece.problem));
-        rows_ += piece.points + piece.dropped;
+        rows_ += rows_of(piece);
         dropped_ += piece.dropped;
+        missed_ += piece.missed;
+        bad_ += piece.bad;
         if (piece.promised > std::numeric_limits<uint64_t>::max() - promised_)
             return rejected(file_->path().string(), "its counts of points are too large");
         promised_ += piece.promised;
@@ -355,10 +377,18 @@ class RowReader final : public PointReader {
         return {};
     }
 
+    static uint64_t rows_of(const Piece& piece) {
+        return piece.points + piece.dropped + piece.missed + piece.bad;
+    }
+
     /// Fewer rows than promised are an error. More than a count says do no harm.
-    Result<void> end_section() const {
+    Result<void> end_section() {
         const auto& rows = sections_[section_].rows;
         const uint64_t promised = rows.value_or(promised_);
+        if (sections_[section_].layout.salvage) {
+            cut_off_ += promised > rows_ ? promised - rows_ : 0;
+            return {};
+        }
         if (rows && rows_ > *rows)
             return rejected(file_->path().string(),
                             fmt::format("has {} rows, its header promises {} points", rows_, *rows));
@@ -387,13 +417,27 @@ class RowReader final : public PointReader {
         cuts[kPieces] = lines_bytes_;
         parallel_ranges(kPieces, 1, [&](size_t i, size_t) {
             Piece& piece = pieces_[i];
-            piece.points = piece.dropped = piece.lines = piece.promised = 0;
+            piece.points = piece.dropped = piece.lines = piece.promised = piece.missed = piece.bad = 0;
+            piece.ends_in_point = false;
             piece.problem.clear();
             if (cuts[i] < cuts[i + 1])
                 parse_rows(layout, std::string_view(text_).substr(cuts[i], cuts[i + 1] - cuts[i]), piece);
         });
         next_ = taken_ = 0;
+        if (layout.salvage && open_end_) distrust_last();
         return true;
+    }
+
+    /// The file ends within a line. Where rows are missing behind it, nobody knows how it went on.
+    void distrust_last() {
+        uint64_t rows = rows_, promised = promised_;
+        Piece* last = nullptr;
+        for (Piece& piece : pieces_) {
+            rows += rows_of(piece);
+            promised += std::min(piece.promised, std::numeric_limits<uint64_t>::max() - promised);
+            if (piece.lines > 0) last = &piece;
+        }
+        if (last && last->ends_in_point && rows < sections_[section_].rows.value_or(promised)) --last->points;
     }
 
     /// Whole lines from the start of text_ on, `lines_bytes_` of them; behind them what is carried over.
@@ -408,7 +452,8 @@ class RowReader final : public PointReader {
             file_->read_some(at_, std::as_writable_bytes(std::span(text_)).subspan(carried_, wanted)));
         if (got < wanted) return failed(file_->path().string(), "became shorter while it was read");
         at_ += got;
-        if (at_ >= section.end && text_.back() != section.layout.line_end) text_ += section.layout.line_end;
+        open_end_ = at_ >= section.end && text_.back() != section.layout.line_end;
+        if (open_end_) text_ += section.layout.line_end;
         const size_t last = text_.rfind(section.layout.line_end);
         lines_bytes_ = last == std::string::npos ? 0 : last + 1;
         carried_ = text_.size() - lines_bytes_;
@@ -420,7 +465,9 @@ class RowReader final : public PointReader {
     const std::vector<Section>& sections_;
     size_t section_ = 0;
     uint64_t at_ = 0;  ///< in the file: what is read next
-    uint64_t line_ = 1, rows_ = 0, promised_ = 0, dropped_ = 0;
+    uint64_t line_ = 1, rows_ = 0, promised_ = 0;
+    uint64_t dropped_ = 0, missed_ = 0, bad_ = 0, cut_off_ = 0;
+    bool open_end_ = false;  ///< the last line has no end
     std::string text_;
     size_t lines_bytes_ = 0, carried_ = 0;
     std::vector<Piece> pieces_;

@@ -41,6 +41,7 @@ struct RowLayout {
         glm::dmat3 axes{1.0};  ///< world = axes * p + origin
         glm::dvec3 origin{0.0};
     };
+    bool salvage = false;  ///< rows that do not fit are counted and passed over
     std::optional<Pose> pose;
     std::vector<std::byte> blank;  ///< the record before a row is parsed; empty: zeros
 };
@@ -57,6 +58,9 @@ struct Section {
 struct Piece {
     std::vector<std::byte> records;  ///< the first `points` of them count
     uint64_t points = 0, dropped = 0, lines = 0;
+    uint64_t missed = 0;         ///< rays that met nothing
+    uint64_t bad = 0;            ///< rows that do not fit, with `salvage`
+    bool ends_in_point = false;  ///< the last line is the last point
     uint64_t promised = 0;  ///< by counts
     std::string problem;    ///< of line `lines`, where something is wrong; nothing behind it is parsed
 };
@@ -65,8 +69,8 @@ struct Piece {
 void parse_rows(const RowLayout& layout, std::string_view text, Piece& piece);
 
 /// A pass over sections. They share the schema and outlive the reader. Holds a window of 4 MiB of text and
-/// its records, however large the file is. Errors: a row that does not fit the layout, fewer rows than
-/// promised.
+/// its records, however large the file is. Errors, but for layouts with `salvage`: a row that does not fit the
+/// layout, fewer rows than promised.
 std::unique_ptr<PointReader> read_rows(std::shared_ptr<const InputFile> file,
                                        const std::vector<Section>& sections);
 

@@ -7,10 +7,12 @@
 
 #include "io/core/log.h"
 #include "io/formats/format.h"
+#include "io/formats/remarks.h"
 #include "io/formats/text.h"
 #include "io/formats/text/columns.h"
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
+#include "io/formats/text/writer.h"
 
 namespace lucarne::io {
 namespace {
@@ -18,12 +20,14 @@ namespace {
 using namespace text;
 
 constexpr size_t kHeadBytes = size_t{64} << 10;
+constexpr std::string_view kColumnsRemark = "lucarne columns ";
 
 /// What stands before the rows.
 struct Head {
     uint64_t begin = 0, line = 1;  ///< of the count, else of the first row; lines count from 1
     std::optional<uint64_t> count;
     std::string header, comment;  ///< the last of each
+    std::vector<std::string> remarks;  ///< comments of our own
     RowLayout layout;             ///< separator and line end
     size_t columns = 0;
 };
@@ -33,11 +37,9 @@ char separator_of(std::string_view line) {
     return line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
 }
 
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return extension;
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
 }
 
 class TextSource final : public PointSource {
@@ -60,11 +62,15 @@ class TextSource final : public PointSource {
         section.layout.separator = head_.layout.separator;
         section.layout.line_end = head_.layout.line_end;
         section.layout.has_counts = pts;
+        section.layout.salvage = options.salvage;
         sections_.push_back(std::move(section));
-        fill_info(pts ? "PTS" : "XYZ", columns, sampled);
+        LUCARNE_ASSIGN(const auto remarks, remarks_of(file_->path().string(), head_.remarks));
+        info_.stations = remarks.stations;
+        info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
+        fill_info(pts ? "PTS" : "XYZ", columns, sampled, remarks);
         // A row takes at least two bytes a column, the last may lack its line end.
         const uint64_t most = (file_->size() - head_.begin + 1) / (2 * head_.columns);
-        if (head_.count && *head_.count > most)
+        if (head_.count && *head_.count > most && !options.salvage)
             return refuse(
                 fmt::format("is truncated: it promises {} points, at most {} are there", *head_.count, most));
         return {};
@@ -96,7 +102,11 @@ class TextSource final : public PointSource {
             while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
             if (line.empty()) continue;
             if (is_comment(line)) {
-                head_.comment = line.substr(std::min(line.find_first_not_of("#%/ \t"), line.size()));
+                const auto comment = line.substr(std::min(line.find_first_not_of("#%/ \t"), line.size()));
+                if (comment.starts_with("lucarne "))
+                    head_.remarks.emplace_back(trimmed(comment));
+                else
+                    head_.comment = comment;
                 continue;
             }
             const char separator = separator_of(line);
@@ -131,6 +141,11 @@ class TextSource final : public PointSource {
                                                  file_->path().string(), sample.columns));
             return columns;
         }
+        for (std::string_view remark : head_.remarks) {
+            if (!remark.starts_with(kColumnsRemark)) continue;
+            auto columns = written_columns(remark.substr(kColumnsRemark.size()));
+            if (columns && columns->size() == sample.columns) return std::move(*columns);
+        }
         for (const bool is_header : {true, false}) {
             const std::string& text = is_header ? head_.header : head_.comment;
             auto words = split(text, head_.layout.separator);
@@ -153,14 +168,19 @@ class TextSource final : public PointSource {
         return columns;
     }
 
-    void fill_info(std::string_view name, const std::vector<Column>& columns, const Sampled& sampled) {
+    void fill_info(std::string_view name, const std::vector<Column>& columns, const Sampled& sampled,
+                   const Remarks& remarks) {
         info_.path = file_->path().string();
         info_.format = fmt::format("{}, columns {}", name, columns_text(columns));
         info_.declared_points = head_.count.value_or(sampled.rows);
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
-        if (schema().find(names::color)) info_.color_bits = color_bits(columns, sampled.sample);
+        if (schema().find(names::color))
+            info_.color_bits = remarks.color_bits.value_or(color_bits(columns, sampled.sample));
         info_.details = nlohmann::json{{"color_bits", info_.color_bits}}.dump();
+        for (size_t i = 0; i < columns.size(); ++i)
+            if (sections_[0].layout.fields[i].kind == Field::Kind::skip)
+                add_loss(info_.losses, "columns that are left out", 1);
     }
 
     std::shared_ptr<const InputFile> file_;
@@ -186,7 +206,16 @@ bool is_text(std::string_view head) {
 }  // namespace
 
 const Format& text_format() {
-    static constexpr Format kFormat{"XYZ", "", is_text, open_text, nullptr};
+    static constexpr Format kFormat{"XYZ", ".xyz", is_text, open_text, text::create};
+    return kFormat;
+}
+// The same to read; written with a header.
+const Format& txt_format() {
+    static constexpr Format kFormat{"TXT", ".txt", is_text, open_text, text::create};
+    return kFormat;
+}
+const Format& csv_format() {
+    static constexpr Format kFormat{"CSV", ".csv", is_text, open_text, text::create};
     return kFormat;
 }
 

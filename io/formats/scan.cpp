@@ -1,0 +1,63 @@
+#include "io/formats/scan.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+namespace lucarne::io {
+
+std::string options_text(const ReadOptions& options) {
+    std::string text;
+    if (!options.columns.empty()) text += fmt::format("--columns {}", options.columns);
+    const auto add = [&](const std::string& more) { text += (text.empty() ? "" : " ") + more; };
+    if (options.mesh.spacing > 0) add(fmt::format("--spacing {}", options.mesh.spacing));
+    if (options.mesh.samples > 0) add(fmt::format("--mesh-points {}", options.mesh.samples));
+    if (options.mesh.vertices) add("--vertices");
+    if (options.salvage) add("--salvage");
+    return text;
+}
+
+Result<Contents> survey(const PointSource& scan, const std::function<void(uint64_t)>& progress) {
+    constexpr size_t kBatchPoints = size_t{1} << 16;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const Schema& schema = scan.schema();
+    Contents contents{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
+    LUCARNE_ASSIGN(const auto reader, scan.open());
+    PointBatch batch;
+    for (;;) {
+        LUCARNE_ASSIGN(const size_t count, reader->read(batch, kBatchPoints));
+        if (count == 0) break;
+        for (size_t i = 0; i < count; ++i) {
+            const auto p = position_of(schema, &batch.bytes[i * schema.stride]);
+            contents.min = glm::min(contents.min, p);
+            contents.max = glm::max(contents.max, p);
+        }
+        contents.points += count;
+        if (progress) progress(count);
+    }
+    contents.losses = scan.info().losses;
+    add_losses(contents.losses, reader->losses());
+    return contents;
+}
+
+Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options) {
+    if (error.kind != ErrorKind::input_rejected || options.salvage || error.what != path.string()) return error;
+    ReadOptions salvaging = options;
+    salvaging.salvage = salvaging.quiet = true;
+    const auto scan = open_scan(path, salvaging);
+    if (!scan) return error;
+    const auto contents = survey(**scan);
+    if (!contents || contents->points == 0) return error;
+    // A sound file may have been rejected for what it is among others.
+    const bool damaged = std::ranges::any_of(contents->losses, [](const Loss& loss) {
+        return loss.what == lost::cut_off || loss.what == lost::damaged || loss.what == lost::cut_scan;
+    });
+    if (!damaged) return error;
+    if (!error.todo.empty()) error.todo += ", or ";
+    error.todo += fmt::format("{} points can be saved with --salvage", contents->points);
+    return error;
+}
+
+}  // namespace lucarne::io

@@ -1,0 +1,111 @@
+#include "io/formats/wkt.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <span>
+
+namespace lucarne::io {
+namespace {
+
+constexpr size_t kMostDepth = 32, kLongestName = 256;
+
+std::string_view word_before(std::string_view text, size_t bracket) {
+    size_t first = bracket;
+    while (first > 0 && ((text[first - 1] >= 'A' && text[first - 1] <= 'Z') || text[first - 1] == '_')) --first;
+    return text.substr(first, bracket - first);
+}
+
+/// Calls visit(words, place) for every bracket with the keywords around it, its own last, until that is true
+/// or brackets stand too deep.
+template <class Visit>
+void walk(std::string_view text, const Visit& visit) {
+    std::array<std::string_view, kMostDepth> stack{};
+    size_t depth = 0;
+    for (size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '"') {
+            at = text.find('"', at + 1);
+            if (at == std::string_view::npos) return;
+        } else if (c == '[' || c == '(') {
+            if (depth == kMostDepth) return;
+            stack[depth++] = word_before(text, at);
+            if (visit(std::span<const std::string_view>(stack).first(depth), at)) return;
+        } else if ((c == ']' || c == ')') && depth > 0) {
+            --depth;
+        }
+    }
+}
+
+/// What stands between the next two quotes behind `at`, which is moved behind the second.
+std::optional<std::string_view> quoted(std::string_view text, size_t& at) {
+    const size_t open = text.find('"', at);
+    const size_t close = open == text.npos ? open : text.find('"', open + 1);
+    if (close == text.npos) return std::nullopt;
+    at = close + 1;
+    return text.substr(open + 1, close - open - 1);
+}
+
+template <class T>
+T number_behind(std::string_view text, size_t at) {
+    at = text.find_first_not_of(" \t\r\n,\"", at);
+    T value{};
+    if (at != text.npos) std::from_chars(text.data() + at, text.data() + text.size(), value);
+    return value;
+}
+
+bool is_projected(std::string_view word) {
+    return word == "PROJCS" || word == "PROJCRS" || word == "PROJECTEDCRS";
+}
+bool holds_lengths(std::string_view word) {
+    return is_projected(word) || word == "LOCAL_CS" || word == "ENGCRS" || word == "ENGINEERINGCRS" ||
+           word == "GEOCCS";
+}
+bool is_horizontal(std::string_view word) {
+    return holds_lengths(word) || word == "GEOGCS" || word == "GEOGCRS" || word == "GEODCRS";
+}
+
+}  // namespace
+
+std::optional<double> wkt_metres_per_unit(std::string_view wkt) {
+    std::optional<double> found;
+    walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
+        // UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
+        const size_t depth = words.size();
+        if ((words.back() != "UNIT" && words.back() != "LENGTHUNIT") || depth < 2) return false;
+        const auto parent = words[depth - 2];
+        if (!holds_lengths(parent) && !(parent == "AXIS" && depth > 2 && holds_lengths(words[depth - 3])))
+            return false;
+        size_t at = bracket;
+        if (!quoted(wkt, at)) return false;
+        const auto metres = number_behind<double>(wkt, at);
+        if (metres > 1e-9 && metres < 1e9) found = metres;
+        return found.has_value();
+    });
+    return found;
+}
+
+CoordinateSystem wkt_system(std::string_view wkt) {
+    CoordinateSystem system;
+    uint32_t horizontal = 0;
+    walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
+        const size_t depth = words.size();
+        size_t at = bracket;
+        if (depth == 1) {
+            for (const char c : quoted(wkt, at).value_or("").substr(0, kLongestName))
+                system.name += c >= ' ' && c < 0x7f ? c : '?';
+        } else if (words.back() == "AUTHORITY" || words.back() == "ID") {
+            const bool epsg = quoted(wkt, at) == std::optional<std::string_view>("EPSG");
+            const auto code = epsg ? number_behind<uint32_t>(wkt, at) : 0;
+            if (depth == 2 && system.epsg == 0) system.epsg = code;
+            if (depth == 3 && is_horizontal(words[1]) && horizontal == 0) horizontal = code;
+        }
+        return false;
+    });
+    // The horizontal part of a system that is not compound is that of its base, in degrees.
+    const bool compound = wkt.find("COMPD_CS") != wkt.npos || wkt.find("COMPOUNDCRS") != wkt.npos;
+    if (system.epsg == 0 && compound) system.epsg = horizontal;
+    return system;
+}
+
+}  // namespace lucarne::io

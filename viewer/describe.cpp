@@ -1,0 +1,69 @@
+#include "viewer/describe.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lucarne::viewer {
+
+using json = nlohmann::ordered_json;
+
+json vector_json(const glm::dvec3& v) {
+    return json::array({v.x, v.y, v.z});
+}
+
+json attributes_json(const io::Schema& schema) {
+    json list = json::array();
+    for (const auto& a : schema.attributes)
+        list.push_back({{"name", a.name}, {"type", io::scalar_name(a.type)}, {"components", a.components}});
+    return list;
+}
+
+json losses_json(const io::Losses& losses) {
+    json list = json::array();
+    for (const auto& loss : losses) list.push_back({{"count", loss.count}, {"what", loss.what}});
+    return list;
+}
+
+std::string losses_text(const io::Losses& losses) {
+    std::string text;
+    for (const auto& loss : losses)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", loss.count, loss.what);
+    return text;
+}
+
+std::string unit_name(double metres_per_unit) {
+    // The two feet differ in the sixth digit.
+    const auto is = [&](double metres) { return std::abs(metres_per_unit / metres - 1) < 1e-7; };
+    if (is(1)) return "metre";
+    if (is(0.3048)) return "foot";
+    if (is(1200.0 / 3937.0)) return "US survey foot";
+    return fmt::format("{} m", metres_per_unit);
+}
+
+json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents) {
+    json stations = json::array();
+    for (const auto& s : info.stations)
+        stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
+    json described = {{"kind", "scan"}, {"path", info.path}, {"format", info.format}};
+    if (contents) described["points"] = contents->points;
+    described["declared_points"] = info.declared_points;
+    if (contents && contents->points > 0) {
+        described["min"] = vector_json(contents->min);
+        described["max"] = vector_json(contents->max);
+    }
+    described["bytes_per_point"] = schema.stride;
+    described["coordinate_system"] = info.coordinate_system;
+    described["epsg"] = info.epsg ? json(info.epsg) : json();
+    described["unit"] = unit_name(info.metres_per_unit);
+    described["metres_per_unit"] = info.metres_per_unit;
+    described["stations"] = std::move(stations);
+    described["attributes"] = attributes_json(schema);
+    described["left_out"] = losses_json(contents ? contents->losses : info.losses);
+    const json details = json::parse(info.details, nullptr, false);
+    for (const char* list : {"scans", "images", "mesh"})
+        if (details.is_object() && details.contains(list)) described[list] = details[list];
+    return described;
+}
+
+}  // namespace lucarne::viewer

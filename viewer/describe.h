@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "io/formats/scan.h"
+
+// What `info` and `convert` say of scans, as JSON.
+namespace lucarne::viewer {
+
+nlohmann::ordered_json vector_json(const glm::dvec3& v);
+nlohmann::ordered_json attributes_json(const io::Schema& schema);
+
+/// Path, format, coordinate system and unit, stations, what was left out; with `contents` the points and their
+/// bounds as they were read, else as the file says. What a file of several scans says of each, and
+/// its images; of a mesh.
+nlohmann::ordered_json scan_json(const io::ScanInfo& info, const io::Schema& schema,
+                                 const io::Contents* contents);
+
+nlohmann::ordered_json losses_json(const io::Losses& losses);
+/// "12 points whose state is invalid, 3 images, which are listed but not read".
+std::string losses_text(const io::Losses& losses);
+
+/// "metre", "US survey foot"; "0.9144 m" where it has no name here.
+std::string unit_name(double metres_per_unit);
+
+}  // namespace lucarne::viewer
