@@ -278,12 +278,24 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
+Result<std::unique_ptr<PointSource>> open_mesh(const std::shared_ptr<const InputFile>& file,
+                                               const ply::Header& header, const ReadOptions& options) {
+    auto vertices = std::make_unique<PlySource>(file, header, false, true);
+    LUCARNE_TRY(vertices->describe());
+    return ply::open_mesh(file, header, std::move(vertices), options);
+}
+
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
-    LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
-    const bool mesh = ply::has_faces(header) && !options.mesh.vertices && !options.salvage;
-    auto source = std::make_unique<PlySource>(file, header, options.salvage, mesh);
+    auto header = ply::read_header(file);
+    if (header && ply::has_faces(*header) && !options.mesh.vertices) {
+        auto mesh = open_mesh(file, *header, options);
+        if (mesh || !options.salvage || mesh.error().kind != ErrorKind::input_rejected) return mesh;
+    }
+    // Of a damaged mesh the vertices.
+    if (options.salvage) header = ply::read_header(file, true);
+    if (!header) return tl::unexpected(std::move(header).error());
+    auto source = std::make_unique<PlySource>(std::move(file), std::move(*header), options.salvage, false);
     LUCARNE_TRY(source->describe());
-    if (mesh) return ply::open_mesh(file, header, std::move(source), options);
     return source;
 }
 

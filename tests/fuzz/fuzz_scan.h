@@ -5,7 +5,8 @@
 #include "io/formats/scan.h"
 #include "tests/fuzz/fuzz.h"
 
-// What every fuzzer of a scan format does: open, read to the end, write what was read in every format.
+// What every fuzzer of a scan format does: open, read to the end, write what was read in every format; and read
+// once more what can be saved of it.
 namespace lucarne::fuzz {
 
 /// A reader that still gives points after so many refuses nothing, and a few KiB may well hold millions.
@@ -18,23 +19,27 @@ inline void write_unfinished(const io::PointSource& source, std::span<const std:
     if (writer) (void)(*writer)->write(records);
 }
 
-/// Of a file of these bytes.
-inline bool scan(std::string_view bytes) {
-    const auto path = memory_file(bytes);
-    if (!path) return false;
-    const auto source = io::open_scan(*path, {"", true, {0, 2000, false}});  // few samples of a mesh
-    if (!source) return true;
+inline void read_and_write(const std::filesystem::path& path, bool salvage) {
+    const auto source = io::open_scan(path, {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
+    if (!source) return;
     const auto reader = (*source)->open();
-    if (!reader) return true;
+    if (!reader) return;
     io::PointBatch batch;
     for (size_t points = 0; points < kMostPoints; points += batch.count) {
         const auto got = (*reader)->read(batch, 1000);
         if (!got || *got == 0) break;
         if (points > 0) continue;
         const auto records = std::span<const std::byte>(batch.bytes).first(*got * (*source)->schema().stride);
-        for (const char* extension : {".las", ".laz", ".ply", ".pcd"})
+        for (const char* extension : {".las", ".laz", ".ply", ".pcd", ".csv"})
             write_unfinished(**source, records, extension);
     }
+}
+
+/// Of a file of these bytes.
+inline bool scan(std::string_view bytes) {
+    const auto path = memory_file(bytes);
+    if (!path) return false;
+    for (const bool salvage : {false, true}) read_and_write(*path, salvage);
     return true;
 }
 
