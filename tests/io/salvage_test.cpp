@@ -20,7 +20,7 @@ using testing::read_all;
 using testing::Records;
 using ::testing::HasSubstr;
 
-const ReadOptions kSalvage{"", true, true};
+const ReadOptions kSalvage{"", true, {0, 0, true}, true};
 
 uint64_t lost_points(const Losses& losses) {
     uint64_t points = 0;
@@ -55,7 +55,7 @@ std::optional<Saved> salvage(const std::filesystem::path& path) {
 
 /// Opened and read to its end as usual.
 Result<Records> read_as_usual(const std::filesystem::path& path) {
-    LUCARNE_ASSIGN(const auto source, open_scan(path, {"", true}));
+    LUCARNE_ASSIGN(const auto source, open_scan(path, {"", true, {0, 0, true}}));
     return read_all(*source);
 }
 
@@ -96,7 +96,7 @@ void cut_everywhere(const std::string& name, const std::string& bytes, const Exp
             continue;
         }
         ++rejected;
-        const Error advice = with_salvage_advice(usual.error(), path, {"", true});
+        const Error advice = with_salvage_advice(usual.error(), path, {"", true, {0, 0, true}});
         if (saved && saved->records.count > 0) {
             ASSERT_THAT(advice.line(),
                         HasSubstr(fmt::format("{} points can be saved with --salvage", saved->records.count)));
@@ -311,7 +311,7 @@ TEST(Salvage, PassesOverRowsThatMakeNoSense) {
                          "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
                          "y\nproperty float z\nend_header\n1 2 3\n4 five 6\n7 8 9\n10 11\n12 13 14\n");
     for (const char* name : {"a.xyz", "a.ply"}) {
-        const ReadOptions options{name[2] == 'x' ? "x,y,z" : "", true, true};
+        const ReadOptions options{name[2] == 'x' ? "x,y,z" : "", true, {}, true};
         const auto source = open_scan(folder / name, options);
         ASSERT_TRUE(source) << source.error().line();
         const auto contents = survey(**source);
@@ -362,9 +362,9 @@ TEST(Losses, OfOneKindAreAddedUpAndNothingIsNoLoss) {
 
 TEST(ReadOptions, ThatChangeThePointsHaveATextOfTheirOwn) {
     EXPECT_EQ(options_text({}), "");
-    EXPECT_EQ(options_text({"", true, false}), "");
-    const std::set<std::string> texts = {options_text({"x,y,z", false, false}), options_text({"", false, true}),
-                                         options_text({"x,y,z", false, true}), options_text({"z,y,x", false, true})};
+    EXPECT_EQ(options_text({"", true, {}, false}), "");
+    const std::set<std::string> texts = {options_text({"x,y,z", false, {}, false}), options_text({"", false, {}, true}),
+                                         options_text({"x,y,z", false, {}, true}), options_text({"z,y,x", false, {}, true})};
     EXPECT_EQ(texts.size(), 4u);
 }
 

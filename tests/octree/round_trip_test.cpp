@@ -78,7 +78,7 @@ Result<void> export_to(const fs::path& cache, const fs::path& to) {
 
 void expect_round_trips(const fs::path& file, const std::vector<std::string>& extensions) {
     const TemporaryFolder folder;
-    const auto scan = io::open_scan(file, {"", true});
+    const auto scan = io::open_scan(file, {"", true, {0, 0, true}});
     ASSERT_TRUE(scan) << scan.error().line();
     BuildOptions options;
     options.inputs = {scan->get()};
@@ -91,7 +91,7 @@ void expect_round_trips(const fs::path& file, const std::vector<std::string>& ex
     for (const std::string& extension : extensions) {
         const auto written = export_to(options.output, folder / ("b" + extension));
         ASSERT_TRUE(written) << extension << ": " << written.error().line();
-        const auto copy = io::open_scan(folder / ("b" + extension), {"", true});
+        const auto copy = io::open_scan(folder / ("b" + extension), {"", true, {0, 0, true}});
         ASSERT_TRUE(copy) << extension << ": " << copy.error().line();
         EXPECT_TRUE(rows_of(**copy, (*scan)->schema()) == before) << file << ' ' << extension;
         EXPECT_EQ((*copy)->info().metres_per_unit, (*scan)->info().metres_per_unit) << extension;
