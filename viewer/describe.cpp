@@ -1,8 +1,8 @@
 #include "viewer/describe.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
 
@@ -30,15 +30,6 @@ std::string losses_text(const io::Losses& losses) {
     for (const auto& loss : losses)
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", loss.count, loss.what);
     return text;
-}
-
-std::string unit_name(double metres_per_unit) {
-    // The two feet differ in the sixth digit.
-    const auto is = [&](double metres) { return std::abs(metres_per_unit / metres - 1) < 1e-7; };
-    if (is(1)) return "metre";
-    if (is(0.3048)) return "foot";
-    if (is(1200.0 / 3937.0)) return "US survey foot";
-    return fmt::format("{} m", metres_per_unit);
 }
 
 json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents) {

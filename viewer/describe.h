@@ -22,7 +22,4 @@ nlohmann::ordered_json losses_json(const io::Losses& losses);
 /// "12 points whose state is invalid, 3 images, which are listed but not read".
 std::string losses_text(const io::Losses& losses);
 
-/// "metre", "US survey foot"; "0.9144 m" where it has no name here.
-std::string unit_name(double metres_per_unit);
-
 }  // namespace lucarne::viewer

@@ -77,7 +77,7 @@ TEST_F(SalvageCommand, InfoGoesOnBehindABrokenInputAndListsTheOthers) {
     ASSERT_EQ(info.size(), 2u);
     for (const auto& scan : info) {
         EXPECT_EQ(scan["points"], points_);
-        EXPECT_EQ(scan["unit"], "metre");
+        EXPECT_EQ(scan["unit"], "m");
         EXPECT_LT(scan["min"][2], scan["max"][2]);
         EXPECT_TRUE(scan["left_out"].empty());
     }

@@ -18,6 +18,7 @@
 #include "viewer/describe.h"
 #include "viewer/input.h"
 #include "viewer/scan_list.h"
+#include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
 namespace {
