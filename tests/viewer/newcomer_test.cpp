@@ -1,0 +1,118 @@
+// A newcomer's half hour in a real window, under a small window manager, which gives focus and closes
+// politely.
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "tests/viewer/window_fixture.h"
+
+namespace lucarne {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+class Newcomer : public ViewerWindow {
+ protected:
+    void SetUp() override {
+        if (!installed("openbox")) GTEST_SKIP() << "needs openbox";
+        ViewerWindow::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        manager_.emplace("env " + display_ + "openbox --sm-disable 2>/dev/null");
+        ASSERT_TRUE(eventually([&] { return xdo("get_num_desktops").code == 0; })) << "no window manager";
+        // The desktop's dialog, as the user answers it.
+        const std::string dialog = folder_ / "zenity";
+        std::ofstream(dialog) << "#!/bin/sh\necho " << folder_ / "cornell.las"
+                              << "\n";
+        std::filesystem::permissions(dialog, std::filesystem::perms::owner_all);
+    }
+    void open_window() {
+        start_with("", "PATH=" + folder_.path().string() + ":$PATH");
+        ASSERT_TRUE(eventually([&] {
+            return xdo("getactivewindow getwindowname").output.find("nothing is open") != std::string::npos;
+        })) << "start page";
+        window_ = xdo("getactivewindow").output;
+        window_.pop_back();
+        xdo("key ctrl+o");
+        ASSERT_TRUE(eventually([&] { return xdo("search --name 'Lucarne - cornell'").code == 0; })) << log();
+    }
+    std::string at(int x, int y) const {
+        return fmt::format("mousemove --window {} {} {} sleep 0.3 ", window_, x, y);
+    }
+    void close_window() {
+        xdo("key alt+F4");
+        ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << "it does not close";
+        EXPECT_EQ(viewer_->code(), 0);
+    }
+    /// A picture that differs from another one and stays as it is.
+    std::optional<io::Image8> changed(const io::Image8& from, double by) {
+        std::optional<io::Image8> before;
+        return picture([&](const io::Image8& now) {
+            const bool still = before && difference(now, *before) < 0.2;
+            before = now;
+            return still && difference(now, from) > by;
+        });
+    }
+    std::optional<Background> manager_;
+    std::string window_;
+};
+
+TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
+    open_window();
+    ASSERT_TRUE(picture(lit)) << "open\n" << log();
+    EXPECT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "cornell.las.luc"); }));
+    xdo("key Tab");  // panels would take clicks
+    std::optional<io::Image8> seen =
+        changed(io::Image8{kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight * 3)}, 1);
+    ASSERT_TRUE(seen);
+
+    xdo(at(250, 280) + "mousedown 1 sleep 0.3 " + at(270, 290) + at(300, 300) + "mouseup 1");
+    std::optional<io::Image8> next = changed(*seen, 2);
+    ASSERT_TRUE(next) << "orbit";
+
+    xdo("key l");
+    seen = changed(*next, 1);
+    ASSERT_TRUE(seen) << "light";
+
+    xdo("key ctrl+2 key m");
+    xdo(at(200, 200) + "click 1 sleep 0.4 " + at(280, 220) + "click 1 sleep 0.4");
+    const std::string csv = folder_ / "measurements.csv";
+    ASSERT_TRUE(eventually([&] {
+        xdo("key ctrl+e sleep 0.3");
+        return std::filesystem::exists(csv);
+    })) << "measure";
+    const size_t length = bytes_of(csv).find("Distance 1,distance,length,");
+    ASSERT_NE(length, std::string::npos) << bytes_of(csv);
+    EXPECT_GT(std::stod(bytes_of(csv).substr(length + 27)), 0.1) << "metres in a box of 5.5";
+    xdo("key Escape");
+
+    xdo("key i");
+    next = changed(*seen, 1);
+    ASSERT_TRUE(next) << "clip";
+    xdo("key alt+i");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *seen) < 2; }))
+        << "and clip nothing";
+
+    xdo("key u");  // without light: a bookmark is a camera
+    next = changed(*seen, 1);
+    ASSERT_TRUE(next) << "light off";
+    xdo("key 5");
+    const auto above = changed(*next, 2);
+    ASSERT_TRUE(above) << "from the top";
+    xdo("key ctrl+b sleep 0.5");
+
+    close_window();
+    EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr("cornell.las"));
+
+    open_window();
+    ASSERT_TRUE(changed(*above, 2)) << "reopen";
+    xdo("key Tab key u");
+    EXPECT_TRUE(picture([&](const io::Image8& now) {
+        xdo("key alt+1 sleep 0.5");
+        return difference(now, *above) < 3;
+    })) << "the bookmark leads back";
+    close_window();
+}
+
+}  // namespace
+}  // namespace lucarne
