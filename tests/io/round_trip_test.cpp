@@ -14,7 +14,9 @@ using testing::read_bytes;
 using testing::TemporaryFolder;
 
 std::unique_ptr<PointSource> opened(const std::filesystem::path& path) {
-    auto source = open_scan(path);
+    ReadOptions as_points;
+    as_points.mesh.vertices = true;
+    auto source = open_scan(path, as_points);
     if (!source) ADD_FAILURE() << source.error().line();
     return source ? std::move(*source) : nullptr;
 }

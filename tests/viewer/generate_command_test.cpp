@@ -116,7 +116,7 @@ TEST_F(GenerateCommand, BadArgumentsLeaveNothingBehind) {
         EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
         EXPECT_TRUE(std::filesystem::is_empty(folder_)) << bad;
     }
-    EXPECT_EQ(lucarne("generate cornell -o " + path("a.xyz")).code, 2);
+    EXPECT_EQ(lucarne("generate cornell -o " + path("a.zyx")).code, 2);
     EXPECT_EQ(lucarne("generate cornell").code, 2);
     EXPECT_EQ(lucarne("generate cornell -o " + path("missing/a.las")).code, 1);
 }

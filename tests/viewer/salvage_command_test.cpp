@@ -58,7 +58,8 @@ TEST_F(SalvageCommand, ConvertSaysHowManyPointsItCouldSaveAndThenSavesThem) {
     const auto report = json_of(json_);
     EXPECT_EQ(report["left_out"][0]["count"], points_ - there);
     EXPECT_EQ(report["inputs"][0]["points"], there);
-    EXPECT_THAT(test::lucarne("info " + cache_).output, HasSubstr(fmt::format("\"count\":{}", points_ - there)));
+    EXPECT_THAT(test::lucarne("info " + cache_).output,
+                HasSubstr(fmt::format("\"count\":{}", points_ - there)));
 }
 
 TEST_F(SalvageCommand, OfSeveralInputsTheBrokenOneIsNamedWithWhatCouldBeSaved) {
@@ -85,15 +86,15 @@ TEST_F(SalvageCommand, InfoGoesOnBehindABrokenInputAndListsTheOthers) {
 
 TEST_F(SalvageCommand, InfoSaysWhatIsLeftOutAndWhy) {
     std::ofstream(folder_ / "a.ply") << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
-                                        "float y\nproperty float z\nelement face 1\nproperty list uchar int "
-                                        "vertex_indices\nend_header\n1 2 3\nnan 2 3\n4 5 6\n3 0 1 2\n";
+                                        "float y\nproperty float z\nelement edge 1\nproperty int vertex1\n"
+                                        "property int vertex2\nend_header\n1 2 3\nnan 2 3\n4 5 6\n0 1\n";
     ASSERT_EQ(test::lucarne("info --json " + json_ + " " + (folder_ / "a.ply")).code, 0);
     const auto info = json_of(json_);
     EXPECT_EQ(info["points"], 2);
     EXPECT_EQ(info["min"], (nlohmann::json{1, 2, 3}));
     EXPECT_EQ(info["max"], (nlohmann::json{4, 5, 6}));
     EXPECT_EQ(info["left_out"],
-              (nlohmann::json{{{"count", 1}, {"what", "entries of 'face', which are not read"}},
+              (nlohmann::json{{{"count", 1}, {"what", "entries of 'edge', which are not read"}},
                               {{"count", 1}, {"what", "points with a coordinate that is no number"}}}));
     ASSERT_EQ(test::lucarne("info --quick --overwrite --json " + json_ + " " + (folder_ / "a.ply")).code, 0);
     EXPECT_FALSE(json_of(json_).contains("min"));
@@ -104,7 +105,9 @@ TEST_F(SalvageCommand, ACacheOfOtherOptionsIsNotTakenForThatOfAScan) {
     const auto scans = octree::open_cache(whole_ + ".luc").value()->header().scans;
     EXPECT_TRUE(KeptCache(scans).find());
     EXPECT_FALSE(KeptCache(scans, "--salvage").find());
-    ASSERT_EQ(test::lucarne("convert --salvage --overwrite --normals none -o " + whole_ + ".luc " + whole_).code, 0);
+    ASSERT_EQ(
+        test::lucarne("convert --salvage --overwrite --normals none -o " + whole_ + ".luc " + whole_).code,
+        0);
     EXPECT_FALSE(KeptCache(scans).find());
     EXPECT_TRUE(KeptCache(scans, "--salvage").find());
 }
