@@ -16,7 +16,7 @@ constexpr int kPickRadius = 4;              ///< pixels
 struct Told {
     uint64_t request = 0;
     std::string engine;
-    uint64_t scene_version = UINT64_MAX;
+    uint64_t scene_version = UINT64_MAX, shader_version = 0;
 };
 
 }  // namespace
@@ -30,6 +30,8 @@ struct PictureWorker::State {
         next_source;  ///< to be drawn from instead; or nothing
     std::shared_ptr<const Picture> latest;
     Result<void> error;
+    std::optional<Error> lost;  ///< the device is; nothing is made until there is another
+    std::optional<WorkerDevice> next_device;
     gi::DeviceInfo device;
     bool stop = false;
     std::function<void()> published;
@@ -39,19 +41,27 @@ struct PictureWorker::State {
     PipelineOptions options;
     std::unique_ptr<Pipeline> pipeline;  ///< none without a source
     std::shared_ptr<const octree::NodeSource> shown;
+    std::shared_ptr<const octree::NodeSource> last_source;  ///< to be shown, also where that failed
     Told told;
+    uint64_t pictures_made = 0;
 
-    void work(const WorkerDevice& device_of, std::shared_ptr<const octree::NodeSource> source,
-              std::promise<Result<void>> started);
+    std::optional<std::promise<Result<void>>> started;  ///< until there has been a device
+
+    void work(WorkerDevice device_of);
+    Result<void> work_with(const WorkerDevice& device_of);
+    std::optional<WorkerDevice> another_device(Error why);
     Result<void> take_source(gi::Device& gl, std::shared_ptr<const octree::NodeSource> other);
-    void make_pictures(gi::Device& gl);
+    Result<void> make_pictures(gi::Device& gl);
     void publish(Result<std::shared_ptr<Picture>> made, uint64_t request);
 };
 
 namespace {
 
-Result<void> tell(Pipeline& pipeline, const PictureRequest& request, uint64_t number, Told& told) {
+Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& request, uint64_t number,
+                  Told& told) {
     if (told.request == number) return {};
+    if (told.shader_version != request.shader_version) device.reload_shaders();
+    told.shader_version = request.shader_version;
     if (told.scene_version != request.scene_version) pipeline.set_scene(request.scene);
     told.scene_version = request.scene_version;
     if (told.engine != request.engine) LUCARNE_TRY(pipeline.set_engine(request.engine));
@@ -82,6 +92,7 @@ Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipe
     picture->exposure_ev = pipeline.exposure_ev();
     picture->values = pipeline.values();
     picture->device_memory = device.memory_used();
+    picture->shader_problem = device.shader_problem();
     return picture;
 }
 
@@ -153,8 +164,9 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
     return {};
 }
 
-void PictureWorker::State::make_pictures(gi::Device& gl) {
-    uint64_t made_of = 0, number = 0;
+/// Until it is told to stop, or the device is lost (an error).
+Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
+    uint64_t made_of = 0;
     bool again = false;
     for (;;) {
         PictureRequest request;
@@ -164,49 +176,77 @@ void PictureWorker::State::make_pictures(gi::Device& gl) {
             std::unique_lock lock(mutex);
             changed.wait(
                 lock, [&] { return stop || next_source || (shown && (again || wanted_number != made_of)); });
-            if (stop) return;
+            if (stop) return {};
             other = std::exchange(next_source, std::nullopt);
+            if (other) last_source = *other;
             request = wanted;
             request_number = wanted_number;
         }
-        Result<std::shared_ptr<Picture>> made = [&]() -> Result<std::shared_ptr<Picture>> {
+        Result<std::shared_ptr<Picture>> picture = [&]() -> Result<std::shared_ptr<Picture>> {
             try {
                 if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
                 if (!shown || request_number == 0) return nullptr;
-                LUCARNE_TRY(tell(*pipeline, request, request_number, told));
+                LUCARNE_TRY(tell(gl, *pipeline, request, request_number, told));
                 return make_picture(gl, *pipeline, request);
             } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
                 return failed("picture", problem.what());
             }
         }();
-        if (made && !*made) continue;
+        if (!picture) LUCARNE_TRY(gl.check());
+        if (picture && !*picture) continue;
         made_of = request_number;
-        again = made && worth_another(request, (*made)->stats);
-        if (made) {
-            (*made)->number = ++number;
-            (*made)->request = request_number;
-            (*made)->source = shown;
+        again = picture && worth_another(request, (*picture)->stats);
+        if (picture) {
+            (*picture)->number = ++pictures_made;
+            (*picture)->request = request_number;
+            (*picture)->source = shown;
         }
-        publish(std::move(made), request_number);
+        publish(std::move(picture), request_number);
     }
 }
 
-void PictureWorker::State::work(const WorkerDevice& device_of,
-                                std::shared_ptr<const octree::NodeSource> source,
-                                std::promise<Result<void>> started) {
+/// One device's life. Errors: it is lost, or cannot be made.
+Result<void> PictureWorker::State::work_with(const WorkerDevice& device_of) {
+    Result<void> ended;
     {
         auto gl = device_of.make();
-        Result<void> ready;
-        if (!gl) ready = tl::make_unexpected(std::move(gl).error());
-        if (ready && source) ready = take_source(**gl, std::move(source));
-        const bool go = ready.has_value();
-        if (go) device = (*gl)->info();
-        started.set_value(std::move(ready));
-        if (go) make_pictures(**gl);
+        if (!gl) ended = tl::make_unexpected(std::move(gl).error());
+        if (ended && started) {
+            device = (*gl)->info();
+            std::exchange(started, std::nullopt)->set_value({});
+        }
+        if (ended) ended = make_pictures(**gl);
         pipeline.reset();  // before its device
-        shown.reset();
     }
     device_of.release();
+    return ended;
+}
+
+/// Waits for it; none: the worker has to stop.
+std::optional<WorkerDevice> PictureWorker::State::another_device(Error why) {
+    {
+        const std::lock_guard lock(mutex);
+        if (!next_source) next_source = last_source;
+        lost = std::move(why);
+    }
+    shown.reset();
+    published();
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return stop || next_device; });
+    if (stop) return std::nullopt;
+    return std::exchange(next_device, std::nullopt);
+}
+
+void PictureWorker::State::work(WorkerDevice device_of) {
+    for (;;) {
+        auto ended = work_with(device_of);
+        if (ended) break;
+        if (started) return started->set_value(std::move(ended));
+        auto next = another_device(std::move(ended).error());
+        if (!next) break;
+        device_of = std::move(*next);
+    }
+    shown.reset();
 }
 
 PictureWorker::PictureWorker() : state_(std::make_unique<State>()) {}
@@ -220,11 +260,10 @@ Result<std::unique_ptr<PictureWorker>> PictureWorker::start(WorkerDevice device,
     auto started = promise.get_future();
     worker->state_->published = std::move(published);
     worker->state_->options = options;
-    worker->state_->thread =
-        std::thread([state = worker->state_.get(), device = std::move(device), source = std::move(source),
-                     promise = std::move(promise)]() mutable {
-            state->work(device, std::move(source), std::move(promise));
-        });
+    worker->state_->started = std::move(promise);
+    if (source) worker->state_->next_source = std::move(source);
+    worker->state_->thread = std::thread(
+        [state = worker->state_.get(), device = std::move(device)]() mutable { state->work(std::move(device)); });
     LUCARNE_TRY(started.get());
     return worker;
 }
@@ -254,6 +293,20 @@ void PictureWorker::set_source(std::shared_ptr<const octree::NodeSource> source)
     {
         const std::lock_guard lock(state_->mutex);
         state_->next_source = std::move(source);
+    }
+    state_->changed.notify_all();
+}
+
+std::optional<Error> PictureWorker::lost_device() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->lost;
+}
+
+void PictureWorker::set_device(WorkerDevice device) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->next_device = std::move(device);
+        state_->lost.reset();
     }
     state_->changed.notify_all();
 }

@@ -21,6 +21,7 @@ struct PictureRequest {
     CutBudgets budgets;
     gi::Scene scene;
     uint64_t scene_version = 0;  ///< another number: the scene is another
+    uint64_t shader_version = 0; ///< another number: shader files are read again
     bool moving = false;         ///< one picture does: the next request is on its way
 };
 
@@ -41,13 +42,14 @@ struct Picture {
     FrameStats stats;
     gi::ShownValues values;      ///< what the colours stand for
     uint64_t device_memory = 0;  ///< bytes of the device's buffers
+    std::string shader_problem;  ///< gi::Device::shader_problem()
 
     /// The world point seen at a place, shares of the width and height from the top left; the nearest within
     /// a few pixels where the place itself is empty.
     std::optional<glm::dvec3> pick(const glm::dvec2& place) const;
 };
 
-/// The device a worker draws with; both are called on its thread.
+/// The device a worker draws with; both are called on its thread, `release` also where `make` failed.
 struct WorkerDevice {
     std::function<Result<std::unique_ptr<gi::Device>>()> make;
     std::function<void()> release;
@@ -58,8 +60,8 @@ struct WorkerDevice {
 /// are on their way or samples are being averaged, and then rests.
 class PictureWorker {
  public:
-    /// `published` is called on the worker's thread after each picture and each error. Without a `source`
-    /// there is nothing to make pictures of yet.
+    /// `published` is called on the worker's thread after each picture, each error and a loss of the device.
+    /// Without a `source` there is nothing to make pictures of yet. Errors: no device.
     static Result<std::unique_ptr<PictureWorker>> start(WorkerDevice device,
                                                         std::shared_ptr<const octree::NodeSource> source,
                                                         const PipelineOptions& options,
@@ -75,7 +77,12 @@ class PictureWorker {
     std::shared_ptr<const Picture> latest() const;  ///< null before the first, and without a source
     /// The newest request's error, if making its picture failed; it is not tried again.
     Result<void> error() const;
-    const gi::DeviceInfo& device() const;
+    /// Why the device was lost, while the worker waits for another: device, pipeline and all they held are gone
+    /// by then, sources and the request are not. The last picture stays.
+    std::optional<Error> lost_device() const;
+    /// In place of the lost one: the worker goes on with it where it was. If it cannot be made it counts as lost.
+    void set_device(WorkerDevice device);
+    const gi::DeviceInfo& device() const;  ///< of the first
 
  private:
     PictureWorker();

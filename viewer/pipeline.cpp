@@ -69,7 +69,7 @@ struct Pipeline::State {
     void start_stream();
     void choose_cuts(const FrameRequest& request);
     void look_ahead(const FrameRequest& request);
-    Result<void> stream(bool wait);
+    Result<void> stream(const FrameRequest& request);
     Result<void> take_arrivals(bool wait);
     Result<void> apply(std::span<const ResidencyEvent> events);
     uint64_t pool_surfels() const;
@@ -94,6 +94,7 @@ struct Pipeline::State {
     gi::ShownValues values;
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
+    std::string lost_node;  // why the first of the source that could not be read could not
 
     CutChooser chooser;
     CutSet chosen;
@@ -160,6 +161,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
                              "allow more");
     empty_pool();
     source = std::move(from);
+    lost_node.clear();
     bulk = octree::bulk_of(*source);
     const uint64_t capacity = pool_surfels();
     if (capacity > pool.capacity()) {
@@ -257,7 +259,8 @@ Result<void> Pipeline::State::take_arrivals(bool wait) {
 }
 
 /// Brings the pool closer to the chosen cuts, or with `wait` as close as the caps allow.
-Result<void> Pipeline::State::stream(bool wait) {
+Result<void> Pipeline::State::stream(const FrameRequest& request) {
+    const bool wait = request.wait || fresh;
     std::vector<const octree::Cut*> later;
     for (const octree::Cut& cut : ahead) later.push_back(&cut);
     residency->want(chosen.all(), later);
@@ -266,8 +269,10 @@ Result<void> Pipeline::State::stream(bool wait) {
         LUCARNE_TRY(take_arrivals(wait));
     }
     const auto error = residency->take_error();
-    if (!error && wait) return error;
-    if (!error) log::warn("{}; it is left out of the picture", error.error().line());
+    if (error) return {};
+    if (request.wait) return error;
+    if (lost_node.empty()) lost_node = error.error().line();
+    log::warn("{}; it is left out of the picture", error.error().line());
     return {};
 }
 
@@ -358,7 +363,7 @@ Result<void> Pipeline::State::finish(const FrameRequest& request) {
 
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
-    LUCARNE_TRY(stream(request.wait || fresh));
+    LUCARNE_TRY(stream(request));
     times.end();
     if (cuts_stale) {
         times.begin("upload of cuts");
@@ -399,6 +404,8 @@ FrameStats Pipeline::State::stats(double seconds) const {
     const octree::ResidencyStats streamed = residency->stats();
     result.nodes_pending = streamed.pending;
     const double packed = static_cast<double>(sizeof(gi::PackedSurfel)) / static_cast<double>(least_stride());
+    result.nodes_lost = streamed.lost;
+    result.lost_node = lost_node;
     result.ahead_loads = streamed.ahead_loads;
     result.ahead_hits = streamed.ahead_hits;
     result.cut_share = chosen.share;
@@ -521,6 +528,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         if (!state.device.take_refusal() || !state.shrink_pool()) return tl::make_unexpected(made.error());
         state.choose_cuts(request);
     }
+    LUCARNE_TRY(state.device.check());
     state.last = request;
     state.changed = state.fresh = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

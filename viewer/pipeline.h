@@ -54,6 +54,8 @@ struct FrameStats {
     double cut_share = 1;  ///< of the points that the budgets allow, what fits the caps
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture
+    uint64_t nodes_lost = 0;   ///< could not be read and are left out, with their descendants
+    std::string lost_node;     ///< why the first of those could not
     std::vector<std::pair<std::string, double>> engine;
 
     double complete() const {  ///< share of the cuts that is drawn, 0..1
@@ -93,8 +95,8 @@ class Pipeline {
     const CutBudgets& budgets() const;
     const gi::Scene& scene() const;
 
-    /// One frame into radiance() and picture(). Errors: a node that cannot be read, no device memory, the
-    /// engine's.
+    /// One frame into radiance() and picture(). Errors: no device memory, the engine's, a context that was lost
+    /// (gi::Device::check); with `wait` a node that cannot be read, which is left out otherwise (FrameStats).
     Result<FrameStats> render(const FrameRequest& request);
 
     /// Of the last frame: vec4 a pixel (linear radiance, W/(sr m^2)) and RGBA8 (tone-mapped sRGB), row 0 on

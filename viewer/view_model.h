@@ -6,6 +6,7 @@
 
 #include "io/input/controller.h"
 #include "viewer/camera.h"
+#include "viewer/health.h"
 #include "viewer/navigation.h"
 #include "viewer/overlay/look_tools.h"
 #include "viewer/picture_worker.h"
@@ -49,6 +50,8 @@ struct ViewModel {
     LookTools look_tools;  ///< beside scene.look
 
     ControllerModel controller;
+
+    Health health;
 
     bool show_panels = true, show_help = false;
     bool close = false, save_picture = false;

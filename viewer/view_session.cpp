@@ -27,7 +27,8 @@ bool same_request(const PictureRequest& a, const PictureRequest& b) {
            a.frame.camera.orthographic_height == b.frame.camera.orthographic_height &&
            a.frame.size.width == b.frame.size.width && a.frame.size.height == b.frame.size.height &&
            a.engine == b.engine && a.settings == b.settings && a.budgets == b.budgets &&
-           a.scene_version == b.scene_version && a.moving == b.moving;
+           a.scene_version == b.scene_version && a.shader_version == b.shader_version &&
+           a.moving == b.moving;
 }
 
 /// The cursor as shares of the window's width and height.
@@ -81,9 +82,43 @@ void ViewSession::take_picture() {
         budget_.observe(latest->stats, latest->size);
     }
     model_.scale = quality_.scale();
+    model_.health.shaders = latest->shader_problem;
+    const uint64_t lost = latest->stats.nodes_lost;
+    model_.health.nodes = lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
+    if (lost > 1) model_.health.nodes += fmt::format(" (and {} more)", lost - 1);
     const bool last_source = scans_.settled() && latest->source == scans_.source();
     if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source)
         ++whole_pictures_;
+}
+
+/// A context that the driver has lost is made again, with all that was in it.
+Result<void> ViewSession::recover() {
+    follow_device();
+    if (!window_.lost()) return {};
+    if (!tries_.take(Clock::now()))
+        return failed("window", "the graphics driver loses it again and again", "see that the driver is up to date");
+    log::warn("the graphics driver has lost the window; it is made again");
+    LUCARNE_TRY(window_.recover());
+    for (Bookmark& bookmark : model_.shell.bookmarks) bookmark.texture = 0;
+    model_.shell.stale_textures.clear();
+    return {};
+}
+
+/// The worker's device. While it is set up, and where it no longer is, the last picture stays.
+void ViewSession::follow_device() {
+    const auto lost = worker_.lost_device();
+    if (!lost || given_up_) return;
+    log::warn("{}", lost->line());
+    model_.message = lost->why + ": the graphics device is set up again";
+    if (tries_.take(Clock::now())) {
+        if (auto device = window_.renew_worker_device()) return worker_.set_device(std::move(*device));
+    }
+    given_up_ = true;
+    model_.message.clear();
+    model_.health.device = fmt::format(
+        "There are no more pictures: the graphics device was lost again and again ({}). Start Lucarne anew.",
+        lost->why);
+    log::warn("{}", model_.health.device);
 }
 
 /// Light and camera as they would be had all scans been known at once, unless the user has changed them.
@@ -218,6 +253,7 @@ void ViewSession::send_request() {
         request.budgets = budget_.budgets(request.budgets);
     }
     request.scene_version = model_.scene_version;
+    request.shader_version = model_.health.shader_version;
     if (sent_number_ != 0 && same_request(request, sent_)) return;
     if (request.engine != sent_.engine || !(request.settings == sent_.settings)) budget_.forget();
     request.scene = model_.scene;
@@ -245,6 +281,8 @@ Result<void> ViewSession::run() {
     while (!desk_.closing(shot_.has_value())) {
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
         window_.wait(lively ? kStep : kRest);
+        const auto awake = Clock::now();
+        LUCARNE_TRY(recover());
         take_picture();
         window_.set_text_size(model_.shell.settings.text_size);
         window_.begin_frame();
@@ -257,10 +295,15 @@ Result<void> ViewSession::run() {
         LUCARNE_TRY(save());
         window_.swap();
         send_request();
+        model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());
         if (!shot_) continue;
+        if (given_up_) return tl::make_unexpected(*worker_.lost_device());
         LUCARNE_TRY(worker_.error());
         LUCARNE_TRY(scans_.error());
     }
+    log::info("window: {} frames, each {:.1f} ms, 95 % of the last ones within {:.1f} ms",
+              model_.health.frames.frames(), 1e3 * model_.health.frames.quantile(0.5),
+              1e3 * model_.health.frames.quantile(0.95));
     window_.hide();
     return {};
 }

@@ -47,6 +47,8 @@ class ViewSession {
     using Clock = std::chrono::steady_clock;
 
     void take_picture();
+    Result<void> recover();
+    void follow_device();
     void follow_scans();
     void take_extent();
     void take_input();
@@ -66,6 +68,8 @@ class ViewSession {
     bool placed_ = false;  ///< there has been a view to begin with
     bool first_told_ = false;
     ControllerInput controller_{&Window::wake};
+    RecoveryTries tries_;
+    bool given_up_ = false;  ///< the device is lost for good
     MovingQuality quality_;
     FrameBudget budget_;
     MeasureSession measure_{&Window::wake};

@@ -18,6 +18,8 @@ namespace {
 constexpr float kTextPixels = 13;      ///< on a screen of scale 1, as the font was drawn for
 constexpr size_t kMostPressed = 64;    ///< keys kept between two frames
 constexpr size_t kMostDropped = 1000;  ///< files
+constexpr const char* kTodo =
+    "start it on a desktop with OpenGL 4.5, or use lucarne render, which needs no display";
 
 /// GLFW's last complaint, without its habit of several sentences.
 std::string glfw_reason() {
@@ -35,26 +37,44 @@ Result<std::unique_ptr<Window>> Window::open(ImageSize size, const std::string& 
 }
 
 Result<void> Window::create(ImageSize size, const std::string& title) {
-    const std::string todo =
-        "start it on a desktop with OpenGL 4.5, or use lucarne render, which needs no display";
-    if (!glfwInit()) return failed("window", glfw_reason(), todo);
+    if (!glfwInit()) return failed("window", glfw_reason(), kTodo);
     initialised_ = true;
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
-                               nullptr, nullptr);
-    if (!window_) return failed("window", glfw_reason(), todo);
-    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-    hidden_ = glfwCreateWindow(1, 1, "lucarne worker", nullptr, nullptr);
-    if (!hidden_) return failed("window", "a second context: " + glfw_reason(), todo);
-
+    LUCARNE_TRY(create_window(size, title));
+    LUCARNE_TRY(create_hidden());
     glfwMakeContextCurrent(window_);
-    glfwSwapInterval(1);
     ImGui::CreateContext();
     imgui_ = true;
     ImGui::GetIO().IniFilename = nullptr;  // no files left in the user's folder
+    take_context();
+    return {};
+}
+
+Result<void> Window::create_window(ImageSize size, const std::string& title) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    // So that the driver tells of a reset; those that cannot leave it out.
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_TRUE);
+    window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
+                               nullptr, nullptr);
+    if (!window_) return failed("window", glfw_reason(), kTodo);
+    return {};
+}
+
+Result<void> Window::create_hidden() {
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    hidden_ = glfwCreateWindow(1, 1, "lucarne worker", nullptr, nullptr);
+    if (!hidden_) return failed("window", "a second context: " + glfw_reason(), kTodo);
+    return {};
+}
+
+/// The window's callbacks, and what is made in its context, which is current.
+void Window::take_context() {
+    glfwSwapInterval(1);
+    watch_ = {};
+    if (const auto checks = window_losses_.next()) watch_.lose_after(*checks);
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
         auto& pressed = static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_;
@@ -68,6 +88,32 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     ImGui_ImplGlfw_InitForOpenGL(window_, true);  // its callbacks call ours
     ImGui_ImplOpenGL3_Init("#version 450 core");
     glGenTextures(1, &texture_);
+}
+
+Result<void> Window::recover() {
+    int x = 0, y = 0;
+    glfwGetWindowPos(window_, &x, &y);
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    const bool closing_already = closing();
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    glfwDestroyWindow(window_);
+    window_ = nullptr;
+    imgui_ = false;
+    small_.clear();
+    texture_size_ = {};
+    shown_ = 0;
+    std::ranges::fill(ImGui::GetIO().KeysDown, false);  // their releases went to the old window
+    std::ranges::fill(ImGui::GetIO().MouseDown, false);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE);  // the size is that of the screen already
+    LUCARNE_TRY(create_window({static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))},
+                              title_));
+    glfwSetWindowPos(window_, x, y);
+    glfwSetWindowShouldClose(window_, closing_already);
+    glfwMakeContextCurrent(window_);
+    imgui_ = true;
+    take_context();
     return {};
 }
 
@@ -85,11 +131,19 @@ Window::~Window() {
 }
 
 WorkerDevice Window::worker_device() {
-    return {[hidden = hidden_] {
-                glfwMakeContextCurrent(hidden);
-                return gi::Device::current();
+    return {[this] {
+                glfwMakeContextCurrent(hidden_);
+                auto device = gi::Device::current();
+                if (const auto checks = worker_losses_.next(); checks && device) (*device)->lose_after(*checks);
+                return device;
             },
             [] { glfwMakeContextCurrent(nullptr); }};
+}
+
+Result<WorkerDevice> Window::renew_worker_device() {
+    glfwDestroyWindow(std::exchange(hidden_, nullptr));
+    LUCARNE_TRY(create_hidden());
+    return worker_device();
 }
 
 void Window::wake() {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "gi/device/context_watch.h"
 #include "io/core/options.h"
 #include "io/image/image.h"
 #include "viewer/key_chord.h"
@@ -29,6 +30,13 @@ class Window {
     /// Makes the hidden context current on the calling thread; `release` lets go of it there. The window
     /// outlives the device.
     WorkerDevice worker_device();
+    /// The same with a new hidden context, in place of one that was lost and released.
+    Result<WorkerDevice> renew_worker_device();
+    /// Whether the driver has lost the window's own context: nothing that is drawn is seen until recover().
+    bool lost() { return watch_.lost(); }
+    /// A new window in the place of the old one, with a new context; ImGui's state stays, pictures and small textures
+    /// are gone. Errors: the driver makes none.
+    Result<void> recover();
     /// Ends wait() early; any thread.
     static void wake();
 
@@ -66,6 +74,9 @@ class Window {
     Window() = default;
     void fit_text();
     Result<void> create(ImageSize size, const std::string& title);
+    Result<void> create_window(ImageSize size, const std::string& title);
+    Result<void> create_hidden();
+    void take_context();
 
     GLFWwindow* window_ = nullptr;
     GLFWwindow* hidden_ = nullptr;
@@ -78,6 +89,9 @@ class Window {
     uint64_t shown_ = 0;
     std::vector<KeyChord> pressed_;
     std::vector<std::string> dropped_;
+    gi::ContextWatch watch_;
+    gi::LossPlan window_losses_ = gi::LossPlan::from_environment("LUCARNE_TEST_LOSE_WINDOW");
+    gi::LossPlan worker_losses_ = gi::LossPlan::from_environment("LUCARNE_TEST_LOSE_CONTEXT");
 };
 
 }  // namespace lucarne::viewer

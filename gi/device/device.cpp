@@ -1,13 +1,17 @@
 #include "gi/device/device.h"
 
 #include <chrono>
+#include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include <epoxy/gl.h>
 
+#include "gi/device/context_watch.h"
 #include "gi/device/egl.h"
+#include "gi/device/shader_folder.h"
 #include "gi/device/shader_source.h"
 #include "io/core/log.h"
 
@@ -33,6 +37,29 @@ void clear_errors() {
     }
 }
 
+/// A linked program's name; errors carry the compiler's first message.
+Result<GLuint> compile(std::string_view path, const ShaderSource& source) {
+    const char* text = source.text.c_str();
+    const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
+    GLint linked = GL_FALSE;
+    if (id) glGetProgramiv(id, GL_LINK_STATUS, &linked);
+    if (linked) return id;
+    GLint length = 0;
+    if (id) glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+    if (length > 0) glGetProgramInfoLog(id, length, &length, log.data());
+    log.resize(static_cast<size_t>(std::max(length, 0)));
+    glDeleteProgram(id);
+    return failed("shader " + std::string(path), readable_message(log, source.files),
+                  "the driver is " + gl_string(GL_VERSION));
+}
+
+/// A program and what it was made of.
+struct CompiledProgram {
+    std::string text;
+    std::unique_ptr<Program> program;
+};
+
 }  // namespace
 
 struct Device::State {
@@ -40,7 +67,10 @@ struct Device::State {
     DeviceInfo info;
     uint64_t cap = UINT64_MAX, used = 0;
     bool refused = false;
-    std::map<std::tuple<std::string, Defines>, std::unique_ptr<Program>> programs;
+    std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
+    std::optional<ShaderFolder> shaders;
+    std::string shader_problem;
+    ContextWatch watch;
 };
 
 Device::Device() : state_(std::make_unique<State>()) {}
@@ -74,6 +104,7 @@ Result<std::unique_ptr<Device>> Device::current() {
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
     info.max_texel_bytes = uint64_t{16} * static_cast<uint64_t>(texels);
     info.max_buffer_bytes = std::min(static_cast<uint64_t>(bytes), info.max_texel_bytes);
+    if (const char* folder = std::getenv("LUCARNE_SHADERS")) device->use_shader_folder(folder);
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -99,6 +130,13 @@ bool Device::take_refusal() {
 }
 void Device::finish() {
     glFinish();
+}
+Result<void> Device::check() {
+    if (!state_->watch.lost()) return {};
+    return failed("graphics device", state_->watch.reason(), "see that its driver is up to date");
+}
+void Device::lose_after(uint32_t checks) {
+    state_->watch.lose_after(checks);
 }
 
 Result<Buffer> Device::buffer(size_t bytes, std::string_view what) {
@@ -145,25 +183,52 @@ Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what
 Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
     std::tuple<std::string, Defines> key(path, defines);
     if (const auto found = state_->programs.find(key); found != state_->programs.end())
-        return found->second.get();
-    LUCARNE_ASSIGN(const ShaderSource source, shader_source(path, defines, shader_texts()));
-    const char* text = source.text.c_str();
-    const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
-    GLint linked = GL_FALSE;
-    if (id) glGetProgramiv(id, GL_LINK_STATUS, &linked);
-    if (!linked) {
-        GLint length = 0;
-        if (id) glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
-        std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
-        if (length > 0) glGetProgramInfoLog(id, length, &length, log.data());
-        log.resize(static_cast<size_t>(std::max(length, 0)));
-        glDeleteProgram(id);
-        return failed("shader " + std::string(path), readable_message(log, source.files),
-                      "the driver is " + state_->info.version);
+        return found->second.program.get();
+    const auto make = [&](const std::vector<ShaderText>& texts) -> Result<CompiledProgram> {
+        LUCARNE_ASSIGN(ShaderSource source, shader_source(path, defines, texts));
+        LUCARNE_ASSIGN(const GLuint id, compile(path, source));
+        return CompiledProgram{std::move(source.text), std::unique_ptr<Program>(new Program(id))};
+    };
+    auto made = make(state_->shaders ? state_->shaders->texts() : shader_texts());
+    if (!made && state_->shaders) {
+        note_shader_problem(made.error());
+        made = make(shader_texts());
     }
-    auto& slot = state_->programs[std::move(key)];
-    slot.reset(new Program(id));
-    return slot.get();
+    if (!made) return tl::make_unexpected(std::move(made).error());
+    return state_->programs.emplace(std::move(key), std::move(*made)).first->second.program.get();
+}
+
+void Device::use_shader_folder(const std::filesystem::path& folder) {
+    state_->shaders.emplace(folder);
+    state_->programs.clear();
+    state_->shader_problem.clear();
+}
+
+void Device::reload_shaders() {
+    if (!state_->shaders) return;
+    state_->shaders->read();
+    state_->shader_problem.clear();
+    for (auto& [key, compiled] : state_->programs) {
+        const auto& [path, defines] = key;
+        auto source = shader_source(path, defines, state_->shaders->texts());
+        if (source && source->text == compiled.text) continue;
+        const Result<GLuint> id =
+            source ? compile(path, *source) : tl::make_unexpected(std::move(source).error());
+        if (!id) {
+            note_shader_problem(id.error());
+            continue;
+        }
+        compiled.text = std::move(source->text);
+        compiled.program.reset(new Program(*id));
+    }
+}
+
+const std::string& Device::shader_problem() const {
+    return state_->shader_problem;
+}
+
+void Device::note_shader_problem(const Error& error) {
+    if (state_->shader_problem.empty()) state_->shader_problem = error.line();
 }
 
 Buffer::Buffer(Buffer&& other) noexcept {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <span>
@@ -131,11 +132,28 @@ class Device {
     /// `#include "path"` is resolved among the embedded files. Errors carry the compiler's first message.
     Result<const Program*> program(std::string_view path, const Defines& defines = {});
 
+    /// Programs are made of the files in a folder that stands for the project's root, for who writes shaders;
+    /// LUCARNE_SHADERS names it for every device. What does not compile is the program's own, see
+    /// shader_problem().
+    void use_shader_folder(const std::filesystem::path& folder);
+    /// Reads the folder again. Programs whose text has changed are compiled anew; where that fails the last good
+    /// one stays. Not while one that program() gave is in use.
+    void reload_shaders();
+    /// The first compile error since the folder was last read, with file and line; empty: there is none.
+    const std::string& shader_problem() const;
+
     void finish();  ///< waits until all work is done
+
+    /// Errors: the driver has lost or reset the context; all that was made in it is gone, and what it was last
+    /// asked for is nonsense. Another device has to take its place.
+    Result<void> check();
+    /// For tests: check() fails from its `checks`th call on.
+    void lose_after(uint32_t checks);
 
  private:
     Device();
     Result<Buffer> make(size_t bytes, uint64_t most, std::string_view what);
+    void note_shader_problem(const Error& error);
     friend class Buffer;
     struct State;
     std::unique_ptr<State> state_;

@@ -60,16 +60,23 @@ EGLContext make_current_context(EGLDisplay display, std::string& why) {
 #else
     constexpr EGLint kDebug = EGL_TRUE;
 #endif
-    const std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                              4,
-                                              EGL_CONTEXT_MINOR_VERSION,
-                                              5,
-                                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                              EGL_CONTEXT_OPENGL_DEBUG,
-                                              kDebug,
-                                              EGL_NONE};
+    // The last pair has the driver tell of a reset (EGL 1.5, 3.7.1); drivers that cannot refuse it.
+    std::array<EGLint, 11> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                         4,
+                                         EGL_CONTEXT_MINOR_VERSION,
+                                         5,
+                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                         EGL_CONTEXT_OPENGL_DEBUG,
+                                         kDebug,
+                                         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                         EGL_LOSE_CONTEXT_ON_RESET,
+                                         EGL_NONE};
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+    if (context == EGL_NO_CONTEXT) {
+        attributes[8] = EGL_NONE;
+        context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+    }
     if (context == EGL_NO_CONTEXT) {
         why = "OpenGL is older than 4.5";
         return EGL_NO_CONTEXT;

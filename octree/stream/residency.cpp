@@ -381,6 +381,7 @@ ResidencyStats Residency::stats() const {
     const std::lock_guard lock(state_->mutex);
     ResidencyStats stats = state_->stats;
     stats.pending = 0;
+    stats.lost = state_->broken.size();
     for (const uint32_t node : state_->queue) stats.pending += !state_->entries.at(node).ahead;
     for (const auto& [node, entry] : state_->entries)
         stats.pending += !entry.ahead && ((entry.in_flight && entry.admitted) || entry.unpolled);

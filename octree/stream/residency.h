@@ -36,6 +36,7 @@ struct ResidencyEvent {
 struct ResidencyStats {
     uint64_t bytes_held = 0, bytes_loaded = 0;  ///< now; since the start
     uint64_t nodes_held = 0, loads = 0, evictions = 0, failures = 0;
+    uint64_t lost = 0;          ///< failed and not tried again, now
     uint64_t pending = 0;       ///< wanted and not there yet, or there and not polled
     uint64_t refused = 0;       ///< wanted, and the caps have no room for them
     uint64_t bytes_peak = 0;    ///< the most ever held or on their way

@@ -1,9 +1,11 @@
 #include "viewer/picture_worker.h"
 
+#include <filesystem>
+#include <fstream>
 #include <semaphore>
 
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
 #include "viewer/input.h"
@@ -14,17 +16,35 @@ namespace {
 class Worker : public testing::Test {
  protected:
     void SetUp() override {
-        const auto source = open_input(test::make_cornell(folder_));
+        cache_ = test::make_cornell(folder_);
+        const auto source = open_input(cache_);
         ASSERT_TRUE(source) << source.error().line();
+        source_ = *source;
         header_ = (*source)->header();
-        auto worker = PictureWorker::start({[] { return gi::Device::headless(); }, [] {}}, *source, {},
-                                           [this] { published_.release(); });
+        auto worker = PictureWorker::start(device(), *source, {}, [this] { published_.release(); });
         ASSERT_TRUE(worker) << worker.error().line();
         worker_ = std::move(*worker);
         request_.engine = "direct";
         request_.scene = gi::default_scene(header_.min, header_.max);
         request_.frame.camera = request_.scene.cameras.front();
         request_.frame.size = {96, 64};
+    }
+    /// Its context is lost after so many pictures.
+    static WorkerDevice device(std::optional<uint32_t> lost_after = {}) {
+        return {[lost_after] {
+                    auto made = gi::Device::headless();
+                    if (made && lost_after) (*made)->lose_after(*lost_after);
+                    return made;
+                },
+                [] {}};
+    }
+    /// Waits until the worker says so.
+    std::optional<Error> loss() {
+        for (;;) {
+            if (auto lost = worker_->lost_device()) return lost;
+            if (!worker_->error()) return std::nullopt;
+            published_.acquire();
+        }
     }
     /// The first picture of a request that has all its nodes.
     std::shared_ptr<const Picture> whole(uint64_t number) {
@@ -37,6 +57,8 @@ class Worker : public testing::Test {
     }
 
     test::TemporaryFolder folder_;
+    std::string cache_;
+    std::shared_ptr<const octree::NodeSource> source_;
     octree::SourceHeader header_;
     std::counting_semaphore<> published_{0};
     std::unique_ptr<PictureWorker> worker_;
@@ -79,6 +101,79 @@ TEST_F(Worker, AnErrorIsShownAndTheNextRequestIsMadeAllTheSame) {
     request_.engine = "direct";
     EXPECT_TRUE(whole(worker_->request(request_)));
     EXPECT_TRUE(worker_->error());
+}
+
+TEST_F(Worker, ALostDeviceIsReplacedAndTheSameRequestGoesOn) {
+    const uint64_t number = worker_->request(request_);
+    const auto before = whole(number);
+    ASSERT_TRUE(before);
+    worker_.reset();
+    auto worker = PictureWorker::start(device(1), source_, {}, [this] { published_.release(); });
+    ASSERT_TRUE(worker);
+    worker_ = std::move(*worker);
+    const uint64_t again = worker_->request(request_);
+    ASSERT_TRUE(loss());
+    EXPECT_EQ(worker_->latest(), nullptr) << "what a lost device draws is nonsense";
+    worker_->set_device(device(2));  // which is lost as well, while a picture is shown
+    ASSERT_TRUE(loss());
+    worker_->set_device(device());
+    const auto after = whole(again);
+    ASSERT_TRUE(after);
+    EXPECT_FALSE(worker_->lost_device());
+    EXPECT_EQ(after->rgba, before->rgba);
+}
+
+TEST_F(Worker, ADeviceThatCannotBeMadeAgainCountsAsLostAndTheWorkerStillEnds) {
+    ASSERT_TRUE(whole(worker_->request(request_)));
+    worker_.reset();
+    auto worker = PictureWorker::start(device(1), source_, {}, [this] { published_.release(); });
+    ASSERT_TRUE(worker);
+    worker_ = std::move(*worker);
+    worker_->request(request_);
+    ASSERT_TRUE(loss());
+    worker_->set_device({[]() -> Result<std::unique_ptr<gi::Device>> { return failed("device", "is gone"); }, [] {}});
+    const auto lost = loss();
+    ASSERT_TRUE(lost);
+    EXPECT_EQ(lost->why, "is gone");
+}
+
+/// Zeros over a part of a file, from a share of it on.
+void damage(const std::string& file, double from, double to) {
+    const auto size = static_cast<double>(std::filesystem::file_size(file));
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(size * from));
+    bytes << std::string(static_cast<size_t>(size * (to - from)), '\0');
+}
+
+TEST_F(Worker, ANodeThatCannotBeReadIsNamedAndLeftOutAndTheOthersAreShown) {
+    damage(cache_, 0.5, 0.55);  // behind the back of who has opened it
+    const uint64_t number = worker_->request(request_);
+    const auto picture = whole(number);
+    ASSERT_TRUE(picture) << worker_->error().error().line();
+    EXPECT_GT(picture->stats.nodes_lost, 0u);
+    EXPECT_THAT(picture->stats.lost_node, testing::HasSubstr("cornell.luc: node "));
+    EXPECT_LT(picture->stats.ready_points, picture->stats.wanted_points);
+    EXPECT_GT(picture->stats.view_points, 0u);
+    EXPECT_TRUE(picture->pick({0.5, 0.5}));
+}
+
+TEST_F(Worker, ASourceThatLosesNodesTakesAnothersPlaceAllTheSame) {
+    ASSERT_TRUE(whole(worker_->request(request_)));
+    const std::string copy = folder_ / "copy.luc";
+    std::filesystem::copy_file(cache_, copy);
+    const auto other = open_input(copy);
+    ASSERT_TRUE(other);
+    std::filesystem::resize_file(copy, std::filesystem::file_size(copy) / 2);
+    worker_->set_source(*other);
+    std::shared_ptr<const Picture> picture;
+    while (!picture || picture->source != *other) {
+        published_.acquire();
+        ASSERT_TRUE(worker_->error()) << worker_->error().error().line();
+        picture = worker_->latest();
+    }
+    EXPECT_GT(picture->stats.nodes_lost, 0u);
+    EXPECT_THAT(picture->stats.lost_node, testing::HasSubstr("copy.luc"));
+    EXPECT_EQ(picture->size.width, 96u);
 }
 
 }  // namespace

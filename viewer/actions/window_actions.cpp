@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -35,6 +36,14 @@ bool shows_controller(const ViewModel& model) {
     return model.controller.show_panel;
 }
 
+void reload_shaders(ViewModel& model) {
+    ++model.health.shader_version;
+    model.message = "shader files are read again";
+}
+bool has_shader_files(const ViewModel&) {
+    return std::getenv("LUCARNE_SHADERS") != nullptr;
+}
+
 constexpr double kTextStep = 1.1;
 void scale_text(ViewModel& model, double by) {
     double& size = model.shell.settings.text_size;
@@ -56,6 +65,8 @@ std::span<const Action> window_actions() {
         Action{{GLFW_KEY_F6}, "Window", "6-DoF controller", toggle_controller, nullptr, shows_controller},
         Action{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
         Action{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
+        Action{{GLFW_KEY_F5, GLFW_MOD_CONTROL}, "Window", "Read shader files again", reload_shaders,
+               has_shader_files},
         Action{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},
     };
     return kActions;

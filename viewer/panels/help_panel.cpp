@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+
 #include <imgui.h>
 
 #include "viewer/actions.h"
@@ -11,6 +14,15 @@ void row(const char* key, const char* what) {
     ImGui::TextUnformatted(key);
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(what);
+}
+
+/// In lines that the window holds.
+void warning(const std::string& text, float width) {
+    ImGui::PushTextWrapPos(width - 4 * ImGui::GetFontSize());
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.8f, 0.4f, 1.0f));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
 }
 
 }  // namespace
@@ -38,9 +50,16 @@ void draw_message(const ViewModel& model, bool busy) {
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoNav;
-    if (model.message.empty() && !busy) return;
-    if (ImGui::Begin("##message", nullptr, flags))
-        ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
+    const Health& health = model.health;
+    const std::array problems = {&health.device, &health.shaders, &health.nodes};
+    const bool healthy = std::ranges::all_of(problems, [](const auto* problem) { return problem->empty(); });
+    if (model.message.empty() && !busy && healthy) return;
+    if (ImGui::Begin("##message", nullptr, flags)) {
+        for (const std::string* problem : problems)
+            if (!problem->empty()) warning(*problem, size.x);
+        if (!model.message.empty() || busy)
+            ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
+    }
     ImGui::End();
 }
 
