@@ -166,9 +166,10 @@ Result<ShownValues> measured_values(const octree::NodeSource& source, const Look
     for (uint64_t points = 0; !level.empty() && points < kSampled; level.swap(below)) {
         below.clear();
         for (const uint32_t node : level) {
-            LUCARNE_ASSIGN(const octree::NodeData data, source.load(node));
-            points += data.count;
-            sample(source.part_of(node), look, data, sampled);
+            const Result<octree::NodeData> data = source.load(node);
+            if (!data) continue;  // whoever draws it will say so
+            points += data->count;
+            sample(source.part_of(node), look, *data, sampled);
             for (uint32_t octant = 0; octant < 8; ++octant)
                 if (const uint32_t child = nodes[node].child(octant); child != octree::kNoNode)
                     below.push_back(child);

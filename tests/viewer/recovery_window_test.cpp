@@ -1,0 +1,37 @@
+// Lost contexts and damaged caches in a real window, see window_fixture.h.
+#include "tests/viewer/window_fixture.h"
+
+namespace lucarne {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+class RecoveringWindow : public ViewerWindow {};
+
+TEST_F(RecoveringWindow, GoesOnWithTheSamePictureAfterDeviceAndWindowWereLost) {
+    start();
+    const auto first = picture(lit);
+    ASSERT_TRUE(first);
+    viewer_.reset();
+    start_with(cache_, "LUCARNE_TEST_LOSE_CONTEXT=2 LUCARNE_TEST_LOSE_WINDOW=10");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) < 0.5; })) << log();
+    EXPECT_THAT(log(), HasSubstr("graphics device: its context was lost"));
+    ASSERT_TRUE(eventually([&] { return log().find("has lost the window") != std::string::npos; })) << log();
+    xdo("key ctrl+q");
+    EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+    EXPECT_EQ(viewer_->code(), 0);
+}
+
+TEST_F(RecoveringWindow, SaysThatItHasGivenUpAfterThreeTriesAndStillCloses) {
+    start_with(cache_, "LUCARNE_TEST_LOSE_CONTEXT=1,1,1,1");
+    ASSERT_TRUE(eventually([&] { return log().find("There are no more pictures") != std::string::npos; }))
+        << log();
+    EXPECT_TRUE(viewer_->running());
+    xdo("key ctrl+q");
+    EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+    EXPECT_EQ(viewer_->code(), 0);
+}
+
+}  // namespace
+}  // namespace lucarne
