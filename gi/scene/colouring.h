@@ -54,7 +54,7 @@ struct ShownValues {
     std::bitset<256> numbers;  ///< that classes, return numbers or scans have
     std::bitset<256> classes;  ///< that there are, whatever is shown
 };
-/// Errors: a node that cannot be read.
+/// Nodes that cannot be read are left out.
 Result<ShownValues> measured_values(const octree::NodeSource& source, const Look& look);
 
 /// Errors (ErrorKind::arguments) where no part of the source has the attribute; the message lists what there
