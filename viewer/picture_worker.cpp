@@ -9,7 +9,6 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr uint32_t kMostAccumulated = 256;  ///< pictures averaged at rest before the worker rests too
 constexpr int kPickRadius = 4;              ///< pixels
 
 /// What the pipeline was last told, so that only changes are handed on: each starts its average again.
@@ -62,7 +61,7 @@ Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& 
     if (told.request == number) return {};
     if (told.shader_version != request.shader_version) device.reload_shaders();
     told.shader_version = request.shader_version;
-    if (told.scene_version != request.scene_version) pipeline.set_scene(request.scene);
+    if (told.scene_version != request.scene_version) LUCARNE_TRY(pipeline.set_scene(request.scene));
     told.scene_version = request.scene_version;
     if (told.engine != request.engine) LUCARNE_TRY(pipeline.set_engine(request.engine));
     told.engine = request.engine;

@@ -13,6 +13,8 @@
 
 namespace lucarne::viewer {
 
+inline constexpr uint32_t kMostAccumulated = 256;  ///< pictures averaged at rest before the worker rests too
+
 /// What a picture is wanted of.
 struct PictureRequest {
     FrameRequest frame;

@@ -11,8 +11,10 @@
 
 #include "gi/post/accumulate.h"
 #include "gi/post/backdrop.h"
+#include "gi/post/false_colour.h"
 #include "gi/post/tone_map.h"
 #include "gi/registry.h"
+#include "gi/scene/baked_light.h"
 #include "gi/scene/colouring.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
@@ -58,6 +60,14 @@ bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector
     });
 }
 
+/// Whether nothing but the showing of what is lit differs: exposure, curve, borders, cameras.
+bool same_light(const gi::Scene& a, const gi::Scene& b) {
+    const auto other = [](const gi::Scene& s) { return s.comparison ? s.comparison->engine : std::string(); };
+    return a.lights == b.lights && a.materials == b.materials && a.background == b.background &&
+           a.environment == b.environment && a.environment_on == b.environment_on && a.albedo == b.albedo &&
+           a.look == b.look && other(a) == other(b);
+}
+
 }  // namespace
 
 struct Pipeline::State {
@@ -77,7 +87,10 @@ struct Pipeline::State {
     Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
+    Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
     Result<void> finish(const FrameRequest& request);
+    Result<void> show(const gi::Engine& lit_by, const gi::Buffer& radiance, gi::Buffer& shown);
+    Result<void> compare(const FrameRequest& request);
     Result<void> make_picture(const FrameRequest& request);
     bool shrink_pool();
     FrameStats stats(double seconds) const;
@@ -92,6 +105,7 @@ struct Pipeline::State {
     std::unique_ptr<octree::Residency> residency;
     bool repack = true;  // what the surfels hold of scene and look has changed
     gi::ShownValues values;
+    std::optional<gi::BakedLight> baked;  ///< of the source, once it was asked for
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
     std::string lost_node;  // why the first of the source that could not be read could not
@@ -106,7 +120,7 @@ struct Pipeline::State {
     LocalFrame local;
     bool cuts_stale = true;  // the device's cuts differ from what is chosen and resident
 
-    std::unique_ptr<gi::Engine> engine;
+    std::unique_ptr<gi::Engine> engine, other;  ///< the picture's own; what it is compared with, or none
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
@@ -119,6 +133,7 @@ struct Pipeline::State {
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
     gi::Buffer sample, mean, picture;  // radiance of this frame, of the average; RGBA8
+    gi::Buffer other_sample, other_mean, other_picture;
     uint32_t accumulated = 0;          // frames in `mean`
     bool averaged = false;             // the last picture is `mean`
     double exposure_ev = 0;
@@ -162,6 +177,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     empty_pool();
     source = std::move(from);
     lost_node.clear();
+    baked.reset();
     bulk = octree::bulk_of(*source);
     const uint64_t capacity = pool_surfels();
     if (capacity > pool.capacity()) {
@@ -200,7 +216,10 @@ Result<void> Pipeline::State::colour_anew() {
     LUCARNE_ASSIGN(values, gi::measured_values(*source, scene.look));
     gi::Scene shown = scene;
     shown.look.range = values.range;
-    preparation->set_scene(shown);
+    if (scene.albedo.flatten > 0 && !baked) {
+        LUCARNE_ASSIGN(baked, gi::BakedLight::measured(*source));
+    }
+    preparation->set_scene(shown, baked ? &*baked : nullptr);
     std::vector<uint32_t> all(source->nodes().size());
     std::iota(all.begin(), all.end(), 0u);
     residency->renew(all);
@@ -297,13 +316,18 @@ Result<void> Pipeline::State::build_cuts() {
 
 /// G-buffer and light.
 Result<void> Pipeline::State::draw(const FrameRequest& request) {
-    const size_t pixels = size_t{request.size.width} * request.size.height;
-    LUCARNE_TRY(device.reserve(sample, pixels * sizeof(glm::vec4), "the picture's radiance"));
     times.begin("G-buffer");
     const gi::PointSize size{static_cast<float>(scene.look.point_size),
                              static_cast<float>(scene.look.point_pixels)};
     LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer, size));
     times.end();
+    LUCARNE_TRY(draw_with(*engine, request, sample));
+    return other ? draw_with(*other, request, other_sample) : Result<void>();
+}
+
+Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target) {
+    const size_t pixels = size_t{request.size.width} * request.size.height;
+    LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
     gi::FrameCuts cuts{&view, {}, &light_cut};
     std::vector<gi::Light> lights;
     for (size_t i = 0; i < light_views.size(); ++i) {
@@ -312,7 +336,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
     }
     const auto& header = source->header();
     std::vector<gi::Material> materials;
-    for (const auto& material : scene.materials) materials.push_back(device_material(material));
+    for (const auto& material : scene.materials) materials.push_back(device_material(material, scene.albedo.scale));
     gi::Frame frame{device,
                     pool,
                     cuts,
@@ -323,15 +347,15 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                     glm::vec3(scene.background),
                     settings,
                     accumulated,
-                    sample,
+                    target,
                     times,
                     scene.environment,
                     {local.to_local(header.min), local.to_local(header.max)},
                     request.moving,
                     request.progress,
                     scene.look.unlit};
-    LUCARNE_TRY(engine->prepare(frame));
-    return engine->render(frame);
+    LUCARNE_TRY(drawing.prepare(frame));
+    return drawing.render(frame);
 }
 
 /// Average and tone map.
@@ -346,19 +370,46 @@ Result<void> Pipeline::State::finish(const FrameRequest& request) {
     }
     const gi::Buffer& radiance = averaged ? mean : sample;
     exposure_ev = 0;
-    const bool unlit = engine->info().unlit;
-    if (unlit) {
+    if (engine->info().unlit) {
         // Its colours are the screen's already.
     } else if (scene.exposure_ev) {
         exposure_ev = *scene.exposure_ev;
     } else {
         LUCARNE_ASSIGN(exposure_ev, gi::automatic_exposure(device, radiance, pixels));
     }
-    const gi::ToneMap curve = unlit ? gi::ToneMap::none : scene.tone_map;
-    LUCARNE_TRY(gi::tone_map(device, radiance, pixels, curve, exposure_ev, picture));
+    LUCARNE_TRY(show(*engine, radiance, picture));
+    if (other) LUCARNE_TRY(compare(request));
     LUCARNE_TRY(gi::draw_backdrop(device, gbuffer, scene.look.backdrop, picture));
     times.end();
     return {};
+}
+
+Result<void> Pipeline::State::show(const gi::Engine& lit_by, const gi::Buffer& radiance, gi::Buffer& shown) {
+    const uint32_t pixels = gbuffer.width * gbuffer.height;
+    const bool unlit = lit_by.info().unlit;
+    if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
+        return gi::false_colour(device, radiance, pixels, gi::luminance_range(scene.luminance, exposure_ev),
+                                shown);
+    return gi::tone_map(device, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
+                        unlit ? 0 : exposure_ev, shown);
+}
+
+/// Brings the other engine's light into the picture.
+Result<void> Pipeline::State::compare(const FrameRequest& request) {
+    using Show = gi::Comparison::Show;
+    const auto [width, height] = request.size;
+    if (averaged) {
+        LUCARNE_TRY(device.reserve(other_mean, size_t{width} * height * sizeof(glm::vec4),
+                                   "the other engine's average"));
+        LUCARNE_TRY(gi::accumulate(device, other_sample, width * height, accumulated, other_mean));
+    }
+    const gi::Buffer& radiance = averaged ? other_mean : other_sample;
+    const gi::Comparison& how = *scene.comparison;
+    if (how.show != Show::split)
+        return gi::difference(device, averaged ? mean : sample, radiance, width * height,
+                              how.show == Show::absolute_difference, exposure_ev, how.range, picture);
+    LUCARNE_TRY(show(*other, radiance, other_picture));
+    return gi::split(device, other_picture, width, height, how.border, picture);
 }
 
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
@@ -493,21 +544,32 @@ Result<void> Pipeline::set_engine(std::string_view name) {
 }
 
 void Pipeline::set_settings(const gi::EngineSettings& settings) {
+    state_->changed |= !(settings == state_->settings);
     state_->settings = settings;
-    state_->changed = true;
 }
 
 void Pipeline::set_budgets(const CutBudgets& budgets) {
+    state_->changed |= !(budgets == state_->budgets);
     state_->budgets = budgets;
-    state_->changed = true;
 }
 
-void Pipeline::set_scene(gi::Scene scene) {
+Result<void> Pipeline::set_scene(gi::Scene scene) {
+    std::erase_if(scene.lights, [](const gi::SceneLight& light) { return !gi::shines(light); });
+    if (!scene.environment_on) scene.environment.reset();
+    if (!scene.comparison) {
+        state_->other.reset();
+        state_->other_sample = {}, state_->other_mean = {}, state_->other_picture = {};
+    } else if (!state_->other || state_->other->info().name != scene.comparison->engine) {
+        LUCARNE_ASSIGN(state_->other, gi::make_engine(scene.comparison->engine));
+        state_->changed = true;
+    }
     // Which material and colour a point has is packed into its surfel.
     state_->repack |= !same_assignments(scene.materials, state_->scene.materials) ||
-                      !gi::same_colours(scene.look, state_->scene.look);
+                      !gi::same_colours(scene.look, state_->scene.look) ||
+                      scene.albedo.flatten != state_->scene.albedo.flatten;
+    state_->changed |= !same_light(scene, state_->scene);
     state_->scene = std::move(scene);
-    state_->changed = true;
+    return {};
 }
 
 Result<FrameStats> Pipeline::render(const FrameRequest& request) {

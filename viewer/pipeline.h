@@ -88,7 +88,9 @@ class Pipeline {
     void set_budgets(const CutBudgets& budgets);
     /// Lights, materials, exposure, look. Moving a light is cheap; other materials or colours for the points send
     /// every surfel to the device again, without `wait` one node after another while the old ones are shown.
-    void set_scene(gi::Scene scene);
+    /// Lights that are off, and an environment that is, are not there. Another exposure or tone map, or another way to
+    /// show a comparison, leaves the average as it is. Errors (arguments): the comparison's engine is none.
+    Result<void> set_scene(gi::Scene scene);
 
     const gi::EngineInfo& engine() const;
     const gi::EngineSettings& settings() const;

@@ -12,6 +12,7 @@ gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) 
     gi::Scene own;
     own.materials = scene.materials;
     own.look = scene.look;
+    own.albedo = scene.albedo;
     if (own.look.range && own.look.colour == gi::ColourBy::elevation) {
         own.look.range->low /= part.scale;
         own.look.range->high /= part.scale;
@@ -33,22 +34,28 @@ SurfelPreparation::SurfelPreparation(std::shared_ptr<const octree::NodeSource> s
     set_scene(scene);
 }
 
-void SurfelPreparation::set_scene(const gi::Scene& scene) {
-    auto scenes = std::make_shared<std::vector<gi::Scene>>();
-    for (const uint32_t root : source_->roots()) scenes->push_back(scene_of_part(scene, source_->part_of(root)));
+void SurfelPreparation::set_scene(const gi::Scene& scene, const gi::BakedLight* baked) {
+    auto parts = std::make_shared<std::vector<OfPart>>();
+    for (const uint32_t root : source_->roots()) {
+        const octree::SourcePart part = source_->part_of(root);
+        OfPart own{scene_of_part(scene, part), std::nullopt};
+        if (baked) own.baked = baked->in_unit(part.scale);
+        parts->push_back(std::move(own));
+    }
     const std::lock_guard lock(mutex_);
-    scenes_ = std::move(scenes);
+    parts_ = std::move(parts);
 }
 
 octree::NodeData SurfelPreparation::pack(uint32_t node, octree::NodeData&& data) const {
-    std::shared_ptr<const std::vector<gi::Scene>> scenes;
+    std::shared_ptr<const std::vector<OfPart>> parts;
     {
         const std::lock_guard lock(mutex_);
-        scenes = scenes_;
+        parts = parts_;
     }
     const octree::SourcePart part = source_->part_of(node);
-    const auto surfels =
-        gi::pack_surfels(part.header, source_->nodes()[node], data, (*scenes)[part.index], part.first_scan);
+    const OfPart& own = (*parts)[part.index];
+    const auto surfels = gi::pack_surfels(part.header, source_->nodes()[node], data, own.scene,
+                                          part.first_scan, own.baked ? &*own.baked : nullptr);
     const auto bytes = std::as_bytes(std::span(surfels));
     data.records.assign(bytes.begin(), bytes.end());
     return std::move(data);

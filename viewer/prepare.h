@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "gi/scene/baked_light.h"
 #include "gi/scene/scene.h"
 #include "gi/scene/surfel_pool.h"
 #include "octree/source.h"
@@ -19,14 +21,19 @@ class SurfelPreparation {
     /// source.
     SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene);
     /// For nodes from now on. Thread-safe.
-    void set_scene(const gi::Scene& scene);
+    /// `baked` is divided out of the colours, as far as the scene's albedo asks; or none.
+    void set_scene(const gi::Scene& scene, const gi::BakedLight* baked = nullptr);
     /// For octree::ResidencyOptions::prepare. Thread-safe.
     octree::NodeData pack(uint32_t node, octree::NodeData&& data) const;
 
  private:
     std::shared_ptr<const octree::NodeSource> source_;
     mutable std::mutex mutex_;
-    std::shared_ptr<const std::vector<gi::Scene>> scenes_;  ///< one a part
+    struct OfPart {
+        gi::Scene scene;
+        std::optional<gi::BakedLight> baked;
+    };
+    std::shared_ptr<const std::vector<OfPart>> parts_;
 };
 
 /// What it made of a node.

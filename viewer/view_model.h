@@ -7,6 +7,7 @@
 #include "io/input/controller.h"
 #include "viewer/camera.h"
 #include "viewer/health.h"
+#include "viewer/lights/light_tools.h"
 #include "viewer/navigation.h"
 #include "viewer/overlay/look_tools.h"
 #include "viewer/picture_worker.h"
@@ -36,7 +37,7 @@ struct ViewModel {
     Navigation navigation;
 
     gi::Scene scene;
-    uint64_t scene_version = 1;
+    uint64_t scene_version = 1, shown_changes = 0;
     size_t light = 0;  ///< the selected one
     std::string engine, preset;
     gi::EngineSettings settings;
@@ -48,6 +49,7 @@ struct ViewModel {
     MeasureModel measure;
 
     LookTools look_tools;  ///< beside scene.look
+    LightTools light_tools;
 
     ControllerModel controller;
 
@@ -65,6 +67,11 @@ struct ViewModel {
 
     /// Must follow every change of `scene`.
     void scene_changed() { ++scene_version; }
+    /// The same where nothing moves and no light is another: exposure, curve, the border of a comparison.
+    void shown_changed() {
+        ++scene_version;
+        ++shown_changes;
+    }
     gi::SceneLight* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
     void go_to(const gi::SceneCamera& camera) {
         rig = CameraRig(camera);

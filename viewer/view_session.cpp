@@ -10,6 +10,7 @@
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "viewer/actions.h"
+#include "viewer/lights/light_edits.h"
 #include "viewer/panels/panels.h"
 #include "viewer/rgba.h"
 
@@ -208,7 +209,7 @@ void ViewSession::take_input() {
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard && !model_.shell.ask_to_close) run_actions(model_, keys);
-    if (take_clip_handles(model_)) return;
+    if (take_clip_handles(model_) || take_light_handles(model_)) return;
     measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));
@@ -221,11 +222,12 @@ void ViewSession::take_input() {
 
 void ViewSession::draw_panels() {
     draw_overlay(model_);
+    draw_convergence(model_);
     desk_.draw();
     measure_.draw(model_);
     if (model_.show_panels && placed_) {
         draw_settings_panel(model_);
-        draw_light_panel(model_);
+        if (model_.light_tools.show_panel) draw_light_panel(model_);
         if (model_.look_tools.show_panel) draw_view_panel(model_);
         draw_statistics_panel(model_);
     }
@@ -236,8 +238,10 @@ void ViewSession::draw_panels() {
 }
 
 void ViewSession::send_request() {
-    if (scene_seen_ != model_.scene_version && scene_seen_ != 0) moved_ = Clock::now();  // lights move too
-    scene_seen_ = model_.scene_version;
+    // Lights move too; what is only shown otherwise does not.
+    const uint64_t moves = model_.scene_version - model_.shown_changes;
+    if (scene_seen_ != moves && scene_seen_ != 0) moved_ = Clock::now();
+    scene_seen_ = moves;
     PictureRequest request;
     request.moving = seconds_at_rest() < kRest;
     request.engine = model_.engine;
@@ -263,6 +267,10 @@ void ViewSession::send_request() {
 }
 
 Result<void> ViewSession::save() {
+    if (std::exchange(model_.light_tools.save_scene, false)) {
+        save_scene(model_);
+        log::info(model_.message);
+    }
     if (model_.save_picture && model_.picture) {
         model_.save_picture = false;
         const auto path = free_name(model_.pictures);

@@ -139,10 +139,11 @@ octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLigh
     return octree::light_view_cut(source, view, budget);
 }
 
-gi::Material device_material(const gi::SceneMaterial& material) {
+gi::Material device_material(const gi::SceneMaterial& material, double albedo) {
     gi::Material result{};
-    result.diffuse = glm::vec4(glm::vec3(material.diffuse), static_cast<float>(material.specular));
-    result.emission = glm::vec4(glm::vec3(material.emission), static_cast<float>(material.shininess));
+    result.diffuse = glm::vec4(glm::vec3(material.diffuse * albedo), static_cast<float>(material.specular));
+    const glm::vec3 emission(material.emits ? material.emission : glm::dvec3(0));
+    result.emission = glm::vec4(emission, static_cast<float>(material.shininess));
     return result;
 }
 

@@ -38,6 +38,7 @@ gi::Light device_light(const gi::SceneLight& light, const LocalFrame& frame);
 octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
                            uint64_t budget);
 
-gi::Material device_material(const gi::SceneMaterial& material);
+/// `albedo`: scales what the points' colours give.
+gi::Material device_material(const gi::SceneMaterial& material, double albedo = 1);
 
 }  // namespace lucarne::viewer

@@ -27,6 +27,8 @@ Result<Environment> load_environment(const std::filesystem::path& path, const gl
     environment.width = image.width;
     environment.height = image.height;
     environment.rotation = static_cast<float>(rotation);
+    environment.image = path;
+    environment.scale = scale;
     environment.texels.resize(image.pixels.size());
     for (size_t i = 0; i < image.pixels.size(); ++i) {
         const glm::vec4& pixel = image.pixels[i];

@@ -17,11 +17,15 @@ struct Environment {
     uint32_t width = 1, height = 1;
     std::vector<glm::vec3> texels{glm::vec3(0.0f)};  ///< W/(sr m^2), rows from the zenith down
     float rotation = 0;                              ///< about z, radians, counterclockwise from above
+    std::filesystem::path image;                     ///< what was read; empty: the same from everywhere
+    glm::dvec3 scale{1.0};                           ///< that the picture's values were multiplied by
 
     /// In a unit direction, W/(sr m^2).
     glm::vec3 radiance(const glm::vec3& direction) const { return texels[texel(direction)]; }
     /// The texel that a unit direction meets.
     size_t texel(const glm::vec3& direction) const;
+
+    bool operator==(const Environment&) const = default;
 };
 
 /// No more texels than this: 8192 x 4096 take 384 MiB.

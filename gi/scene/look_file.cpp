@@ -10,6 +10,7 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "gi/scene/degrees.h"
 #include "gi/scene/scene_limits.h"
 
 namespace lucarne::gi {
@@ -109,7 +110,7 @@ json write_clip(const Clip& clip) {
     json written = json::object();
     for (const ClipBox& box : clip.boxes) {
         json object = {{"min", vector(box.min)}, {"max", vector(box.max)}};
-        if (box.rotation != 0) object["rotation"] = glm::degrees(box.rotation);
+        if (box.rotation != 0) object["rotation"] = degrees_of(box.rotation);
         if (box.inverted) object["inverted"] = true;
         written["boxes"].push_back(object);
     }

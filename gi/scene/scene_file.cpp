@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -18,7 +19,12 @@ using glm::dvec3;
 
 // data/README.md states these limits.
 constexpr size_t kMostLights = 64, kMostMaterials = 255, kMostCameras = 1000;
-constexpr JsonRange kScale{0, 10}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6};
+constexpr JsonRange kScale{0, 10}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6},
+    kLuminance{1e-9, 1e15}, kDifference{1e-6, 1e6};
+
+std::vector<std::string_view> list(std::span<const std::string_view> names) {
+    return {names.begin(), names.end()};
+}
 
 Result<SceneMaterial> read_material(JsonObject object) {
     SceneMaterial material;
@@ -27,6 +33,7 @@ Result<SceneMaterial> read_material(JsonObject object) {
     LUCARNE_ASSIGN(material.specular, object.number("specular", kShare, 0));
     LUCARNE_ASSIGN(material.shininess, object.number("shininess", kShininess, 1));
     LUCARNE_ASSIGN(material.emission, object.vector("emission", kRadiance, dvec3(0)));
+    LUCARNE_ASSIGN(material.emits, object.boolean("on", true));
     LUCARNE_ASSIGN(const int64_t classification, object.integer("class", 0, 255, -1));
     if (classification >= 0) material.classification = static_cast<int>(classification);
     LUCARNE_ASSIGN(const int64_t scan, object.integer("scan", 0, 65535, -1));
@@ -88,9 +95,37 @@ Result<void> read_exposure(JsonObject& root, Scene& scene) {
     if (!exposure) return {};
     LUCARNE_ASSIGN(const double ev, exposure->number("ev", kStops, NAN));
     if (!std::isnan(ev)) scene.exposure_ev = ev;
-    LUCARNE_ASSIGN(const size_t tone_map, exposure->choice("tone_map", {"filmic", "reinhard", "none"}, 0));
+    LUCARNE_ASSIGN(const size_t tone_map, exposure->choice("tone_map", list(tone_map_names()), 0));
     scene.tone_map = static_cast<ToneMap>(tone_map);
+    LUCARNE_ASSIGN(auto luminance, exposure->object("luminance"));
+    if (luminance) {
+        ValueRange range;
+        LUCARNE_ASSIGN(range.low, luminance->number("low", kLuminance));
+        LUCARNE_ASSIGN(range.high, luminance->number("high", kLuminance));
+        if (!(range.low < range.high)) return luminance->wrong("is no more than low", "high");
+        LUCARNE_TRY(luminance->finish());
+        scene.luminance = range;
+    }
     return exposure->finish();
+}
+
+Result<Albedo> read_albedo(JsonObject object) {
+    Albedo albedo;
+    LUCARNE_ASSIGN(albedo.scale, object.number("scale", kScale, 1));
+    LUCARNE_ASSIGN(albedo.flatten, object.number("flatten", kShare, 0));
+    LUCARNE_TRY(object.finish());
+    return albedo;
+}
+
+Result<Comparison> read_comparison(JsonObject object) {
+    Comparison comparison;
+    LUCARNE_ASSIGN(comparison.engine, object.text("engine", comparison.engine));
+    LUCARNE_ASSIGN(const size_t show, object.choice("show", list(comparison_names()), 0));
+    comparison.show = static_cast<Comparison::Show>(show);
+    LUCARNE_ASSIGN(comparison.border, object.number("border", kShare, comparison.border));
+    LUCARNE_ASSIGN(comparison.range, object.number("range", kDifference, comparison.range));
+    LUCARNE_TRY(object.finish());
+    return comparison;
 }
 
 Result<Scene> read_scene(const nlohmann::json& document, const std::string& name,
@@ -103,7 +138,9 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
     if (environment) {
         if (root.has("background"))
             return root.wrong("the environment is the background; leave this out", "background");
-        LUCARNE_ASSIGN(scene.environment, read_environment(*environment, folder));
+        JsonObject sky = *environment;
+        LUCARNE_ASSIGN(scene.environment_on, sky.boolean("on", true));
+        LUCARNE_ASSIGN(scene.environment, read_environment(std::move(sky), folder));
     }
     LUCARNE_ASSIGN(const auto lights, root.objects("lights", kMostLights));
     for (const JsonObject& object : lights) {
@@ -111,6 +148,14 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
         scene.lights.push_back(std::move(light));
     }
     LUCARNE_TRY(read_materials(root, scene));
+    LUCARNE_ASSIGN(const auto albedo, root.object("albedo"));
+    if (albedo) {
+        LUCARNE_ASSIGN(scene.albedo, read_albedo(*albedo));
+    }
+    LUCARNE_ASSIGN(const auto comparison, root.object("comparison"));
+    if (comparison) {
+        LUCARNE_ASSIGN(scene.comparison, read_comparison(*comparison));
+    }
     LUCARNE_ASSIGN(const auto look, root.object("look"));
     if (look) {
         LUCARNE_ASSIGN(scene.look, read_look(*look));
@@ -142,6 +187,16 @@ double fitting_distance(const dvec3& half, const dvec3& right, const dvec3& up, 
 }
 
 }  // namespace
+
+std::span<const std::string_view> tone_map_names() {
+    static constexpr std::array<std::string_view, 4> kNames = {"filmic", "reinhard", "none", "false-colour"};
+    return kNames;
+}
+
+std::span<const std::string_view> comparison_names() {
+    static constexpr std::array<std::string_view, 3> kNames = {"split", "signed", "absolute"};
+    return kNames;
+}
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name,
                           const std::filesystem::path& folder) {

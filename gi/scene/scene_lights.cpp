@@ -12,7 +12,8 @@ namespace {
 
 using glm::dvec3;
 
-constexpr JsonRange kConeDegrees{.1, 170}, kCapDegrees{0, 90}, kSide{1e-6, 1e9}, kTurnDegrees{-360, 360};
+constexpr JsonRange kConeDegrees{.1, 170}, kCapDegrees{0, 90}, kSide{1e-6, 1e9}, kTurnDegrees{-360, 360},
+    kLatitude{-90, 90}, kLongitude{-180, 180};
 
 /// Where a light shines to: `target`, or `direction` from where it stands.
 Result<void> read_aim(JsonObject& object, SceneLight& light) {
@@ -47,9 +48,30 @@ Result<void> read_point(JsonObject& object, SceneLight& light) {
     return {};
 }
 
+Result<SunMoment> read_sun(JsonObject object) {
+    SunMoment sun;
+    LUCARNE_ASSIGN(sun.latitude, object.number("latitude", kLatitude));
+    LUCARNE_ASSIGN(sun.longitude, object.number("longitude", kLongitude));
+    LUCARNE_ASSIGN(const std::string time, object.text("time"));
+    const auto moment = parse_time(time);
+    if (!moment) return object.wrong(moment.error().line(), "time");
+    sun.time = *moment;
+    LUCARNE_ASSIGN(sun.north, object.number("north", kTurnDegrees, 0));
+    LUCARNE_TRY(object.finish());
+    return sun;
+}
+
 Result<void> read_directional(JsonObject& object, SceneLight& light) {
-    LUCARNE_ASSIGN(light.target, object.vector("direction", kCoordinate));
-    if (light.target == dvec3(0)) return object.wrong("the light points nowhere", "direction");
+    LUCARNE_ASSIGN(const auto sun, object.object("sun"));
+    if (sun) {
+        if (object.has("direction"))
+            return object.wrong("give a direction or the sun's place and time, not both", "direction");
+        LUCARNE_ASSIGN(light.sun, read_sun(*sun));
+        follow_sun(light);
+    } else {
+        LUCARNE_ASSIGN(light.target, object.vector("direction", kCoordinate));
+        if (light.target == dvec3(0)) return object.wrong("the light points nowhere", "direction");
+    }
     LUCARNE_ASSIGN(light.angular_radius, object.number("angular_radius", kCapDegrees, 0));
     light.angular_radius = glm::radians(light.angular_radius);
     LUCARNE_ASSIGN(light.strength, object.vector("irradiance", kRadiance));
@@ -76,6 +98,14 @@ Result<void> read_disc(JsonObject& object, SceneLight& light) {
 
 }  // namespace
 
+void follow_sun(SceneLight& light) {
+    if (light.sun) light.target = light.position - towards(solar_position(*light.sun), light.sun->north);
+}
+
+bool shines(const SceneLight& light) {
+    return light.on && !(light.sun && light.target.z >= light.position.z);
+}
+
 Result<SceneLight> read_light(JsonObject object) {
     // In the order of LightKind.
     static constexpr Result<void> (*kReaders[])(JsonObject&, SceneLight&) = {
@@ -85,6 +115,7 @@ Result<SceneLight> read_light(JsonObject object) {
                    object.choice("type", {"spot", "point", "directional", "rectangle", "disc"}));
     light.kind = static_cast<LightKind>(kind);
     LUCARNE_ASSIGN(light.name, object.text("name", ""));
+    LUCARNE_ASSIGN(light.on, object.boolean("on", true));
     LUCARNE_TRY(kReaders[kind](object, light));
     LUCARNE_TRY(object.finish());
     return light;
@@ -99,6 +130,8 @@ Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,
     LUCARNE_ASSIGN(const double rotation, object.number("rotation", kTurnDegrees, 0));
     LUCARNE_TRY(object.finish());
     environment->texels = {glm::vec3(radiance)};
+    environment->scale = radiance;
+    environment->rotation = static_cast<float>(glm::radians(rotation));
     if (!image.empty()) {
         auto loaded = load_environment(folder / image, radiance, glm::radians(rotation));
         if (!loaded) return object.wrong(loaded.error().line(), "image");

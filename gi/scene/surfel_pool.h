@@ -19,14 +19,17 @@ namespace lucarne::gi {
 /// No node holds more surface than this many faces of its cube; what claims more is no scan.
 inline constexpr double kMostSurface = 64;
 
+class BakedLight;
+
 /// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB
 /// (.5 linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The
 /// material is the last one in the scene whose conditions all hold ([0], the default, has none); those beyond
 /// 256 are not used. Colours are what the scene's look asks for (`first_scan` counts the records' scans from
-/// there); points of hidden classes become strays.
+/// there); points of hidden classes become strays. `baked` is divided out of the points' own colours, as far
+/// as the scene's albedo asks.
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
                                        const octree::NodeData& data, const Scene& scene,
-                                       uint32_t first_scan = 0);
+                                       uint32_t first_scan = 0, const BakedLight* baked = nullptr);
 
 /// One node of a cut as the stream chose it.
 struct CutEntry {

@@ -4,6 +4,7 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "gi/scene/baked_light.h"
 #include "gi/scene/colouring.h"
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
@@ -25,11 +26,12 @@ glm::dvec3 vector_at(const Attribute& attribute, const std::byte* record) {
 class Packer {
  public:
     Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene,
-           uint32_t first_scan)
+           uint32_t first_scan, const BakedLight* baked)
         : header_(header),
           scene_(scene),
           cube_(header.root.of(node.key)),
-          colouring_(header.schema, scene.look, first_scan) {
+          colouring_(header.schema, scene.look, first_scan),
+          baked_(scene.albedo.flatten > 0 ? baked : nullptr) {
         color_ = find(io::names::color, 3);
         normal_ = find(io::names::normal, 3);
         normal_oct_ = find(io::names::normal_oct, 3);
@@ -61,7 +63,7 @@ class Packer {
         surfel.b = at.z | (hidden ? kStrayArea : area(record)) << 16 | material(position, record, scan) << 24;
         const glm::vec3 n = hidden ? glm::vec3(0.0f) : normal(record);
         const auto shown = colouring_.colour(record, position.z, scan, n);
-        surfel.d = shown ? *shown : albedo(record, scan);
+        surfel.d = shown ? *shown : albedo(position, record, scan);
         const bool has_normal = n != glm::vec3(0.0f);
         surfel.c = has_normal ? encode_octahedral(n) : 0u;
         if (has_normal) surfel.d |= kSurfelHasNormal;
@@ -120,10 +122,18 @@ class Packer {
         return io::color_white(type == io::ScalarType::u8 ? 8 : type == io::ScalarType::u16 ? 16 : 0);
     }
 
-    uint32_t albedo(const std::byte* record, uint32_t scan) const {
-        constexpr double kDefault = 0.5;  // of a scan without colour, linear
+    uint32_t albedo(const glm::dvec3& position, const std::byte* record, uint32_t scan) const {
+        constexpr double kDefault = 0.5;            // of a scan without colour, linear
+        constexpr double kLargestFlattened = 0.95;  // as brdf.h caps it
         glm::dvec3 srgb(linear_to_srgb(static_cast<float>(kDefault)));
         if (color_) srgb = vector_at(*color_, record) / white(scan);
+        if (color_ && baked_) {
+            const double factor = baked_->factor(position, scene_.albedo.flatten);
+            for (int i = 0; i < 3; ++i) {
+                const double linear = factor * srgb_to_linear(static_cast<float>(srgb[i]));
+                srgb[i] = linear_to_srgb(static_cast<float>(std::min(linear, kLargestFlattened)));
+            }
+        }
         return pack_colour(srgb);
     }
 
@@ -146,6 +156,7 @@ class Packer {
     const Scene& scene_;
     const octree::Cube cube_;
     const Colouring colouring_;
+    const BakedLight* const baked_;
     const Attribute *color_, *normal_, *normal_oct_, *area_, *classification_, *scan_;
 };
 
@@ -166,11 +177,11 @@ void limit_areas(std::vector<PackedSurfel>& surfels) {
 }  // namespace
 
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
-                                       const octree::NodeData& data, const Scene& scene,
-                                       uint32_t first_scan) {
+                                       const octree::NodeData& data, const Scene& scene, uint32_t first_scan,
+                                       const BakedLight* baked) {
     const size_t stride = header.schema.stride;
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
-    Packer packer(header, node, scene, first_scan);
+    Packer packer(header, node, scene, first_scan, baked);
     packer.drop_empty_colours(data);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
     limit_areas(surfels);

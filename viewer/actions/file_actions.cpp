@@ -36,6 +36,9 @@ bool is_stopped(const ViewModel& model) {
                return row.state == ScanState::stopped;
            });
 }
+void save_scene(ViewModel& model) {
+    model.light_tools.save_scene = true;
+}
 void save_picture(ViewModel& model) {
     model.save_picture = true;
 }
@@ -54,6 +57,7 @@ std::span<const Action> file_actions() {
         Action{{GLFW_KEY_W, GLFW_MOD_CONTROL}, "File", "Close all scans", close_scans, has_scans},
         Action{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
         Action{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Go on with conversions", go_on, is_stopped},
+        Action{{GLFW_KEY_S, GLFW_MOD_CONTROL}, "File", "Save scene", save_scene},
         Action{{GLFW_KEY_F12}, "File", "Save the picture as PNG", save_picture, has_picture},
         Action{{GLFW_KEY_Q, GLFW_MOD_CONTROL}, "File", "Quit", close},
     };

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "viewer/actions.h"
+#include "viewer/lights/light_edits.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -22,12 +23,47 @@ bool has_light(const ViewModel& model) {
     return !model.scene.lights.empty();
 }
 
+template <gi::LightKind Kind>
+void add(ViewModel& model) {
+    add_light(model, Kind);
+}
+bool is_on(const ViewModel& model) {
+    return has_light(model) && model.light < model.scene.lights.size() && model.scene.lights[model.light].on;
+}
+bool can_undo(const ViewModel& model) {
+    return !model.light_tools.undo.empty();
+}
+void toggle_panel(ViewModel& model) {
+    model.light_tools.show_panel = !model.light_tools.show_panel;
+}
+bool shows_panel(const ViewModel& model) {
+    return model.light_tools.show_panel;
+}
+void toggle_handles(ViewModel& model) {
+    model.light_tools.show_handles = !model.light_tools.show_handles;
+}
+bool shows_handles(const ViewModel& model) {
+    return model.light_tools.show_handles;
+}
+
 }  // namespace
 
 std::span<const Action> light_actions() {
+    using Kind = gi::LightKind;
     static constexpr std::array kActions = {
         Action{{GLFW_KEY_L}, "Light", "Put the light where the camera is", place_light_at_camera, has_light},
         Action{{GLFW_KEY_N}, "Light", "Select the next light", next_light, has_light},
+        Action{{GLFW_KEY_O, GLFW_MOD_ALT}, "Light", "On", switch_selected_light, has_light, is_on},
+        Action{{GLFW_KEY_1, GLFW_MOD_ALT}, "Light/Add", "Spot", add<Kind::spot>},
+        Action{{GLFW_KEY_2, GLFW_MOD_ALT}, "Light/Add", "Point", add<Kind::point>},
+        Action{{GLFW_KEY_3, GLFW_MOD_ALT}, "Light/Add", "Sun", add<Kind::directional>},
+        Action{{GLFW_KEY_4, GLFW_MOD_ALT}, "Light/Add", "Rectangle", add<Kind::rectangle>},
+        Action{{GLFW_KEY_5, GLFW_MOD_ALT}, "Light/Add", "Disc", add<Kind::disc>},
+        Action{{GLFW_KEY_D, GLFW_MOD_ALT}, "Light", "Duplicate", duplicate_light, has_light},
+        Action{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
+        Action{{GLFW_KEY_Z, GLFW_MOD_ALT}, "Light", "Undo", undo_lights, can_undo},
+        Action{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
+        Action{{GLFW_KEY_L, GLFW_MOD_ALT}, "Window", "Light panel", toggle_panel, nullptr, shows_panel},
     };
     return kActions;
 }

@@ -169,7 +169,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
     LUCARNE_TRY(pipeline->set_engine(options.engine));
     pipeline->set_settings(drawing.preset.engine);
     pipeline->set_budgets(drawing.preset.budgets);
-    pipeline->set_scene(std::move(scene));
+    LUCARNE_TRY(pipeline->set_scene(std::move(scene)));
     return pipeline;
 }
 

@@ -2,8 +2,12 @@
 #include <numbers>
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
+#include "gi/scene/photometry.h"
+#include "gi/shared/surfel_code.h"
 #include "viewer/actions.h"
+#include "viewer/lights/light_edits.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -20,7 +24,7 @@ bool drag_point(const char* label, glm::dvec3& point, double scene_size) {
 
 bool edit_angle(const char* label, double& radians, float least, float most) {
     float degrees = static_cast<float>(radians * 180 / std::numbers::pi);
-    if (!ImGui::SliderFloat(label, &degrees, least, most, "%.1f degrees", ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderFloat(label, &degrees, least, most, "%.2f degrees", ImGuiSliderFlags_AlwaysClamp))
         return false;
     radians = degrees * std::numbers::pi / 180;
     return true;
@@ -32,25 +36,68 @@ bool edit_length(const char* label, double& length, double scene_size) {
                              &least, nullptr, "%.3f", ImGuiSliderFlags_AlwaysClamp);
 }
 
-/// Colour and strength in the kind's unit.
-bool edit_strength(gi::SceneLight& light) {
-    static constexpr const char* kUnits[] = {"W/sr", "W/sr", "W/m^2", "W/(sr m^2)", "W/(sr m^2)"};
-    float strength = static_cast<float>(std::max({light.strength.x, light.strength.y, light.strength.z}));
-    float color[3] = {1, 1, 1};
-    if (strength > 0)
-        for (int i = 0; i < 3; ++i) color[i] = static_cast<float>(light.strength[i]) / strength;
-    bool dyed = ImGui::ColorEdit3("colour", color, ImGuiColorEditFlags_Float);
-    dyed |=
-        ImGui::DragFloat(kUnits[static_cast<size_t>(light.kind)], &strength, std::max(strength, 0.01f) / 100,
-                         1e-3f, 1e9f, "%.4g", ImGuiSliderFlags_AlwaysClamp);
-    if (dyed) light.strength = glm::dvec3(color[0], color[1], color[2]) * static_cast<double>(strength);
-    return dyed;
+/// Sets the colour and keeps the luminance.
+void dye(gi::SceneLight& light, const glm::dvec3& colour) {
+    const double now = gi::luminance(light.strength), then = gi::luminance(colour);
+    if (then > 0) light.strength = colour * ((now > 0 ? now : 1.0) / then);
 }
 
-bool edit_light(gi::SceneLight& light, double scene_size) {
+/// As the screen shows it, or its linear values.
+bool edit_colour(ViewModel& model, gi::SceneLight& light) {
+    const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
+    float shown[3];
+    for (int i = 0; i < 3; ++i)
+        shown[i] = gi::linear_to_srgb(most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f);
+    bool changed = false;
+    if (ImGui::ColorEdit3("colour", shown, ImGuiColorEditFlags_Float)) {
+        const glm::dvec3 linear(gi::srgb_to_linear(shown[0]), gi::srgb_to_linear(shown[1]),
+                                gi::srgb_to_linear(shown[2]));
+        dye(light, linear);
+        changed = true;
+    }
+    float linear[3];
+    for (int i = 0; i < 3; ++i) linear[i] = most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f;
+    if (ImGui::DragFloat3("linear", linear, 0.005f, 0, 1, "%.3f", ImGuiSliderFlags_AlwaysClamp)) {
+        dye(light, {linear[0], linear[1], linear[2]});
+        changed = true;
+    }
+    float kelvin = static_cast<float>(model.light_tools.kelvin);
+    if (ImGui::SliderFloat("temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
+                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
+        model.light_tools.kelvin = kelvin;
+        dye(light, gi::black_body_colour(kelvin));
+        changed = true;
+    }
+    return changed;
+}
+
+/// In the kind's unit of radiation, of the strongest channel, or of light.
+bool edit_strength(ViewModel& model, gi::SceneLight& light) {
+    static constexpr const char* kUnits[] = {"W/sr", "W/sr", "W/m2", "W/(sr m2)", "W/(sr m2)"};
+    const bool sun = light.kind == gi::LightKind::directional;
+    const double metres = model.picture ? model.picture->metres_per_unit : 1;
+    bool& lumens = model.light_tools.lumens;
+    const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
+    double value = lumens ? gi::luminous_flux(light, metres) : most;
+    const double least = 1e-6, largest = 1e12;
+    const char* unit = !lumens ? kUnits[static_cast<size_t>(light.kind)] : sun ? "lx" : "lm";
+    bool changed =
+        ImGui::DragScalar(unit, ImGuiDataType_Double, &value, static_cast<float>(std::max(value, 0.01) / 100),
+                          &least, &largest, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    if (changed && lumens) gi::set_luminous_flux(light, value, metres);
+    if (changed && !lumens) light.strength = most > 0 ? light.strength * (value / most) : glm::dvec3(value);
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x - ImGui::GetFontSize() * 4);
+    ImGui::Checkbox(sun ? "lx##unit" : "lm##unit", &lumens);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "179 lm a watt of white light in the visible band (Ward & Shakespeare 1998),\n"
+            "colours weighted by Rec. 709's luminance");
+    return edit_colour(model, light) || changed;
+}
+
+bool edit_shape(gi::SceneLight& light, double scene_size) {
     using gi::LightKind;
-    bool changed = drag_point("position", light.position, scene_size);
-    if (light.kind != LightKind::point) changed |= drag_point("aims at", light.target, scene_size);
+    bool changed = false;
     switch (light.kind) {
         case LightKind::spot: {
             changed |= edit_angle("cone", light.angle, 1, 170);
@@ -74,7 +121,54 @@ bool edit_light(gi::SceneLight& light, double scene_size) {
         case LightKind::point:
             break;
     }
-    return edit_strength(light) || changed;
+    return changed;
+}
+
+bool edit_light(ViewModel& model, gi::SceneLight& light) {
+    ImGui::InputText("name", &light.name);
+    bool changed = false;
+    if (light.kind == gi::LightKind::directional) {
+        draw_sun(model);
+    } else {
+        changed |= drag_point("position", light.position, model.scene_size);
+        if (light.kind != gi::LightKind::point)
+            changed |= drag_point("aims at", light.target, model.scene_size);
+    }
+    changed |= edit_shape(light, model.scene_size);
+    return edit_strength(model, light) || changed;
+}
+
+void draw_list(ViewModel& model) {
+    for (size_t i = 0; i < model.scene.lights.size(); ++i) {
+        gi::SceneLight& light = model.scene.lights[i];
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Checkbox("##on", &light.on)) model.scene_changed();
+        ImGui::SameLine();
+        const std::string label = std::to_string(i + 1) + " " + light.name;
+        if (ImGui::Selectable(label.c_str(), model.light == i)) model.light = i;
+        ImGui::PopID();
+    }
+    if (model.scene.lights.empty()) ImGui::TextDisabled("The scene has no light.");
+}
+
+void draw_buttons(ViewModel& model) {
+    static constexpr const char* kKinds[] = {"spot", "point", "sun", "rectangle", "disc"};
+    if (ImGui::Button("Add")) ImGui::OpenPopup("kinds");
+    if (ImGui::BeginPopup("kinds")) {
+        for (size_t kind = 0; kind < std::size(kKinds); ++kind)
+            if (ImGui::Selectable(kKinds[kind])) add_light(model, static_cast<gi::LightKind>(kind));
+        ImGui::EndPopup();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Copy")) duplicate_light(model);
+    ImGui::SameLine();
+    if (ImGui::Button("Delete")) remove_light(model);
+    ImGui::SameLine();
+    ImGui::BeginDisabled(model.light_tools.undo.empty());
+    if (ImGui::Button("Undo")) undo_lights(model);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::Checkbox("handles", &model.light_tools.show_handles);
 }
 
 }  // namespace
@@ -84,16 +178,18 @@ void draw_light_panel(ViewModel& model) {
     ImGui::SetNextWindowPos(ImVec2(8, font * 21), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(font * 22, 0), ImGuiCond_FirstUseEver);
     if (ImGui::Begin("Light")) {
-        for (size_t i = 0; model.scene.lights.size() > 1 && i < model.scene.lights.size(); ++i) {
-            const std::string label = std::to_string(i + 1) + " " + model.scene.lights[i].name;
-            if (ImGui::RadioButton(label.c_str(), model.light == i)) model.light = i;
-        }
+        ImGui::PushItemWidth(-font * 8);
+        draw_list(model);
+        draw_buttons(model);
         if (gi::SceneLight* light = model.selected_light()) {
-            if (edit_light(*light, model.scene_size)) model.scene_changed();
-            if (ImGui::Button("Put it where the camera is")) place_light_at_camera(model);
-        } else {
-            ImGui::TextUnformatted("The scene has no light.");
+            ImGui::Separator();
+            if (edit_light(model, *light)) model.scene_changed();
+            if (light->kind != gi::LightKind::directional && ImGui::Button("Put it where the camera is"))
+                place_light_at_camera(model);
         }
+        draw_sky(model);
+        draw_emitters(model);
+        ImGui::PopItemWidth();
     }
     ImGui::End();
 }

@@ -1,0 +1,28 @@
+// Luminances, or how two pictures' luminances differ, as places along a ramp of colours.
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = 1) writeonly buffer Picture { uint picture[]; };
+layout(std430, binding = 2) readonly buffer Other { vec4 other[]; };
+uniform uint pixels;
+uniform uint mode;  // 0: logarithm of the luminance, 1: signed difference, 2: absolute difference
+uniform float gain;
+uniform float offset;
+uniform vec4 ramp[RAMP];  // sRGB
+
+float luminance(vec3 rgb) {
+    return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
+}
+
+void main() {
+    uint at = gl_GlobalInvocationID.x;
+    if (at >= pixels) return;
+    float own = luminance(radiance[at].rgb);
+    float value = own > 0.0 ? log2(own) : -1e30;
+    if (mode != 0u) value = own - luminance(other[at].rgb);
+    if (mode == 2u) value = abs(value);
+    float place = value * gain + offset;
+    place = place > 0.0 ? min(place, 1.0) * float(RAMP - 1) : 0.0;  // no number: the lower end
+    uint below = min(uint(place), uint(RAMP - 2));
+    picture[at] = packUnorm4x8(vec4(mix(ramp[below].rgb, ramp[below + 1u].rgb, place - float(below)), 1.0));
+}

@@ -1,0 +1,78 @@
+#include "gi/post/false_colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gi/scene/photometry.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr size_t kRamp = 64;
+constexpr double kStops = 5;  // of automatic false colours, to each side
+
+struct Scale {
+    uint32_t mode;
+    double gain, offset;
+    ColourMap map;
+};
+
+Result<void> paint(Device& device, const Buffer& radiance, const Buffer& other, uint32_t pixels,
+                   const Scale& scale, Buffer& picture) {
+    LUCARNE_ASSIGN(const Program* program,
+                   device.program("gi/post/false_colour.comp", {{"RAMP", std::to_string(kRamp)}}));
+    LUCARNE_TRY(device.reserve(picture, size_t{pixels} * sizeof(uint32_t), "picture"));
+    std::vector<float> ramp;
+    for (size_t i = 0; i < kRamp; ++i) {
+        const glm::vec3 colour = mapped_colour(scale.map, static_cast<double>(i) / (kRamp - 1));
+        ramp.insert(ramp.end(), {colour.x, colour.y, colour.z, 1.0f});
+    }
+    radiance.bind(0);
+    picture.bind(1);
+    other.bind(2);
+    program->set("pixels", pixels);
+    program->set("mode", scale.mode);
+    program->set("gain", static_cast<float>(scale.gain));
+    program->set("offset", static_cast<float>(scale.offset));
+    program->set_block("ramp", ramp);
+    program->dispatch(pixels);
+    return {};
+}
+
+}  // namespace
+
+ValueRange luminance_range(const std::optional<ValueRange>& wanted, double ev) {
+    if (wanted) return *wanted;
+    const double middle = 0.18 * std::exp2(-ev) * kLumensPerWatt;
+    return {middle * std::exp2(-kStops), middle * std::exp2(kStops)};
+}
+
+Result<void> false_colour(Device& device, const Buffer& radiance, uint32_t pixels, const ValueRange& range,
+                          Buffer& picture) {
+    const double low = std::log2(range.low / kLumensPerWatt), high = std::log2(range.high / kLumensPerWatt);
+    const double gain = 1 / std::max(high - low, 1e-6);
+    return paint(device, radiance, radiance, pixels, {0, gain, -low * gain, kLuminanceMap}, picture);
+}
+
+Result<void> difference(Device& device, const Buffer& radiance, const Buffer& other, uint32_t pixels,
+                        bool absolute, double ev, double range, Buffer& picture) {
+    const double gain = std::exp2(ev) / range;
+    const Scale scale = absolute ? Scale{2, gain, 0, kDifferenceMap} : Scale{1, gain / 2, 0.5, kSignedMap};
+    return paint(device, radiance, other, pixels, scale, picture);
+}
+
+Result<void> split(Device& device, const Buffer& other, uint32_t width, uint32_t height, double border,
+                   Buffer& picture) {
+    LUCARNE_ASSIGN(const Program* program, device.program("gi/post/split.comp"));
+    other.bind(0);
+    picture.bind(1);
+    program->set("pixels", width * height);
+    program->set("width", width);
+    program->set("border", static_cast<uint32_t>(std::lround(std::clamp(border, 0.0, 1.0) * width)));
+    program->dispatch(width * height);
+    return {};
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,13 @@
+// One picture left of a border, another right of it.
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer Other { uint other[]; };
+layout(std430, binding = 1) buffer Picture { uint picture[]; };
+uniform uint pixels;
+uniform uint width;
+uniform uint border;  // the first column of the other
+
+void main() {
+    uint at = gl_GlobalInvocationID.x;
+    if (at < pixels && at % width >= border) picture[at] = other[at];
+}

@@ -1,0 +1,177 @@
+// Scenes as the files that parse_scene() reads. What has its default value is left out.
+#include <array>
+#include <cmath>
+
+#include <glm/trigonometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "gi/scene/degrees.h"
+#include "gi/scene/look_file.h"
+#include "gi/scene/scene.h"
+#include "io/core/file.h"
+
+namespace lucarne::gi {
+namespace {
+
+using glm::dvec3;
+using Json = nlohmann::ordered_json;
+
+Json vector(const dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+void put(Json& object, const char* key, const auto& value, const auto& otherwise) {
+    if (value != otherwise) object[key] = value;
+}
+void put(Json& object, const char* key, const dvec3& value, const dvec3& otherwise) {
+    if (value != otherwise) object[key] = vector(value);
+}
+
+Json write_sun(const SunMoment& sun) {
+    Json written = {{"latitude", sun.latitude}, {"longitude", sun.longitude}, {"time", time_text(sun.time)}};
+    put(written, "north", sun.north, 0.0);
+    return written;
+}
+
+Json write_light(const SceneLight& light) {
+    static constexpr std::array kTypes = {"spot", "point", "directional", "rectangle", "disc"};
+    static constexpr std::array kStrengths = {"intensity", "intensity", "irradiance", "radiance", "radiance"};
+    const SceneLight plain;
+    const bool sun = light.kind == LightKind::directional;
+    Json written = {{"type", kTypes[static_cast<size_t>(light.kind)]}};
+    put(written, "name", light.name, plain.name);
+    put(written, "on", light.on, true);
+    if (!sun) written["position"] = vector(light.position);
+    if (sun && light.sun)
+        written["sun"] = write_sun(*light.sun);
+    else if (sun)
+        written["direction"] = vector(light.target - light.position);
+    else if (light.kind != LightKind::point)
+        written["target"] = vector(light.target);
+    switch (light.kind) {
+        case LightKind::spot:
+            written["angle"] = degrees_of(light.angle);
+            put(written, "softness", light.softness, plain.softness);
+            break;
+        case LightKind::directional:
+            if (light.angular_radius != 0) written["angular_radius"] = degrees_of(light.angular_radius);
+            break;
+        case LightKind::rectangle:
+            written["width"] = light.width;
+            written["height"] = light.height;
+            put(written, "up", light.up, plain.up);
+            break;
+        case LightKind::disc:
+            written["radius"] = light.radius;
+            break;
+        case LightKind::point:
+            break;
+    }
+    written[kStrengths[static_cast<size_t>(light.kind)]] = vector(light.strength);
+    return written;
+}
+
+Json write_material(const SceneMaterial& material) {
+    const SceneMaterial plain;
+    Json written = Json::object();
+    put(written, "name", material.name, plain.name);
+    put(written, "on", material.emits, true);
+    put(written, "diffuse", material.diffuse, plain.diffuse);
+    put(written, "specular", material.specular, plain.specular);
+    put(written, "shininess", material.shininess, plain.shininess);
+    put(written, "emission", material.emission, plain.emission);
+    if (material.classification) written["class"] = *material.classification;
+    if (material.scan) written["scan"] = *material.scan;
+    if (material.box)
+        written["box"] = {{"min", vector(material.box->first)}, {"max", vector(material.box->second)}};
+    return written;
+}
+
+Json write_camera(const SceneCamera& camera) {
+    Json written = {
+        {"name", camera.name}, {"position", vector(camera.position)}, {"target", vector(camera.target)}};
+    put(written, "up", camera.up, dvec3(0, 0, 1));
+    written["fov"] = degrees_of(camera.vertical_fov);
+    put(written, "orthographic_height", camera.orthographic_height, 0.0);
+    return written;
+}
+
+Json write_environment(const Environment& environment, bool on, const std::filesystem::path& folder) {
+    Json written = Json::object();
+    put(written, "on", on, true);
+    if (!environment.image.empty()) {
+        const auto seen = std::filesystem::absolute(environment.image)
+                              .lexically_normal()
+                              .lexically_proximate(std::filesystem::absolute(folder).lexically_normal());
+        written["image"] = seen.generic_string();
+    }
+    written["radiance"] = vector(environment.scale);
+    if (environment.rotation != 0) {
+        // Single precision: a millionth of a degree is finer.
+        const double degrees = glm::degrees(static_cast<double>(environment.rotation));
+        const double rounded = std::round(degrees * 1e4) / 1e4;
+        const bool same = static_cast<float>(glm::radians(rounded)) == environment.rotation;
+        written["rotation"] = same ? rounded : degrees;
+    }
+    return written;
+}
+
+Json write_exposure(const Scene& scene) {
+    Json written = Json::object();
+    if (scene.exposure_ev) written["ev"] = *scene.exposure_ev;
+    if (scene.tone_map != ToneMap::filmic)
+        written["tone_map"] = tone_map_names()[static_cast<size_t>(scene.tone_map)];
+    if (scene.luminance)
+        written["luminance"] = {{"low", scene.luminance->low}, {"high", scene.luminance->high}};
+    return written;
+}
+
+Json write_comparison(const Comparison& comparison) {
+    const Comparison plain;
+    Json written = {{"engine", comparison.engine}};
+    if (comparison.show != plain.show)
+        written["show"] = comparison_names()[static_cast<size_t>(comparison.show)];
+    put(written, "border", comparison.border, plain.border);
+    put(written, "range", comparison.range, plain.range);
+    return written;
+}
+
+void put_materials(Json& written, const std::vector<SceneMaterial>& materials) {
+    SceneMaterial usual;
+    usual.name = "default";
+    for (size_t i = 0; i < materials.size(); ++i)
+        if (i > 0 || materials[0] != usual) written["materials"].push_back(write_material(materials[i]));
+}
+
+}  // namespace
+
+std::string write_scene(const Scene& scene, const std::filesystem::path& folder) {
+    Json written = Json::object();
+    const auto put_object = [&](const char* key, Json object) {
+        if (!object.empty()) written[key] = std::move(object);
+    };
+    put_object("exposure", write_exposure(scene));
+    if (scene.environment)
+        written["environment"] = write_environment(*scene.environment, scene.environment_on, folder);
+    else
+        put(written, "background", scene.background, dvec3(0));
+    for (const SceneLight& light : scene.lights) written["lights"].push_back(write_light(light));
+    put_materials(written, scene.materials);
+    Json albedo = Json::object();
+    put(albedo, "scale", scene.albedo.scale, 1.0);
+    put(albedo, "flatten", scene.albedo.flatten, 0.0);
+    put_object("albedo", albedo);
+    put_object("look", write_look(scene.look));
+    if (scene.comparison) written["comparison"] = write_comparison(*scene.comparison);
+    for (const SceneCamera& camera : scene.cameras) written["cameras"].push_back(write_camera(camera));
+    // Names that are no UTF-8, which only other programs' files bring, are mended.
+    return written.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<void> save_scene(const Scene& scene, const std::filesystem::path& path, bool overwrite) {
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(write_scene(scene, path.parent_path().empty() ? "." : path.parent_path())));
+    return file.commit();
+}
+
+}  // namespace lucarne::gi

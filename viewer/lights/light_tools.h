@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gi/scene/scene.h"
+
+namespace lucarne::viewer {
+
+/// A place of a light that can be dragged in the picture.
+struct LightHandle {
+    enum class Part : uint8_t { position, target, sky } part = Part::position;
+    size_t light = 0;
+    bool operator==(const LightHandle&) const = default;
+};
+
+/// What the window keeps for lights, albedo, exposure and comparisons beside the scene itself.
+struct LightTools {
+    bool show_panel = true, show_handles = true;
+    bool lumens = false;   ///< strengths are shown in lm and lx
+    double kelvin = 6500;  ///< of the panel's temperature
+    std::optional<LightHandle> held;
+    bool holds_border = false;
+    std::vector<std::vector<gi::SceneLight>> undo;  ///< the lights as they were, the newest last
+    std::string sky_image;                          ///< as typed
+    std::string scene_file;                         ///< what Save scene writes
+    bool save_scene = false;
+};
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,183 @@
+// Over the picture: lights' handles, a comparison's border, how far the picture has converged.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/lights/light_edits.h"
+#include "viewer/lights/light_handles.h"
+#include "viewer/panels/panels.h"
+#include "viewer/tools/pick.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kHandle = 7, kGrip = 6;  // pixels, radius
+constexpr ImU32 kOn = IM_COL32(255, 226, 120, 255), kOff = IM_COL32(130, 130, 130, 255),
+                kSelected = IM_COL32(255, 140, 40, 255), kRim = IM_COL32(20, 20, 20, 220),
+                kBeam = IM_COL32(255, 226, 120, 130), kPaper = IM_COL32(10, 10, 10, 150);
+
+std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
+    const auto seen = project(picture, world);
+    if (!seen) return std::nullopt;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
+                  static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
+}
+
+LightSphere sky_of(const ViewModel& model) {
+    return {model.rig.pivot(), model.scene_size / 5};
+}
+
+struct Ray {
+    glm::dvec3 from, along;
+};
+Ray cursor_ray(const ViewModel& model) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::dvec2 place(2.0 * io.MousePos.x / io.DisplaySize.x - 1,
+                           1 - 2.0 * io.MousePos.y / io.DisplaySize.y);
+    const double aspect = static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y;
+    if (!model.rig.orthographic()) return {model.rig.position(), model.rig.ray(place, aspect)};
+    const double half = model.rig.camera().orthographic_height / 2;
+    return {model.rig.position() + model.rig.right() * (place.x * half * aspect) +
+                model.rig.up() * (place.y * half),
+            model.rig.forward()};
+}
+
+void drag(ViewModel& model, const LightHandle& handle) {
+    gi::SceneLight& light = model.scene.lights[handle.light];
+    const LightSphere sky = sky_of(model);
+    const Ray ray = cursor_ray(model);
+    auto to = dragged_place(light, handle.part, sky, ray.from, ray.along, model.rig.forward());
+    const ImGuiIO& io = ImGui::GetIO();
+    // What a light shines at is put on the surface under the cursor.
+    if (handle.part == LightHandle::Part::target)
+        if (const auto point =
+                model.picture->pick({io.MousePos.x / io.DisplaySize.x, io.MousePos.y / io.DisplaySize.y}))
+            to = point;
+    if (to && move_light(light, handle.part, *to, sky)) model.scene_changed();
+}
+
+/// Draws one; returns whether the mouse is on it.
+bool draw_handle(const ViewModel& model, const LightHandle& handle, const ImVec2& at) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const gi::SceneLight& light = model.scene.lights[handle.light];
+    const ImU32 colour = handle.light == model.light ? kSelected : light.on ? kOn : kOff;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float x = at.x - mouse.x, y = at.y - mouse.y;
+    const bool hovered = !ImGui::GetIO().WantCaptureMouse && x * x + y * y < 4 * kHandle * kHandle;
+    const float radius = hovered ? kHandle + 2 : kHandle;
+    if (handle.part == LightHandle::Part::target) {
+        list.AddCircle(at, radius - 1, kRim, 0, 4);
+        list.AddCircle(at, radius - 1, colour, 0, 2);
+    } else {
+        list.AddCircleFilled(at, radius + 1.5f, kRim);
+        list.AddCircleFilled(at, radius, colour);
+    }
+    if (handle.part == LightHandle::Part::sky)  // rays
+        for (int i = 0; i < 8; ++i) {
+            const float angle = static_cast<float>(i) * std::numbers::pi_v<float> / 4, c = std::cos(angle),
+                        s = std::sin(angle);
+            list.AddLine({at.x + c * (radius + 3), at.y + s * (radius + 3)},
+                         {at.x + c * (radius + 7), at.y + s * (radius + 7)}, colour, 2);
+        }
+    if ((hovered || handle.light == model.light) && handle.part != LightHandle::Part::target)
+        list.AddText({at.x + radius + 6, at.y - ImGui::GetFontSize() / 2}, colour, light.name.c_str());
+    return hovered;
+}
+
+void draw_beam(const ViewModel& model, const gi::SceneLight& light) {
+    const LightSphere sky = sky_of(model);
+    const bool sun = light.kind == gi::LightKind::directional;
+    const auto from =
+        on_screen(*model.picture, sun ? handle_place(light, LightHandle::Part::sky, sky) : light.position);
+    const auto to = on_screen(*model.picture, sun ? sky.centre : light.target);
+    if (from && to && light.kind != gi::LightKind::point)
+        ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kBeam, 1.5f);
+}
+
+bool take_border(ViewModel& model) {
+    LightTools& tools = model.light_tools;
+    auto& comparison = model.scene.comparison;
+    if (!comparison || comparison->show != gi::Comparison::Show::split) return tools.holds_border = false;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float x = static_cast<float>(comparison->border) * io.DisplaySize.x;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const bool hovered = !io.WantCaptureMouse && std::abs(io.MousePos.x - x) < kGrip;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.holds_border = false;
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.holds_border = true;
+    list.AddLine({x, 0}, {x, io.DisplaySize.y}, hovered || tools.holds_border ? kSelected : IM_COL32_WHITE,
+                 2);
+    const float font = ImGui::GetFontSize(), y = io.DisplaySize.y - 3.5f * font;
+    const std::string left = model.engine, right = comparison->engine;
+    const ImVec2 size = ImGui::CalcTextSize(left.c_str());
+    const float right_width = ImGui::CalcTextSize(right.c_str()).x;
+    list.AddRectFilled({x - size.x - 14, y - 3}, {x + right_width + 14, y + size.y + 3}, kPaper, 4);
+    list.AddText({x - size.x - 8, y}, IM_COL32_WHITE, left.c_str());
+    list.AddText({x + 8, y}, IM_COL32_WHITE, right.c_str());
+    list.AddLine({x, y - 3}, {x, y + size.y + 3}, IM_COL32_WHITE, 2);
+    if (hovered || tools.holds_border) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (!tools.holds_border) return false;
+    const double border = std::clamp(static_cast<double>(io.MousePos.x / io.DisplaySize.x), 0.0, 1.0);
+    if (border != comparison->border) {
+        comparison->border = border;
+        model.shown_changed();
+    }
+    return true;
+}
+
+}  // namespace
+
+bool take_light_handles(ViewModel& model) {
+    if (!model.picture) return false;
+    LightTools& tools = model.light_tools;
+    if (take_border(model)) return true;
+    if (!tools.show_handles || !model.show_panels || model.engine == "unlit") {
+        tools.held.reset();
+        return false;
+    }
+    const auto handles = light_handles(model.scene.lights);
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.held.reset();
+    if (tools.held && std::find(handles.begin(), handles.end(), *tools.held) == handles.end())
+        tools.held.reset();
+    if (const gi::SceneLight* light = model.selected_light()) draw_beam(model, *light);
+    std::optional<LightHandle> under;
+    for (const LightHandle& handle : handles) {
+        // What a light shines at shows for the selected one alone: pictures of many lights stay clear.
+        if (handle.part == LightHandle::Part::target && handle.light != model.light) continue;
+        const auto at = on_screen(*model.picture,
+                                  handle_place(model.scene.lights[handle.light], handle.part, sky_of(model)));
+        if (at && draw_handle(model, handle, *at)) under = handle;
+    }
+    if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        remember_lights(model);
+        tools.held = under;
+        model.light = under->light;
+        return true;
+    }
+    if (tools.held && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0))
+        drag(model, *tools.held);
+    return tools.held.has_value();
+}
+
+void draw_convergence(const ViewModel& model) {
+    if (!model.picture || model.picture->stats.accumulated >= kMostAccumulated) return;
+    const float share =
+        model.picture->moving ? 0 : static_cast<float>(model.picture->stats.accumulated) / kMostAccumulated;
+    const float font = ImGui::GetFontSize(), radius = 0.7f * font;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const ImVec2 centre(size.x / 2, size.y - 1.2f * font);
+    constexpr float kTop = -std::numbers::pi_v<float> / 2;
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddCircleFilled(centre, radius + 4, kPaper);
+    list.AddCircle(centre, radius, kOff, 32, 3);
+    list.PathArcTo(centre, radius, kTop, kTop + share * 2 * std::numbers::pi_v<float>, 32);
+    list.PathStroke(kOn, 0, 3);
+    if (!model.picture->moving)
+        list.AddText({centre.x + radius + 7, centre.y - font / 2}, IM_COL32_WHITE,
+                     fmt::format("{} of {}", model.picture->stats.accumulated, kMostAccumulated).c_str());
+}
+
+}  // namespace lucarne::viewer

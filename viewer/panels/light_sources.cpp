@@ -1,0 +1,200 @@
+// What shines beside lamps: the sun, the sky, classes of points.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "gi/scene/colour_map.h"
+#include "viewer/lights/light_edits.h"
+#include "viewer/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+bool edit_degrees(const char* label, double& value, double least, double most) {
+    return ImGui::DragScalar(label, ImGuiDataType_Double, &value, 0.1f, &least, &most, "%.4f",
+                             ImGuiSliderFlags_AlwaysClamp);
+}
+
+bool edit_moment(gi::Moment& moment) {
+    gi::LocalTime time = gi::local_time(moment);
+    int date[3] = {time.year, time.month, time.day};
+    bool changed = ImGui::DragInt3("date", date, 0.1f);
+    float hours = static_cast<float>(time.seconds) / 3600;
+    char clock[32];
+    std::snprintf(clock, sizeof clock, "%02d:%02d", time.seconds / 3600, time.seconds / 60 % 60);
+    if (ImGui::SliderFloat("time", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp)) {
+        time.seconds = static_cast<int>(std::lround(hours * 60)) * 60;
+        changed = true;
+    }
+    float ahead = static_cast<float>(moment.ahead) / 60;
+    if (ImGui::SliderFloat("clock", &ahead, -12, 14, "UTC %+.1f h", ImGuiSliderFlags_AlwaysClamp)) {
+        moment.ahead = static_cast<int>(std::lround(ahead * 4)) * 15;
+        changed = true;
+    }
+    if (!changed) return false;
+    time.year = date[0], time.month = date[1], time.day = date[2];
+    moment = gi::moment_of(time, moment.ahead);
+    return true;
+}
+
+glm::vec3 scaled_to_one(const glm::dvec3& colour, float& most) {
+    most = static_cast<float>(std::max({colour.x, colour.y, colour.z}));
+    return most > 0 ? glm::vec3(colour / static_cast<double>(most)) : glm::vec3(1.0f);
+}
+
+/// A radiance as a colour and how strong it is.
+bool edit_radiance(const char* label, glm::dvec3& radiance) {
+    float most = 0;
+    glm::vec3 colour = scaled_to_one(radiance, most);
+    ImGui::PushID(label);
+    bool changed = ImGui::ColorEdit3("linear colour", &colour.x, ImGuiColorEditFlags_Float);
+    changed |= ImGui::DragFloat("W/(sr m2)", &most, std::max(most, 0.01f) / 100, 0, 1e9f, "%.4g",
+                                ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopID();
+    if (changed) radiance = glm::dvec3(colour) * static_cast<double>(most);
+    return changed;
+}
+
+/// The sky as the scene holds it, changed: it is shared with the worker.
+template <class Edit>
+void change_sky(ViewModel& model, const Edit& edit) {
+    auto sky = std::make_shared<gi::Environment>(*model.scene.environment);
+    edit(*sky);
+    model.scene.environment = std::move(sky);
+    model.scene_changed();
+}
+
+void edit_even_sky(ViewModel& model) {
+    glm::dvec3 radiance = model.scene.environment->scale;
+    if (!edit_radiance("sky", radiance)) return;
+    change_sky(model, [&](gi::Environment& sky) {
+        sky.scale = radiance;
+        sky.texels = {glm::vec3(radiance)};
+    });
+}
+
+void load_sky(ViewModel& model) {
+    auto sky = gi::load_environment(model.light_tools.sky_image, glm::dvec3(1), 0);
+    if (!sky) {
+        model.message = sky.error().line();
+        return;
+    }
+    model.scene.environment = std::make_shared<const gi::Environment>(std::move(*sky));
+    model.scene.environment_on = true;
+    model.scene_changed();
+}
+
+void choose_class(gi::SceneMaterial& material, ViewModel& model) {
+    const auto name_of = [](int number) {
+        return std::to_string(number) + " " + std::string(gi::class_name(static_cast<uint8_t>(number)));
+    };
+    if (!ImGui::BeginCombo("class", name_of(*material.classification).c_str())) return;
+    for (int number = 0; number < 256; ++number)
+        if (ImGui::Selectable(name_of(number).c_str(), number == *material.classification)) {
+            material.classification = number;
+            material.name = gi::class_name(static_cast<uint8_t>(number));
+            model.scene_changed();
+        }
+    ImGui::EndCombo();
+}
+
+}  // namespace
+
+void draw_sun(ViewModel& model) {
+    gi::SceneLight& light = *model.selected_light();
+    bool by_time = light.sun.has_value();
+    if (ImGui::Checkbox("by place and time", &by_time))
+        set_sun(model, by_time ? std::optional(gi::SunMoment{}) : std::nullopt);
+    if (light.sun) {
+        bool changed = edit_degrees("latitude", light.sun->latitude, -90, 90);
+        changed |= edit_degrees("longitude", light.sun->longitude, -180, 180);
+        changed |= edit_moment(light.sun->time);
+        changed |= edit_degrees("true north", light.sun->north, -360, 360);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("degrees from the scan's +y, clockwise");
+        if (changed) set_sun(model, light.sun);
+        const gi::SolarPosition at = gi::solar_position(*light.sun);
+        ImGui::Text("azimuth %.2f, elevation %.2f%s", at.azimuth, at.elevation,
+                    at.elevation > 0 ? "" : ": it has set");
+        return;
+    }
+    const glm::dvec3 to = light.position - light.target;
+    double azimuth = std::atan2(to.x, to.y) / kDegree,
+           elevation = std::atan2(to.z, std::hypot(to.x, to.y)) / kDegree;
+    bool changed = edit_degrees("azimuth", azimuth, -180, 180);
+    changed |= edit_degrees("elevation", elevation, -90, 90);
+    if (!changed) return;
+    light.target = light.position - gi::towards({azimuth, elevation}, 0);
+    model.scene_changed();
+}
+
+void draw_sky(ViewModel& model) {
+    if (!ImGui::CollapsingHeader("Sky")) return;
+    ImGui::PushID("sky");
+    if (!model.scene.environment) {
+        if (ImGui::Button("Even sky")) {
+            auto sky = std::make_shared<gi::Environment>();
+            sky->texels = {glm::vec3(1.0f)};
+            model.scene.environment = std::move(sky);
+            model.scene.environment_on = true;
+            model.scene_changed();
+        }
+    } else {
+        if (ImGui::Checkbox("on", &model.scene.environment_on)) model.scene_changed();
+        ImGui::SameLine();
+        if (ImGui::Button("Remove")) {
+            model.scene.environment.reset();
+            model.scene_changed();
+        }
+    }
+    if (model.scene.environment) {
+        if (model.scene.environment->image.empty())
+            edit_even_sky(model);
+        else
+            ImGui::TextWrapped("%s", model.scene.environment->image.c_str());
+        float degrees = static_cast<float>(model.scene.environment->rotation / kDegree);
+        if (ImGui::SliderFloat("rotation", &degrees, -180, 180, "%.1f degrees"))
+            change_sky(model,
+                       [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
+    }
+    ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &model.light_tools.sky_image);
+    ImGui::SameLine();
+    if (ImGui::Button("Load")) load_sky(model);
+    ImGui::PopID();
+}
+
+void draw_emitters(ViewModel& model) {
+    if (!ImGui::CollapsingHeader("Classes that shine")) return;
+    ImGui::PushID("emitters");
+    for (size_t i = 0; i < model.scene.materials.size(); ++i) {
+        gi::SceneMaterial& material = model.scene.materials[i];
+        if (!material.classification) continue;
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Checkbox("##on", &material.emits)) model.scene_changed();
+        ImGui::SameLine();
+        choose_class(material, model);
+        if (edit_radiance("emission", material.emission)) model.scene_changed();
+        const bool gone = ImGui::Button("Remove");
+        ImGui::PopID();
+        if (!gone) continue;
+        model.scene.materials.erase(model.scene.materials.begin() + static_cast<ptrdiff_t>(i));
+        model.scene_changed();
+        break;
+    }
+    if (model.scene.materials.size() < 255 && ImGui::Button("Add a class")) {
+        gi::SceneMaterial material;
+        material.classification = 6;
+        material.name = gi::class_name(6);
+        material.emission = glm::dvec3(1);
+        model.scene.materials.push_back(material);
+        model.scene_changed();
+    }
+    ImGui::PopID();
+}
+
+}  // namespace lucarne::viewer
