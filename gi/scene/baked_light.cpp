@@ -57,7 +57,7 @@ void add_node(const octree::NodeSource& source, uint32_t node, const octree::Nod
     static const Scene kPlain;
     const auto surfels = pack_surfels(part.header, source.nodes()[node], data, kPlain, part.first_scan);
     for (size_t i = 0; i < surfels.size(); ++i) {
-        const glm::vec3 colour = surfel_albedo(surfels[i].d);
+        const glm::vec3 colour = decode_albedo(surfels[i].d);
         const glm::dvec3 position =
             io::position_of(schema, data.records.data() + i * schema.stride) * part.scale;
         const glm::dvec3 place =

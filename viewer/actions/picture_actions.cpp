@@ -7,6 +7,7 @@
 
 #include "gi/registry.h"
 #include "viewer/actions.h"
+#include "viewer/lights/light_edits.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -47,7 +48,7 @@ void fewer_bounces(ViewModel& model) {
 void change_exposure(ViewModel& model, double stops) {
     const double now = model.scene.exposure_ev.value_or(model.picture ? model.picture->exposure_ev : 0.0);
     model.scene.exposure_ev = std::clamp(now + stops, -40.0, 40.0);
-    model.scene_changed();
+    model.shown_changed();
     model.message = fmt::format("exposure {:+.1f} stops", *model.scene.exposure_ev);
 }
 void brighter(ViewModel& model) {
@@ -58,12 +59,33 @@ void darker(ViewModel& model) {
 }
 void automatic_exposure(ViewModel& model) {
     model.scene.exposure_ev.reset();
-    model.scene_changed();
+    model.shown_changed();
     model.message = "automatic exposure";
 }
 
 bool exposes_itself(const ViewModel& model) {
     return !model.scene.exposure_ev;
+}
+
+void next_tone_map(ViewModel& model) {
+    const auto names = gi::tone_map_names();
+    model.scene.tone_map =
+        static_cast<gi::ToneMap>((static_cast<size_t>(model.scene.tone_map) + 1) % names.size());
+    model.shown_changed();
+    model.message = fmt::format("tone map {}", names[static_cast<size_t>(model.scene.tone_map)]);
+}
+bool compares(const ViewModel& model) {
+    return model.scene.comparison.has_value();
+}
+void toggle_comparison(ViewModel& model) {
+    compare_with(model, compares(model) ? "" : model.engine == "direct" ? "vpl" : "direct");
+}
+void next_comparison(ViewModel& model) {
+    const auto names = gi::comparison_names();
+    auto& show = model.scene.comparison->show;
+    show = static_cast<gi::Comparison::Show>((static_cast<size_t>(show) + 1) % names.size());
+    model.shown_changed();
+    model.message = fmt::format("comparison: {}", names[static_cast<size_t>(show)]);
 }
 
 }  // namespace
@@ -90,6 +112,18 @@ std::span<const Action> picture_actions() {
         Action{{GLFW_KEY_PAGE_UP}, "Picture", "Brighter", brighter},
         Action{{GLFW_KEY_PAGE_DOWN}, "Picture", "Darker", darker},
         Action{{GLFW_KEY_X}, "Picture", "Automatic exposure", automatic_exposure, nullptr, exposes_itself},
+        Action{{GLFW_KEY_T, GLFW_MOD_ALT}, "Picture", "Next tone map", next_tone_map},
+        Action{{GLFW_KEY_V, GLFW_MOD_ALT},
+               "Picture",
+               "Compare two engines",
+               toggle_comparison,
+               nullptr,
+               compares},
+        Action{{GLFW_KEY_B, GLFW_MOD_ALT},
+               "Picture",
+               "Compare by borders or differences",
+               next_comparison,
+               compares},
     };
     return kActions;
 }

@@ -93,6 +93,7 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_flag("--no-prefetch", options.no_prefetch,
                      "Load nothing ahead of a camera that moves (for measuring)");
     add_look_options(command, options.look);
+    add_light_options(command, options.light);
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
 }
 
@@ -138,6 +139,7 @@ Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::No
     }
     if (options.exposure) scene.exposure_ev = options.exposure;
     LUCARNE_TRY(apply(options.look, scene.look));
+    LUCARNE_TRY(apply(options.light, scene));
     LUCARNE_TRY(gi::check_attribute(source, scene.look));
     return scene;
 }

@@ -8,6 +8,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/source.h"
+#include "viewer/commands/light_options.h"
 #include "viewer/commands/look_options.h"
 #include "viewer/pipeline.h"
 
@@ -32,13 +33,14 @@ struct DrawingOptions {
     std::optional<double> exposure;
     std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
     LookOptions look;
+    LightOptions light;
     bool best_candidate = false, no_reuse = false, no_prefetch = false;
 };
 
 /// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
 /// --samples
 /// --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch, and those of
-/// add_look_options(). `options` outlives the command.
+/// add_look_options() and add_light_options(). `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
 
 /// The same, looked up and checked.

@@ -25,6 +25,7 @@
 #include "viewer/input.h"
 #include "viewer/inputs.h"
 #include "viewer/overlay/draw_marks.h"
+#include "viewer/overlay/figure_scale.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -123,6 +124,7 @@ void draw_overlay(const Pipeline& pipeline, const gi::SceneCamera& camera, io::I
     view.size = {picture.width, picture.height};
     view.font = 13.0 * scale;
     draw_marks(overlay(pipeline.scene().look, pipeline.values(), view), scale, picture);
+    draw_marks(figure_scale(pipeline.scene(), pipeline.exposure_ev(), view), scale, picture);
 }
 
 Result<void> write_picture(const RenderOptions& options, PictureKind kind, const Pipeline& pipeline,

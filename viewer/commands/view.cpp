@@ -57,6 +57,7 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     model.budgets = drawing.preset.budgets;
     model.frame_time = options.frame_time_ms * 1e-3;
     model.caps = drawing.caps;
+    model.light_tools.scene_file = options.drawing.scene;
     if (!options.measurements.empty()) {
         model.measure.file = options.measurements;
         model.measure.wish = MeasureModel::FileWish::load;

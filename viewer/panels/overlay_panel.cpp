@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <iterator>
+
 #include <glm/geometric.hpp>
 #include <imgui.h>
 
+#include "viewer/overlay/figure_scale.h"
 #include "viewer/overlay/overlay.h"
 #include "viewer/panels/panels.h"
 
@@ -27,9 +31,11 @@ void draw_overlay(const ViewModel& model) {
     view.font = ImGui::GetFontSize();
     view.right = model.show_panels && model.look_tools.show_panel ? kViewPanelWidth * view.font + 16 : 8;
     view.left = model.show_panels ? 33 * view.font : 8;  // the scans' tree
-    view.bottom = 2 * view.font;  // the line of messages
+    view.bottom = 2 * view.font;                         // the line of messages
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    for (const Mark& mark : overlay(model.scene.look, model.picture->values, view)) {
+    std::vector<Mark> marks = overlay(model.scene.look, model.picture->values, view);
+    std::ranges::move(figure_scale(model.scene, model.picture->exposure_ev, view), std::back_inserter(marks));
+    for (const Mark& mark : marks) {
         if (mark.kind == Mark::Kind::area) list.AddRectFilled(point(mark.from), point(mark.to), packed(mark));
         if (mark.kind == Mark::Kind::line) list.AddLine(point(mark.from), point(mark.to), packed(mark), 2.0f);
         if (mark.kind == Mark::Kind::text) list.AddText(point(mark.from), packed(mark), mark.text.c_str());

@@ -1,0 +1,154 @@
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/viewer/program.h"
+#include "viewer/lights/light_edits.h"
+#include "viewer/lights/light_handles.h"
+#include "viewer/overlay/figure_scale.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using glm::dvec3;
+using Part = LightHandle::Part;
+
+gi::SceneLight light_of(gi::LightKind kind) {
+    gi::SceneLight light;
+    light.kind = kind;
+    light.position = {0, 0, 5};
+    light.target = {0, 0, 0};
+    return light;
+}
+
+TEST(LightEdits, AddCopyDeleteAndUndoLeadBackStepByStep) {
+    ViewModel model(10);
+    add_light(model, gi::LightKind::spot);
+    ASSERT_EQ(model.scene.lights.size(), 1u);
+    EXPECT_GT(model.scene.lights[0].strength.x, 0);
+    const auto one = model.scene.lights;
+    duplicate_light(model);
+    ASSERT_EQ(model.scene.lights.size(), 2u);
+    EXPECT_EQ(model.light, 1u);
+    EXPECT_NE(model.scene.lights[1].position, model.scene.lights[0].position);
+    remove_light(model);
+    EXPECT_EQ(model.scene.lights, one);
+    undo_lights(model);
+    EXPECT_EQ(model.scene.lights.size(), 2u);
+    undo_lights(model);
+    EXPECT_EQ(model.scene.lights, one);
+    undo_lights(model);
+    EXPECT_TRUE(model.scene.lights.empty());
+    undo_lights(model);
+    remove_light(model);
+    switch_selected_light(model);
+    EXPECT_TRUE(model.scene.lights.empty());
+}
+
+TEST(LightEdits, ASceneHoldsNoMoreLightsThanItsFileMay) {
+    ViewModel model(10);
+    for (int i = 0; i < 80; ++i) add_light(model, gi::LightKind::point);
+    for (int i = 0; i < 3; ++i) duplicate_light(model);
+    EXPECT_EQ(model.scene.lights.size(), 64u);
+    EXPECT_TRUE(gi::parse_scene(gi::write_scene(scene_to_save(model)), "full.json"));
+}
+
+TEST(LightEdits, EveryKindThatIsAddedIsReadBackFromTheSavedScene) {
+    ViewModel model(10);
+    for (uint32_t kind = 0; kind < 5; ++kind) add_light(model, static_cast<gi::LightKind>(kind));
+    model.light = 2;
+    set_sun(model, gi::SunMoment{});
+    switch_selected_light(model);
+    const test::TemporaryFolder folder;
+    model.light_tools.scene_file = folder / "saved.json";
+    save_scene(model);
+    const auto saved = gi::load_scene(folder / "saved.json");
+    ASSERT_TRUE(saved) << saved.error().line();
+    EXPECT_EQ(saved->lights, model.scene.lights);
+    EXPECT_FALSE(saved->lights[2].on);
+    ASSERT_EQ(saved->cameras.size(), 1u);
+    EXPECT_EQ(saved->cameras[0].name, "view");
+    EXPECT_LT(glm::distance(saved->cameras[0].position, model.rig.position()), 1e-9);
+}
+
+TEST(LightEdits, SavingAgainReplacesTheViewAndNotTheFileOfAnother) {
+    const test::TemporaryFolder folder;
+    ViewModel model(10);
+    model.pictures = folder.path();
+    save_scene(model);
+    save_scene(model);
+    ViewModel other(10);
+    other.pictures = folder.path();
+    save_scene(other);
+    EXPECT_TRUE(std::filesystem::exists(folder / "scene-0001.json"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "scene-0002.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "scene-0003.json"));
+}
+
+TEST(LightEdits, WhatIsOnlyShownOtherwiseIsNoMove) {
+    ViewModel model(10);
+    const uint64_t moves = model.scene_version - model.shown_changes;
+    model.shown_changed();
+    EXPECT_EQ(model.scene_version - model.shown_changes, moves);
+    model.scene_changed();
+    EXPECT_NE(model.scene_version - model.shown_changes, moves);
+}
+
+TEST(LightHandles, AreWhereALightStandsAndWhatItShinesAt) {
+    EXPECT_EQ(light_handles({light_of(gi::LightKind::spot), light_of(gi::LightKind::point),
+                             light_of(gi::LightKind::directional)}),
+              (std::vector<LightHandle>{
+                  {Part::position, 0}, {Part::target, 0}, {Part::position, 1}, {Part::sky, 2}}));
+}
+
+TEST(LightHandles, AreDraggedParallelToThePicture) {
+    const gi::SceneLight spot = light_of(gi::LightKind::spot);
+    const dvec3 eye(0, -10, 5), forward(0, 1, 0);
+    const auto to = dragged_place(spot, Part::position, {}, eye, {0.2, 1, 0.1}, forward);
+    ASSERT_TRUE(to);
+    EXPECT_LT(glm::distance(*to, dvec3(2, 0, 6)), 1e-12);
+    EXPECT_FALSE(dragged_place(spot, Part::position, {}, {0, 10, 5}, forward, forward))
+        << "it is behind the eye";
+}
+
+TEST(LightHandles, ASunIsDraggedAboutTheSceneAndForgetsItsTime) {
+    gi::SceneLight sun = light_of(gi::LightKind::directional);
+    sun.sun.emplace();
+    const LightSphere sky{{0, 0, 0}, 2};
+    EXPECT_LT(glm::distance(handle_place(sun, Part::sky, sky), dvec3(0, 0, 2)), 1e-12);
+    const auto to = dragged_place(sun, Part::sky, sky, {1, -10, 1}, {0, 1, 0}, {0, 1, 0});
+    ASSERT_TRUE(to);
+    EXPECT_NEAR(glm::length(*to), 2, 1e-12);
+    EXPECT_TRUE(move_light(sun, Part::sky, *to, sky));
+    EXPECT_FALSE(sun.sun);
+    EXPECT_LT(glm::distance(handle_place(sun, Part::sky, sky), *to), 1e-12);
+    const auto beside = dragged_place(sun, Part::sky, sky, {9, -10, 0}, {0, 1, 0}, {0, 1, 0});
+    EXPECT_LT(glm::distance(beside.value_or(dvec3(0)), dvec3(2, 0, 0)), 1e-9);
+}
+
+TEST(LightHandles, ALightThatWouldShineNowhereStays) {
+    gi::SceneLight spot = light_of(gi::LightKind::spot);
+    EXPECT_FALSE(move_light(spot, Part::target, spot.position, {}));
+    EXPECT_FALSE(move_light(spot, Part::position, spot.target, {}));
+    EXPECT_EQ(spot, light_of(gi::LightKind::spot));
+    EXPECT_TRUE(move_light(spot, Part::target, {1, 1, 1}, {}));
+    EXPECT_EQ(spot.target, dvec3(1, 1, 1));
+}
+
+TEST(FigureScale, HasPowersOfTenForLuminancesAndNothingForPictures) {
+    OverlayView view;
+    view.size = {800, 600};
+    gi::Scene scene;
+    EXPECT_TRUE(figure_scale(scene, 0, view).empty());
+    scene.tone_map = gi::ToneMap::false_colour;
+    scene.luminance = gi::ValueRange{0.1, 10000};
+    std::vector<std::string> texts;
+    for (const Mark& mark : figure_scale(scene, 0, view))
+        if (mark.kind == Mark::Kind::text) texts.push_back(mark.text);
+    EXPECT_EQ(texts,
+              (std::vector<std::string>{"luminance, cd/m2", "0.1", "1", "10", "100", "1000", "10000"}));
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

@@ -1,0 +1,99 @@
+#include "viewer/commands/light_options.h"
+
+#include <charconv>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "gi/registry.h"
+
+namespace lucarne::viewer {
+namespace {
+
+Result<size_t> find_name(std::string_view option, const std::string& name,
+                         std::span<const std::string_view> names) {
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return i;
+    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
+                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
+}
+
+Result<gi::ValueRange> parse_luminance(const std::string& text) {
+    gi::ValueRange range;
+    const char* const end = text.data() + text.size();
+    const auto [colon, low] = std::from_chars(text.data(), end, range.low);
+    if (low == std::errc() && colon != end && *colon == ':') {
+        const auto [last, high] = std::from_chars(colon + 1, end, range.high);
+        if (high == std::errc() && last == end && range.low >= 1e-9 && range.high > range.low &&
+            range.high <= 1e15)
+            return range;
+    }
+    return bad_arguments("--luminance", fmt::format("'{}' is no range of luminances", text),
+                         "give two positive numbers, the lower one first: 0.1:1000");
+}
+
+}  // namespace
+
+void add_light_options(CLI::App& command, LightOptions& options) {
+    command
+        .add_option("--tone-map", options.tone_map,
+                    fmt::format("How radiance is shown: {}", fmt::join(gi::tone_map_names(), ", ")))
+        ->type_name("NAME");
+    command
+        .add_option("--luminance", options.luminance,
+                    "What false colours span, cd/m2; about the exposure when not given")
+        ->type_name("LOW:HIGH");
+    command.add_option("--albedo", options.albedo, "Scale of what the points' colours reflect")
+        ->check(CLI::Range(0.0, 10.0))
+        ->type_name("X");
+    command
+        .add_option("--flatten", options.flatten,
+                    "Share of the light in the points' colours that is divided out")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("X");
+    command.add_option("--compare", options.compare, "Show this engine beside the picture's own (.png)")
+        ->type_name("ENGINE");
+    command
+        .add_option("--compare-show", options.compare_show,
+                    fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
+        ->type_name("HOW");
+    command.add_option("--border", options.border, "Of a split comparison: share of the width left of it")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("X");
+    command
+        .add_option("--difference-range", options.difference_range,
+                    "Difference of exposed luminance that has the last colour")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->type_name("X");
+}
+
+Result<void> apply(const LightOptions& options, gi::Scene& scene) {
+    if (!options.tone_map.empty()) {
+        LUCARNE_ASSIGN(const size_t curve, find_name("--tone-map", options.tone_map, gi::tone_map_names()));
+        scene.tone_map = static_cast<gi::ToneMap>(curve);
+    }
+    if (!options.luminance.empty()) {
+        LUCARNE_ASSIGN(scene.luminance, parse_luminance(options.luminance));
+    }
+    scene.albedo.scale = options.albedo.value_or(scene.albedo.scale);
+    scene.albedo.flatten = options.flatten.value_or(scene.albedo.flatten);
+    if (!options.compare.empty()) {
+        LUCARNE_TRY(gi::make_engine(options.compare));
+        if (!scene.comparison) scene.comparison.emplace();
+        scene.comparison->engine = options.compare;
+    }
+    const bool shown = !options.compare_show.empty() || options.border || options.difference_range;
+    if (!scene.comparison)
+        return shown ? bad_arguments("--compare", "nothing is compared", "name an engine") : Result<void>();
+    if (!options.compare_show.empty()) {
+        LUCARNE_ASSIGN(const size_t show,
+                       find_name("--compare-show", options.compare_show, gi::comparison_names()));
+        scene.comparison->show = static_cast<gi::Comparison::Show>(show);
+    }
+    scene.comparison->border = options.border.value_or(scene.comparison->border);
+    scene.comparison->range = options.difference_range.value_or(scene.comparison->range);
+    return {};
+}
+
+}  // namespace lucarne::viewer
