@@ -7,17 +7,10 @@
 #include <fmt/ranges.h>
 
 #include "gi/registry.h"
+#include "viewer/commands/find_name.h"
 
 namespace lucarne::viewer {
 namespace {
-
-Result<size_t> find_name(std::string_view option, const std::string& name,
-                         std::span<const std::string_view> names) {
-    for (size_t i = 0; i < names.size(); ++i)
-        if (names[i] == name) return i;
-    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
-                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
-}
 
 Result<gi::ValueRange> parse_luminance(const std::string& text) {
     gi::ValueRange range;

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
+#include "viewer/commands/find_name.h"
+
 namespace lucarne::viewer {
 namespace {
 
@@ -28,15 +30,6 @@ Result<std::vector<double>> parse_numbers(std::string_view option, std::string_v
     if (at == end && numbers.size() == count) return numbers;
     return bad_arguments(std::string(option),
                          fmt::format("'{}' is not {} numbers with '{}' between them", text, count, between));
-}
-
-/// The index of `name`.
-Result<size_t> find_name(std::string_view option, const std::string& name,
-                         std::span<const std::string_view> names) {
-    for (size_t i = 0; i < names.size(); ++i)
-        if (names[i] == name) return i;
-    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
-                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
 }
 
 Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "io/core/error.h"
+
+namespace lucarne::viewer {
+
+/// The index of `name`. Errors (ErrorKind::arguments): it is none of them; the message lists them.
+inline Result<size_t> find_name(std::string_view option, const std::string& name,
+                                std::span<const std::string_view> names) {
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return i;
+    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
+                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
+}
+
+}  // namespace lucarne::viewer
