@@ -50,15 +50,16 @@ bool shows_handles(const ViewModel& model) {
 
 std::span<const Action> light_actions() {
     using Kind = gi::LightKind;
+    static constexpr int kAltShift = GLFW_MOD_ALT | GLFW_MOD_SHIFT;
     static constexpr std::array kActions = {
         Action{{GLFW_KEY_L}, "Light", "Put the light where the camera is", place_light_at_camera, has_light},
         Action{{GLFW_KEY_N}, "Light", "Select the next light", next_light, has_light},
         Action{{GLFW_KEY_O, GLFW_MOD_ALT}, "Light", "On", switch_selected_light, has_light, is_on},
-        Action{{GLFW_KEY_1, GLFW_MOD_ALT}, "Light/Add", "Spot", add<Kind::spot>},
-        Action{{GLFW_KEY_2, GLFW_MOD_ALT}, "Light/Add", "Point", add<Kind::point>},
-        Action{{GLFW_KEY_3, GLFW_MOD_ALT}, "Light/Add", "Sun", add<Kind::directional>},
-        Action{{GLFW_KEY_4, GLFW_MOD_ALT}, "Light/Add", "Rectangle", add<Kind::rectangle>},
-        Action{{GLFW_KEY_5, GLFW_MOD_ALT}, "Light/Add", "Disc", add<Kind::disc>},
+        Action{{GLFW_KEY_1, kAltShift}, "Light/Add", "Spot", add<Kind::spot>},
+        Action{{GLFW_KEY_2, kAltShift}, "Light/Add", "Point", add<Kind::point>},
+        Action{{GLFW_KEY_3, kAltShift}, "Light/Add", "Sun", add<Kind::directional>},
+        Action{{GLFW_KEY_4, kAltShift}, "Light/Add", "Rectangle", add<Kind::rectangle>},
+        Action{{GLFW_KEY_5, kAltShift}, "Light/Add", "Disc", add<Kind::disc>},
         Action{{GLFW_KEY_D, GLFW_MOD_ALT}, "Light", "Duplicate", duplicate_light, has_light},
         Action{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
         Action{{GLFW_KEY_Z, GLFW_MOD_ALT}, "Light", "Undo", undo_lights, can_undo},

@@ -177,6 +177,9 @@ void draw_light_panel(ViewModel& model) {
     const float font = ImGui::GetFontSize();
     ImGui::SetNextWindowPos(ImVec2(8, font * 21), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(font * 22, 0), ImGuiCond_FirstUseEver);
+    // Between the panels Picture and Scans.
+    const float room = ImGui::GetIO().DisplaySize.y - font * 32 - 24;
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(font * 60, std::max(room, font * 8)));
     if (ImGui::Begin("Light")) {
         ImGui::PushItemWidth(-font * 8);
         draw_list(model);

@@ -88,6 +88,7 @@ bool choose_power(const char* label, uint32_t& value, int least, int most) {
 
 /// How much is computed, each with what it costs.
 void effort(ViewModel& model) {
+    if (!ImGui::CollapsingHeader("Effort")) return;
     gi::EngineSettings& settings = model.settings;
     int bounces = static_cast<int>(settings.bounces);
     if (ImGui::SliderInt("bounces", &bounces, 0, 8, "%d", ImGuiSliderFlags_AlwaysClamp))
