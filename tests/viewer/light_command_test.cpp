@@ -1,5 +1,6 @@
 // What `lucarne render` makes of lights that are off, false colours, flattened colours and two engines, as
 // users call it.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
