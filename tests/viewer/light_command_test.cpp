@@ -109,7 +109,7 @@ TEST_F(LightCommand, AnAlbedoOfHalfReflectsHalf) {
 
 TEST_F(LightCommand, ASplitPictureIsOneEngineLeftOfTheBorderAndAnotherRightOfIt) {
     const auto direct = render(lamp(""), "--engine direct"), unlit = render(lamp(""), "--engine unlit");
-    const auto both = render(lamp(""), "--engine direct --compare unlit --border 0.25");
+    const auto both = render(lamp(""), "--engine direct --beside unlit --border 0.25");
     ASSERT_EQ(both.bytes.size(), direct.bytes.size());
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
@@ -119,18 +119,18 @@ TEST_F(LightCommand, ASplitPictureIsOneEngineLeftOfTheBorderAndAnotherRightOfIt)
 
 TEST_F(LightCommand, AnEngineDiffersFromItselfNowhere) {
     const auto same =
-        pixel(render(lamp(""), "--engine direct --compare direct --compare-show absolute"), 98, 10);
+        pixel(render(lamp(""), "--engine direct --beside direct --beside-show absolute"), 98, 10);
     const auto nought = gi::mapped_colour(gi::kDifferenceMap, 0);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(same[i], nought[i], 0.01f);
     const auto middle = gi::mapped_colour(gi::kSignedMap, 0.5);
     const auto signs =
-        pixel(render(lamp(""), "--engine direct --compare direct --compare-show signed"), 98, 10);
+        pixel(render(lamp(""), "--engine direct --beside direct --beside-show signed"), 98, 10);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(signs[i], middle[i], 0.01f);
 }
 
 TEST_F(LightCommand, MistakesAreRefusedInOneLine) {
-    for (const char* mistake : {"--tone-map sepia", "--luminance 5:1", "--luminance 1", "--compare none-such",
-                                "--border 0.5", "--compare direct --compare-show both"}) {
+    for (const char* mistake : {"--tone-map sepia", "--luminance 5:1", "--luminance 1", "--beside none-such",
+                                "--border 0.5", "--beside direct --beside-show both"}) {
         const Outcome ran =
             test::lucarne("render " + at("scan.luc") + " -o " + at("none.png") + " " + mistake);
         EXPECT_EQ(ran.code, 2) << mistake;

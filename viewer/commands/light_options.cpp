@@ -45,10 +45,10 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                     "Share of the light in the points' colours that is divided out")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("X");
-    command.add_option("--compare", options.compare, "Show this engine beside the picture's own (.png)")
+    command.add_option("--beside", options.compare, "Show this engine beside the picture's own (.png)")
         ->type_name("ENGINE");
     command
-        .add_option("--compare-show", options.compare_show,
+        .add_option("--beside-show", options.compare_show,
                     fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
         ->type_name("HOW");
     command.add_option("--border", options.border, "Of a split comparison: share of the width left of it")
@@ -78,10 +78,10 @@ Result<void> apply(const LightOptions& options, gi::Scene& scene) {
     }
     const bool shown = !options.compare_show.empty() || options.border || options.difference_range;
     if (!scene.comparison)
-        return shown ? bad_arguments("--compare", "nothing is compared", "name an engine") : Result<void>();
+        return shown ? bad_arguments("--beside", "nothing is compared", "name an engine") : Result<void>();
     if (!options.compare_show.empty()) {
         LUCARNE_ASSIGN(const size_t show,
-                       find_name("--compare-show", options.compare_show, gi::comparison_names()));
+                       find_name("--beside-show", options.compare_show, gi::comparison_names()));
         scene.comparison->show = static_cast<gi::Comparison::Show>(show);
     }
     scene.comparison->border = options.border.value_or(scene.comparison->border);
