@@ -19,7 +19,7 @@ using test::Outcome;
 /// A floor of 84 x 42 points, of grey paint that was taken in more light on the right than on the left.
 class LightCommand : public testing::Test {
  protected:
-    static constexpr int kWidth = 128, kHeight = 64;
+    static constexpr int kWidth = 256, kHeight = 128;  ///< with room beside legends
 
     static void SetUpTestSuite() {
         folder_ = new test::TemporaryFolder;
@@ -45,13 +45,15 @@ class LightCommand : public testing::Test {
                                         << more << "}";
         const Outcome ran =
             test::lucarne("render " + at("scan.luc") + " -o " + at("out.png") + " --overwrite --scene " +
-                          at("scene.json") + " --size 128x64 " + options);
+                          at("scene.json") + " --size 256x128 " + options);
         EXPECT_EQ(ran.code, 0) << ran.output;
         return io::read_png(at("out.png")).value_or(io::Image8{});
     }
+    /// At a place of 128 by 64.
     static glm::vec3 pixel(const io::Image8& picture, int x, int y) {
         if (picture.bytes.empty()) return glm::vec3(-1);
-        const uint8_t* p = &picture.bytes[3 * (static_cast<size_t>(y) * kWidth + static_cast<size_t>(x))];
+        const uint8_t* p =
+            &picture.bytes[3 * (static_cast<size_t>(2 * y) * kWidth + static_cast<size_t>(2 * x))];
         return glm::vec3(p[0], p[1], p[2]) / 255.0f;
     }
     static test::TemporaryFolder* folder_;
@@ -111,9 +113,9 @@ TEST_F(LightCommand, ASplitPictureIsOneEngineLeftOfTheBorderAndAnotherRightOfIt)
     const auto direct = render(lamp(""), "--engine direct"), unlit = render(lamp(""), "--engine unlit");
     const auto both = render(lamp(""), "--engine direct --beside unlit --border 0.25");
     ASSERT_EQ(both.bytes.size(), direct.bytes.size());
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-            ASSERT_EQ(pixel(both, x, y), pixel(x < kWidth / 4 ? direct : unlit, x, y)) << x << ' ' << y;
+    for (int y = 0; y < kHeight / 2; ++y)
+        for (int x = 0; x < kWidth / 2; ++x)
+            ASSERT_EQ(pixel(both, x, y), pixel(x < kWidth / 8 ? direct : unlit, x, y)) << x << ' ' << y;
     EXPECT_NE(direct.bytes, unlit.bytes);
 }
 
