@@ -50,6 +50,7 @@ class Bytes {
         return name;
     }
     bool cut_off() const { return short_; }
+    bool at_end() const { return rest_.empty(); }
 
  private:
     std::string_view rest_;
@@ -60,6 +61,49 @@ struct Part {
     uint64_t width = 0, height = 0, pixel_bytes = 0, chunk_lines = 1, said_chunks = 0;
     uint64_t tile_width = 0, tile_height = 0;  ///< 0: none
 };
+
+/// Types that the library reads by their own size, whatever an attribute says its size is: where the two
+/// differ, it goes on at another place than we, and finds another header there.
+struct FixedType {
+    std::string_view name;
+    size_t bytes;
+};
+constexpr std::array kFixedTypes = {FixedType{"box2f", 16},
+                                    FixedType{"box2i", 16},
+                                    FixedType{"chromaticities", 32},
+                                    FixedType{"compression", 1},
+                                    FixedType{"deepImageState", 1},
+                                    FixedType{"double", 8},
+                                    FixedType{"envmap", 1},
+                                    FixedType{"float", 4},
+                                    FixedType{"int", 4},
+                                    FixedType{"keycode", 28},
+                                    FixedType{"lineOrder", 1},
+                                    FixedType{"m33d", 72},
+                                    FixedType{"m33f", 36},
+                                    FixedType{"m44d", 128},
+                                    FixedType{"m44f", 64},
+                                    FixedType{"rational", 8},
+                                    FixedType{"tiledesc", 9},
+                                    FixedType{"timecode", 8},
+                                    FixedType{"v2d", 16},
+                                    FixedType{"v2f", 8},
+                                    FixedType{"v2i", 8},
+                                    FixedType{"v3d", 24},
+                                    FixedType{"v3f", 12},
+                                    FixedType{"v3i", 12}};
+
+/// Whether the value ends where its type says.
+bool has_its_size(std::string_view type, std::string_view value) {
+    const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
+    if (fixed != kFixedTypes.end()) return value.size() == fixed->bytes;
+    Bytes bytes(value);
+    if (type == "chlist") {
+        while (!bytes.name().empty()) bytes.take(16);
+        return bytes.at_end() && !bytes.cut_off();
+    }
+    return true;
+}
 
 /// Bytes of a pixel in all channels: 2 or 4 each, whatever its sampling.
 uint64_t pixel_bytes(Bytes list) {
@@ -75,6 +119,7 @@ uint64_t pixel_bytes(Bytes list) {
 /// An attribute that the library allocates by. Not empty: why it must not see it.
 std::string_view read_attribute(std::string_view name, std::string_view type, std::string_view value,
                                 Part& part) {
+    if (!has_its_size(type, value)) return "its header contradicts itself";
     Bytes bytes(value);
     if (name == "dataWindow" && type == "box2i") {
         std::array<int64_t, 4> box{};
@@ -97,7 +142,8 @@ std::string_view read_attribute(std::string_view name, std::string_view type, st
         part.said_chunks = bytes.number<uint32_t>();
     } else if (type == "preview") {
         const uint64_t width = bytes.number<uint32_t>(), height = bytes.number<uint32_t>();
-        if (width * height > value.size() / 4) return "its preview is larger than the file";
+        if (std::max(width, height) > kLargestSide || value.size() != 8 + 4 * width * height)
+            return "its preview is not as large as it says";
     } else if (type == "idmanifest") {
         return "it has a list of identifiers";
     } else if (name == "type" && value.starts_with("deep")) {

@@ -167,6 +167,16 @@ TEST_F(ExrHeader, AnAttributeLargerThanTheFileIsRefusedBeforeItIsMadeRoomFor) {
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("header is cut off"));
 }
 
+/// The library reads a list of channels to its own end, and what follows as the next attribute (fuzz_exr).
+TEST_F(ExrHeader, AnAttributeThatDoesNotEndWhereItSaysIsRefused) {
+    const std::string whole = bytes_;
+    insert("more", "chlist", std::string("A\0", 2) + std::string(16, '\1') + "B");
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("contradicts itself"));
+    bytes_ = whole;
+    insert("more", "v2f", std::string(12, '\1'));
+    EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("contradicts itself"));
+}
+
 TEST_F(ExrHeader, LinesThatTheFileHasNoTableForAreRefused) {
     for (const std::array<int32_t, 2> corner : {std::array{16383, 4000}, {3, 16383}}) {
         put(value_of("dataWindow", "box2i") + 8, corner);
