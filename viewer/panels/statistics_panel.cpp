@@ -39,8 +39,9 @@ void passes_table(const FrameStats& stats) {
 
 void draw_statistics_panel(ViewModel& model) {
     const float width = ImGui::GetFontSize() * 22;
-    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 8, ImGui::GetFrameHeight() + 8), ImGuiCond_FirstUseEver,
-                            ImVec2(1, 0));
+    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 8, ImGui::GetFrameHeight() + 8),
+                            ImGuiCond_FirstUseEver, ImVec2(1, 0));
+    ImGui::SetNextWindowCollapsed(true, ImGuiCond_FirstUseEver);  // leaves room for the view below
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, FLT_MAX));
     if (ImGui::Begin("Statistics", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
         const FrameTimes& frames = model.health.frames;

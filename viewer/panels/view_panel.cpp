@@ -214,9 +214,10 @@ bool edit_clip(ViewModel& model, gi::Clip& clip) {
 void draw_view_panel(ViewModel& model) {
     const float font = ImGui::GetFontSize(), width = kViewPanelWidth * font;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float top = std::min(28 * font, window.y / 2);  // below the statistics
+    const float top = 2 * ImGui::GetFrameHeight() + 14;  // below the statistics, which are folded at first
     ImGui::SetNextWindowPos(ImVec2(window.x - width - 8, top), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(width, window.y - top - 2 * font), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(width, std::min(24 * font, window.y - top - 2 * font)),
+                             ImGuiCond_FirstUseEver);
     if (ImGui::Begin("View")) {
         gi::Look& look = model.scene.look;
         bool changed = edit_colours(model, look);
