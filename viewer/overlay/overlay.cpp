@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "viewer/tools/units.h"
 #include "viewer/views.h"
 
 namespace lucarne::viewer {
@@ -148,17 +149,6 @@ void draw_scale(Sheet& sheet, const OverlayView& view) {
         sheet.text(at + dvec2(0.4 * em, 0), bar.text);
         at.y += 1.9 * em;
     }
-}
-
-std::string unit_name(double metres_per_unit) {
-    const auto is = [&](double metres) { return std::abs(metres_per_unit / metres - 1) < 1e-9; };
-    if (is(1)) return "m";
-    if (is(0.3048)) return "ft";
-    if (is(1200.0 / 3937)) return "US ft";
-    if (is(0.001)) return "mm";
-    if (is(0.01)) return "cm";
-    if (is(1000)) return "km";
-    return "units";
 }
 
 /// "5 km", "20 cm".

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 #include "viewer/tools/pick.h"
 
@@ -12,15 +13,6 @@ namespace {
 constexpr float kHandle = 7;  // pixels, radius
 constexpr ImU32 kEdge = IM_COL32(255, 210, 80, 200), kFace = IM_COL32(255, 240, 200, 255),
                 kHeld = IM_COL32(255, 120, 40, 255);
-
-/// Where a world point stands in the window.
-std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
-    const auto seen = project(picture, world);
-    if (!seen) return std::nullopt;
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
-                  static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
-}
 
 void draw_edges(const Picture& picture, const gi::ClipBox& box) {
     const auto corners = box_corners(box);

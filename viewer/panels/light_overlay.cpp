@@ -8,6 +8,7 @@
 
 #include "viewer/lights/light_edits.h"
 #include "viewer/lights/light_handles.h"
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 #include "viewer/tools/pick.h"
 
@@ -18,14 +19,6 @@ constexpr float kHandle = 7, kGrip = 6;  // pixels, radius
 constexpr ImU32 kOn = IM_COL32(255, 226, 120, 255), kOff = IM_COL32(130, 130, 130, 255),
                 kSelected = IM_COL32(255, 140, 40, 255), kRim = IM_COL32(20, 20, 20, 220),
                 kBeam = IM_COL32(255, 226, 120, 130), kPaper = IM_COL32(10, 10, 10, 150);
-
-std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
-    const auto seen = project(picture, world);
-    if (!seen) return std::nullopt;
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
-                  static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
-}
 
 LightSphere sky_of(const ViewModel& model) {
     return {model.rig.pivot(), model.scene_size / 5};
