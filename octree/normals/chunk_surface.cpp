@@ -56,7 +56,9 @@ class SiteEstimator {
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
             const bool cut_short = seen < kWindow * reach;  // by the many there are
             if (window_.count >= most) {
-                further_.take_nearest(window_, most);
+                const size_t all = window_.count;
+                further_.take_nearest(window_, most);  // may drop the others of very many
+                if (window_.count < all) seen = std::sqrt(double{further_.distance2[further_.count - 1]});
             } else if (cut_short || !(fit.deviation < kPoorDeviation)) {  // or nearly alone, or on a line
                 around.nearest(most, further_);
                 const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
