@@ -58,10 +58,14 @@ std::filesystem::path free_name(const std::filesystem::path& folder) {
     return folder / "lucarne.png";
 }
 
+/// Of those that are no scans there is nothing to see.
 std::string scans_title(const std::vector<ScanRow>& rows) {
-    if (rows.empty()) return "nothing is open";
-    std::string title = rows.front().name();
-    if (rows.size() > 1) title += fmt::format(" and {} more", rows.size() - 1);
+    std::string title;
+    size_t open = 0;
+    for (const ScanRow& row : rows)
+        if (row.state != ScanState::failed && ++open == 1) title = row.name();
+    if (open == 0) return "nothing is open";
+    if (open > 1) title += fmt::format(" and {} more", open - 1);
     for (const ScanRow& row : rows)
         if (row.state == ScanState::converting)
             title += fmt::format(" - {} {:.0f} %", row.stage, 100 * row.share);

@@ -1,5 +1,4 @@
-// A newcomer's half hour in a real window, under a small window manager, which gives focus and closes
-// politely.
+// A newcomer's half hour in a real window under a window manager.
 #include <fstream>
 
 #include <fmt/format.h>
@@ -12,14 +11,11 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-class Newcomer : public ViewerWindow {
+class Newcomer : public ManagedWindow {
  protected:
     void SetUp() override {
-        if (!installed("openbox")) GTEST_SKIP() << "needs openbox";
-        ViewerWindow::SetUp();
+        ManagedWindow::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        manager_.emplace("env " + display_ + "openbox --sm-disable 2>/dev/null");
-        ASSERT_TRUE(eventually([&] { return xdo("get_num_desktops").code == 0; })) << "no window manager";
         // The desktop's dialog, as the user answers it.
         const std::string dialog = folder_ / "zenity";
         std::ofstream(dialog) << "#!/bin/sh\necho " << folder_ / "cornell.las"
@@ -28,9 +24,7 @@ class Newcomer : public ViewerWindow {
     }
     void open_window() {
         start_with("", "PATH=" + folder_.path().string() + ":$PATH");
-        ASSERT_TRUE(eventually([&] {
-            return xdo("getactivewindow getwindowname").output.find("nothing is open") != std::string::npos;
-        })) << "start page";
+        ASSERT_TRUE(title_comes("nothing is open")) << "start page";
         window_ = xdo("getactivewindow").output;
         window_.pop_back();
         xdo("key ctrl+o");
@@ -53,7 +47,6 @@ class Newcomer : public ViewerWindow {
             return still && difference(now, from) > by;
         });
     }
-    std::optional<Background> manager_;
     std::string window_;
 };
 

@@ -150,4 +150,26 @@ class ViewerWindow : public testing::Test {
     std::string display_, cache_;
 };
 
+/// Under a small window manager (openbox), which frames windows, gives focus and closes politely.
+class ManagedWindow : public ViewerWindow {
+ protected:
+    void SetUp() override {
+        if (!installed("openbox")) GTEST_SKIP() << "needs openbox";
+        ViewerWindow::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        manager_.emplace("env " + display_ + "openbox --sm-disable 2>/dev/null");
+        ASSERT_TRUE(eventually([&] { return xdo("get_num_desktops").code == 0; })) << "no window manager";
+    }
+    /// Of the window that has focus; empty: none has.
+    std::string title() const {
+        const Outcome name = xdo("getactivewindow getwindowname");
+        return name.code == 0 ? name.output : "";
+    }
+    bool title_comes(const std::string& part) const {
+        return eventually([&] { return title().find(part) != std::string::npos; });
+    }
+
+    std::optional<Background> manager_;
+};
+
 }  // namespace lucarne::test

@@ -1,0 +1,73 @@
+// Files dropped on a real window: x11/drop_files.cpp stands for the file manager.
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "tests/viewer/window_fixture.h"
+
+#ifndef LUCARNE_DROP_FILES
+#define LUCARNE_DROP_FILES ""  // X11's headers are missing
+#endif
+
+namespace lucarne {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+/// file:///... with all but letters, digits and a few marks as %XX (RFC 3986), in quotes for the shell.
+std::string uri(const std::string& path) {
+    std::string text = "file://";
+    for (const char c : path) {
+        const bool plain =
+            std::isalnum(static_cast<unsigned char>(c)) || std::string("/-._~").find(c) != std::string::npos;
+        text += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return " '" + text + "'";
+}
+
+class DroppedFiles : public ManagedWindow {
+ protected:
+    void SetUp() override {
+        if (std::string(LUCARNE_DROP_FILES).empty()) GTEST_SKIP() << "needs libx11-dev";
+        ManagedWindow::SetUp();
+    }
+    Outcome drop(const std::string& uris) const {
+        const std::string place = xdo("getactivewindow getwindowgeometry --shell").output;
+        const auto value = [&](const std::string& key) {
+            return std::stoi(place.substr(place.find(key) + 2));
+        };
+        return shell(display_ + LUCARNE_DROP_FILES +
+                     fmt::format(" {} {}", value("X=") + kWidth / 2, value("Y=") + kHeight / 2) + uris);
+    }
+};
+
+TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
+    const std::string greeting = folder_ / "Gr\u00fc\u00dfe, 100%.las", second = folder_ / "second.las",
+                      letter = folder_ / "letter.pdf";
+    std::filesystem::copy(folder_ / "cornell.las", greeting);
+    ASSERT_EQ(lucarne("generate two-rooms --points 20k -o " + second).code, 0);
+    std::ofstream(letter) << "%PDF-1.4\nDear reader";
+    start_with("");
+    ASSERT_TRUE(title_comes("nothing is open"));
+    const Outcome dropped = drop(uri(greeting) + uri(letter) + uri(second));
+    ASSERT_EQ(dropped.code, 0) << dropped.output;
+    ASSERT_TRUE(picture(lit)) << log();
+    for (const std::string& scan : {greeting, second})
+        EXPECT_TRUE(eventually([&] { return std::filesystem::exists(scan + ".luc"); })) << scan << "\n"
+                                                                                        << log();
+    EXPECT_TRUE(title_comes("Gr\u00fc\u00dfe, 100%.las and 1 more"));
+    EXPECT_THAT(log(), HasSubstr(letter + ": is in no format that can be read"));
+
+    // A second drop is added to what is open, also where it is one file.
+    ASSERT_EQ(drop(uri(cache_)).code, 0);
+    EXPECT_TRUE(title_comes(" and 2 more\n")) << "all converted\n" << log();
+    xdo("key alt+F4");
+    EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+    EXPECT_EQ(viewer_->code(), 0);
+    const std::string settings = bytes_of(folder_ / "config/settings.json");
+    for (const std::string& scan : {greeting, second, cache_}) EXPECT_THAT(settings, HasSubstr(scan));
+}
+
+}  // namespace
+}  // namespace lucarne
