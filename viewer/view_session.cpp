@@ -270,6 +270,13 @@ void ViewSession::send_request() {
     whole_pictures_ = 0;
 }
 
+/// What is said of a picture that would still get better; empty once it is as good as it gets.
+std::string ViewSession::unfinished() const {
+    if (whole_pictures_ == 0) return ", a first sketch";
+    const uint32_t averaged = model_.picture->stats.accumulated;
+    return averaged < kMostAccumulated ? fmt::format(", {} of {} averaged", averaged, kMostAccumulated) : "";
+}
+
 Result<void> ViewSession::save() {
     if (std::exchange(model_.light_tools.save_scene, false)) {
         save_scene(model_);
@@ -280,7 +287,7 @@ Result<void> ViewSession::save() {
         const auto path = free_name(model_.pictures);
         const auto saved =
             io::write_png(path, without_alpha(model_.picture->rgba, model_.picture->size), false);
-        model_.message = saved ? "saved " + path.string() : saved.error().line();
+        model_.message = saved ? fmt::format("saved {}{}", path.string(), unfinished()) : saved.error().line();
         log::info(model_.message);
     }
     if (!shot_ || whole_pictures_ < shot_->pictures) return {};

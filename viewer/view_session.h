@@ -56,6 +56,7 @@ class ViewSession {
     bool take_navigation();
     void draw_panels();
     void send_request();
+    std::string unfinished() const;
     Result<void> save();
     double seconds_at_rest() const;
 
