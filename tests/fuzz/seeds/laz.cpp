@@ -1,9 +1,12 @@
 // LAZ in layers by our own writer, with chunks of fixed and of any size. Point by point, which we only read:
 // any bytes are a code of some points, so the bytes are noise behind a first point.
+#include <span>
+
 #include <fmt/format.h>
 
 #include "io/core/random.h"
 #include "io/formats/las_layout.h"
+#include "io/formats/laz/chunk_decoder.h"
 #include "io/formats/laz/encoder.h"
 #include "io/formats/laz/integers.h"
 #include "io/formats/laz/writer.h"
@@ -51,20 +54,30 @@ std::string with_table(const std::vector<std::string>& chunks, const std::vector
 
 constexpr uint16_t kPointWise = 1, kPointWiseChunked = 2;
 
+/// Noise that is the code of `count` points and ends with the last of them, as a chunk has to.
+std::string noise_chunk(const laz::Compression& compression, uint32_t record_length, uint32_t count,
+                        Random& random) {
+    std::string noise(record_length + 80 * size_t{count}, '\0');
+    for (char& byte : noise) byte = static_cast<char>(random.next());
+    auto decoder = laz::ChunkDecoder::create("a seed", compression, count, std::as_bytes(std::span(noise)));
+    std::vector<std::byte> records(size_t{count} * record_length);
+    if (!decoder || !decoder->decode(count, records.data())) return {};  // add_scan then says so
+    return noise.substr(0, decoder->consumed());
+}
+
 /// Chunks of eight points; the last is shorter.
 std::string point_wise(uint8_t format, uint16_t extra, uint16_t compressor, bool variable) {
     const io::las::Header header = header_of(format, extra);
+    const laz::Compression compression{true, false, variable ? laz::kVariableChunks : 8u,
+                                       laz::items_of(header, 2)};
     Random random(format);
     std::vector<std::string> chunks;
     std::vector<uint32_t> points;
     for (const uint32_t count :
          compressor == kPointWise ? std::vector<uint32_t>{12} : std::vector<uint32_t>{8, 4}) {
-        std::string chunk(header.record_length + 40 * size_t{count}, '\0');
-        for (char& byte : chunk) byte = static_cast<char>(random.next());
-        chunks.push_back(chunk);
+        chunks.push_back(noise_chunk(compression, header.record_length, count, random));
         points.push_back(count);
     }
-    laz::Compression compression{true, false, variable ? laz::kVariableChunks : 8u, laz::items_of(header, 2)};
     std::string record;
     for (const std::byte byte : laz::compression_record(compression).data) record += static_cast<char>(byte);
     record.replace(0, 2, reinterpret_cast<const char*>(&compressor), 2);
