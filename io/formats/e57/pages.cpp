@@ -28,10 +28,16 @@ Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file
     if (major != 1) return rejected(name, fmt::format("is E57 {}.{}; only 1.x is known", major, minor));
     if (page_bytes != kPageBytes)
         return rejected(name, fmt::format("has pages of {} bytes instead of {}", page_bytes, kPageBytes));
-    if (salvage && physical_bytes > file->size()) physical_bytes = file->size() / kPageBytes * kPageBytes;
-    if (physical_bytes > file->size())
-        return rejected(name, fmt::format("is truncated: its header promises {} bytes, {} are there",
-                                          physical_bytes, file->size()));
+    if (physical_bytes > file->size()) {
+        const bool described = xml_offset < file->size() && xml_bytes < file->size() - xml_offset;
+        if (!salvage || !described)
+            return rejected(name, fmt::format("is truncated: its header promises {} bytes, {} are there{}",
+                                              physical_bytes, file->size(),
+                                              described ? ""
+                                                        : "; the description of its points, which stands at "
+                                                          "the end, is gone, so none can be saved"));
+        physical_bytes = file->size() / kPageBytes * kPageBytes;
+    }
     if (physical_bytes == 0 || physical_bytes % kPageBytes != 0)
         return rejected(name,
                         fmt::format("has a length of {} bytes, which are no whole pages", physical_bytes));
