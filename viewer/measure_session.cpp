@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/axis_marks.h"
 #include "viewer/panels/panels.h"
 #include "viewer/tools/measure_file.h"
 

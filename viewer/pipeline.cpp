@@ -213,7 +213,7 @@ void Pipeline::State::start_stream() {
 /// ones are shown.
 Result<void> Pipeline::State::colour_anew() {
     repack = false;
-    LUCARNE_ASSIGN(values, gi::measured_values(*source, scene.look));
+    values = gi::measured_values(*source, scene.look);
     gi::Scene shown = scene;
     shown.look.range = values.range;
     if (scene.albedo.flatten > 0 && !baked) {

@@ -155,7 +155,7 @@ std::optional<uint32_t> Colouring::colour(const std::byte* record, double z, uin
     return shades_[number > 0 ? static_cast<size_t>(std::min(number, 255.0)) : 0];  // NaN: 0
 }
 
-Result<ShownValues> measured_values(const octree::NodeSource& source, const Look& look) {
+ShownValues measured_values(const octree::NodeSource& source, const Look& look) {
     // Level by level, from some roots where there are many.
     const std::vector<uint32_t> roots = source.roots();
     std::vector<uint32_t> level, below;

@@ -55,7 +55,7 @@ struct ShownValues {
     std::bitset<256> classes;  ///< that there are, whatever is shown
 };
 /// Nodes that cannot be read are left out.
-Result<ShownValues> measured_values(const octree::NodeSource& source, const Look& look);
+ShownValues measured_values(const octree::NodeSource& source, const Look& look);
 
 /// Errors (ErrorKind::arguments) where no part of the source has the attribute; the message lists what there
 /// is.

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "viewer/axis_marks.h"
 #include "viewer/overlay/draw_marks.h"
 #include "viewer/overlay/look_tools.h"
 
@@ -31,12 +32,12 @@ TEST(Overlay, NiceNumbersAreOneTwoOrFiveTimesAPowerOfTen) {
 }
 
 TEST(Overlay, TicksLieOnNiceNumbersWithinTheRange) {
-    EXPECT_THAT(nice_ticks(0, 10, 6), ElementsAre(0, 2, 4, 6, 8, 10));
-    EXPECT_THAT(nice_ticks(402.3, 611.9, 5), ElementsAre(450, 500, 550, 600));
-    EXPECT_THAT(nice_ticks(-1, 1, 5), ElementsAre(-1, -0.5, 0, 0.5, 1));
-    EXPECT_TRUE(nice_ticks(3, 3, 5).empty());
-    EXPECT_TRUE(nice_ticks(5, 2, 5).empty());
-    EXPECT_LE(nice_ticks(1e15, 1e15 + 1, 5).size(), 50u) << "steps below a double's";
+    EXPECT_THAT(nice_marks(0, 10, 6), ElementsAre(0, 2, 4, 6, 8, 10));
+    EXPECT_THAT(nice_marks(402.3, 611.9, 5), ElementsAre(450, 500, 550, 600));
+    EXPECT_THAT(nice_marks(-1, 1, 5), ElementsAre(-1, -0.5, 0, 0.5, 1));
+    EXPECT_TRUE(nice_marks(3, 3, 5).empty());
+    EXPECT_TRUE(nice_marks(5, 2, 5).empty());
+    EXPECT_LE(nice_marks(1e15, 1e15 + 1, 5).size(), 50u) << "steps below a double's";
 }
 
 TEST(Overlay, ScaleBarsAreInTheScansUnitAndInMetres) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/post/false_colour.h"
+#include "viewer/axis_marks.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -72,7 +73,7 @@ std::vector<Mark> figure_scale(const gi::Scene& scene, double ev, const OverlayV
         Scale scale{fmt::format("difference from {}, exposed luminance", scene.comparison->engine),
                     absolute ? gi::kDifferenceMap : gi::kSignedMap,
                     {}};
-        for (const double tick : nice_ticks(low, high, 5))
+        for (const double tick : nice_marks(low, high, 5))
             scale.ticks.push_back({(tick - low) / (high - low), fmt::format("{:g}", tick)});
         return draw(scale, view);
     }

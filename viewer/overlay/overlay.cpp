@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "viewer/axis_marks.h"
 #include "viewer/tools/units.h"
 #include "viewer/views.h"
 
@@ -87,7 +88,7 @@ void draw_range(Sheet& sheet, const gi::Look& look, const gi::ValueRange& range)
                    gi::mapped_colour(look.map, look.reversed ? 1 - place : place));
     }
     const double low = std::min(range.low, range.high), high = std::max(range.low, range.high);
-    for (const double tick : nice_ticks(low, high, 6)) {
+    for (const double tick : nice_marks(low, high, 6)) {
         const double place = (tick - range.low) / (range.high - range.low);
         const double y = top.y + length * (1 - place);
         sheet.line({top.x + 1.6 * em, y}, {top.x + 2.1 * em, y});
@@ -160,27 +161,6 @@ std::string metres_text(double metres) {
 }
 
 }  // namespace
-
-double nice_at_most(double most) {
-    if (!(most > 0) || !std::isfinite(most)) return 0;
-    const double power = std::pow(10.0, std::floor(std::log10(most)));
-    for (const double factor : {5.0, 2.0, 1.0})
-        if (factor * power <= most * (1 + 1e-12)) return factor * power;
-    return power / 2;  // the logarithm was rounded up
-}
-
-std::vector<double> nice_ticks(double low, double high, int count) {
-    std::vector<double> ticks;
-    const double least = (high - low) / std::max(count, 1), below = nice_at_most(least);
-    const double step = below >= least * (1 - 1e-12) ? below : nice_at_most(2.5 * below);  // 1, 2, 5, 10
-    if (!(step > 0) || (high - low) / step > 10.0 * count) return ticks;
-    const double first = std::ceil(low / step - 1e-9);
-    for (double i = first; i * step <= high + 1e-9 * step; ++i) {
-        if (ticks.size() > 10 * static_cast<size_t>(count)) break;  // steps that doubles cannot tell apart
-        ticks.push_back(i * step);
-    }
-    return ticks;
-}
 
 std::vector<ScaleBar> scale_bars(double pixel, double metres_per_unit, double most) {
     std::vector<ScaleBar> bars;

@@ -37,11 +37,6 @@ std::vector<Mark> overlay(const gi::Look& look, const gi::ShownValues& values, c
 /// What a legend is called: "Elevation", or an attribute's name.
 std::string legend_title(const gi::Look& look);
 
-/// The largest 1, 2 or 5 times a power of ten that is at most `most`; 0 where that is no positive number.
-double nice_at_most(double most);
-/// Multiples of a nice step from `low` to `high`, at most `count` + 1 of them.
-std::vector<double> nice_ticks(double low, double high, int count);
-
 /// A bar of a nice length, and what is written beside it.
 struct ScaleBar {
     double pixels = 0;

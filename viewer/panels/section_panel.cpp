@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/axis_marks.h"
+
 namespace lucarne::viewer {
 namespace {
 

@@ -127,25 +127,4 @@ Result<Section> read_section(const octree::NodeSource& source, const Slice& slic
     return section;
 }
 
-double axis_step(double range, int count) {
-    const double raw = std::max(range, 1e-9) / count;
-    const double power = std::pow(10.0, std::floor(std::log10(raw)));
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (factor * power >= raw * (1 - 1e-9)) return factor * power;
-    return 10 * power;
-}
-
-std::vector<double> axis_marks(double low, double high, double step) {
-    std::vector<double> marks;
-    const double first = std::ceil(low / step);
-    // Counted: far away a step may be less than a double's.
-    for (int i = 0; i < 100 && (first + i) * step <= high; ++i) marks.push_back((first + i) * step);
-    return marks;
-}
-
-std::string axis_text(double value, double step) {
-    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
-    return fmt::format("{:.{}f}", std::abs(value) < step / 2 ? 0.0 : value, decimals);
-}
-
 }  // namespace lucarne::viewer

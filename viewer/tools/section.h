@@ -56,11 +56,4 @@ Result<void> write_section(const std::filesystem::path& base, const Section& sec
                            const std::string& title, const UnitChoice& units, NodeCache& cache,
                            bool overwrite);
 
-/// 1, 2 or 5 times a power of ten: the step of about `count` marks over a range.
-double axis_step(double range, int count);
-/// The multiples of the step from `low` to `high`, a hundred at most.
-std::vector<double> axis_marks(double low, double high, double step);
-/// A mark of such an axis: as many decimals as the step has, and no minus before 0.
-std::string axis_text(double value, double step);
-
 }  // namespace lucarne::viewer

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/core/file.h"
+#include "viewer/axis_marks.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/section.h"
 
