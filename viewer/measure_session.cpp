@@ -69,7 +69,7 @@ void MeasureSession::files(ViewModel& model) {
     own_file_ = path;
     measure.list.replace(std::move(*loaded));
     measure.selected.reset();
-    measure.show_panel = true;
+    model.side_bar().unfold(BarSection::measure);
 }
 
 void MeasureSession::take_input(ViewModel& model) {
@@ -92,7 +92,6 @@ void MeasureSession::take_input(ViewModel& model) {
 
 void MeasureSession::draw(ViewModel& model) {
     draw_measurements(model);
-    draw_measure_panel(model);
     section_panel_.draw(model);
 }
 

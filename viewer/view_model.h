@@ -22,7 +22,6 @@ struct ControllerModel {
     io::ControllerStatus status;
     io::SixDofState cap;        ///< as it is now
     bool holds_object = false;  ///< the cap is what is looked at, not the camera
-    bool show_panel = false;
 };
 
 /// All that the user can change in the viewer, and what the panels show. Actions and panels write it; the
@@ -55,7 +54,7 @@ struct ViewModel {
 
     Health health;
 
-    bool show_panels = true, show_help = false;
+    bool show_help = false;
     bool close = false, save_picture = false;
     std::string message;                   ///< of the last action, or why there is no new picture
     std::filesystem::path pictures = ".";  ///< the folder for saved ones
@@ -72,6 +71,8 @@ struct ViewModel {
         ++scene_version;
         ++shown_changes;
     }
+    SideBar& side_bar() { return shell.settings.side_bar; }
+    const SideBar& side_bar() const { return shell.settings.side_bar; }
     gi::SceneLight* selected_light() { return light < scene.lights.size() ? &scene.lights[light] : nullptr; }
     void go_to(const gi::SceneCamera& camera) {
         rig = CameraRig(camera);

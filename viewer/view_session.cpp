@@ -229,13 +229,7 @@ void ViewSession::draw_panels() {
     draw_convergence(model_);
     desk_.draw();
     measure_.draw(model_);
-    if (model_.show_panels && placed_) {
-        draw_settings_panel(model_);
-        if (model_.light_tools.show_panel) draw_light_panel(model_);
-        if (model_.look_tools.show_panel) draw_view_panel(model_);
-        draw_statistics_panel(model_);
-    }
-    if (model_.controller.show_panel) draw_controller_panel(model_);
+    draw_side_bar(model_, placed_);
     if (model_.show_help) draw_help(model_);
     if (const auto error = worker_.error(); !error) model_.message = error.error().line();
     draw_message(model_, scans_.source() && (!model_.picture || model_.picture->request != sent_number_));

@@ -67,7 +67,7 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     seen = changed(*next, 1);
     ASSERT_TRUE(seen) << "light";
 
-    xdo("key ctrl+2 key m");
+    xdo("key ctrl+2");
     xdo(at(200, 200) + "click 1 sleep 0.4 " + at(280, 220) + "click 1 sleep 0.4");
     const std::string csv = folder_ / "measurements.csv";
     ASSERT_TRUE(eventually([&] {

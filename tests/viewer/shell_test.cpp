@@ -13,6 +13,7 @@
 #include "viewer/shell/native_dialog.h"
 #include "viewer/shell/scan_set.h"
 #include "viewer/shell/settings.h"
+#include "viewer/shell/side_bar.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -34,7 +35,10 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     EXPECT_EQ(loaded.settings.text_size, 1.5);
     loaded.settings.window = {800, 600};
     loaded.settings.navigation = "walk";
-    loaded.settings.panels = false;
+    loaded.settings.side_bar.shown = false;
+    loaded.settings.side_bar.width = 31.5;
+    loaded.settings.side_bar.open.fill(false);
+    loaded.settings.side_bar.unfold(BarSection::statistics);
     loaded.settings.controller.sensitivity = 2.5;
     loaded.settings.controller.from[1] = 2;
     loaded.settings.controller.scale[5] = -0.5;
@@ -46,7 +50,9 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     EXPECT_EQ(again.problem, "");
     EXPECT_EQ(again.settings.window.width, 800u);
     EXPECT_EQ(again.settings.navigation, "walk");
-    EXPECT_FALSE(again.settings.panels);
+    EXPECT_FALSE(again.settings.side_bar.shown);
+    EXPECT_EQ(again.settings.side_bar.width, 31.5);
+    EXPECT_EQ(again.settings.side_bar.open, loaded.settings.side_bar.open);
     EXPECT_EQ(again.settings.controller, loaded.settings.controller);
     ASSERT_EQ(again.settings.recent.size(), 2u);
     EXPECT_EQ(again.settings.recent.front(), "/a.las");
@@ -56,6 +62,7 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
 TEST(Settings, ABrokenFileIsPutAsideAndReported) {
     for (const std::string text :
          {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})",
+          R"({"side_bar": {"width": 1e9}})", R"({"side_bar": {"open": "light"}})", R"({"side_bar": {"open": [1]}})",
           R"({"controller": {"up": {"from": "left"}}})", R"({"window": {"width": 0}})"}) {
         const TemporaryFolder folder;
         write(folder / "settings.json", text);
@@ -73,6 +80,42 @@ TEST(Settings, RecentFilesAreBounded) {
     for (int i = 0; i < 100; ++i) settings.opened(fmt::format("/{}", i));
     EXPECT_EQ(settings.recent.size(), kMostRecent);
     EXPECT_EQ(settings.recent.front(), "/99");
+}
+
+TEST(Settings, SectionsOfOtherVersionsAreLeftOut) {
+    const TemporaryFolder folder;
+    write(folder / "settings.json", R"({"side_bar": {"open": ["light", "of tomorrow"]}})");
+    const LoadedSettings loaded = load_settings(folder.path());
+    EXPECT_EQ(loaded.problem, "");
+    for (size_t i = 0; i < kSections; ++i)
+        EXPECT_EQ(loaded.settings.side_bar.open[i], kSectionNames[i] == "light") << kSectionNames[i];
+}
+
+TEST(SideBar, AKeyClosesASectionThatIsSeenAndShowsOneThatIsNot) {
+    SideBar bar;
+    bar.open.fill(false);
+    bar.toggle(BarSection::light);
+    EXPECT_TRUE(bar.shows(BarSection::light));
+    EXPECT_EQ(bar.sought, BarSection::light) << "it may be scrolled away";
+    bar.toggle(BarSection::light);
+    EXPECT_FALSE(bar.is_open(BarSection::light));
+    EXPECT_TRUE(bar.shown) << "the others stay";
+    bar.shown = false;
+    bar.unfold(BarSection::measure);
+    EXPECT_FALSE(bar.shows(BarSection::measure)) << "a bar put away stays away when a tool opens its section";
+    bar.toggle(BarSection::measure);
+    EXPECT_TRUE(bar.shows(BarSection::measure)) << "the user asked for it";
+}
+
+TEST(SideBar, LeavesThePictureTwoFifthsOfTheWindow) {
+    SideBar bar;
+    bar.width = 30;
+    EXPECT_EQ(bar.pixels(13, 1280), 390);
+    EXPECT_EQ(bar.pixels(13, 500), 300);
+    bar.width = 1e6;
+    EXPECT_EQ(bar.pixels(10, 1e6), 10 * SideBar::kMost);
+    bar.shown = false;
+    EXPECT_EQ(bar.pixels(13, 1280), 0);
 }
 
 Bookmark bookmark(const std::string& name, double height) {

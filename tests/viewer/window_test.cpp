@@ -148,7 +148,6 @@ TEST_F(ViewerWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigi
     ASSERT_TRUE(picture(lit));
     xdo("key Tab");
     xdo("key ctrl+2");
-    xdo("key m");  // the panel would take clicks on the right
     // Where points of the front wall are seen, by number: 10th and 66th of the third row.
     const auto click = [&](uint64_t number) {
         const glm::dvec3 d = test::MeasuredScan::position(number) - from;

@@ -61,12 +61,6 @@ template <size_t kIndex>
 bool there(const ViewModel& model) {
     return kIndex < model.shell.bookmarks.size();
 }
-void toggle_panel(ViewModel& model) {
-    model.shell.show_bookmarks = !model.shell.show_bookmarks;
-}
-bool shows_panel(const ViewModel& model) {
-    return model.shell.show_bookmarks;
-}
 
 }  // namespace
 
@@ -75,7 +69,6 @@ std::span<const Action> bookmark_actions() {
     static constexpr int kCtrl = GLFW_MOD_CONTROL, kAlt = GLFW_MOD_ALT;
     static constexpr std::array kActions = {
         Action{{GLFW_KEY_B, kCtrl}, kMenu, "Set a bookmark", add, has_picture},
-        Action{{GLFW_KEY_B, kCtrl | GLFW_MOD_SHIFT}, kMenu, "Show them", toggle_panel, nullptr, shows_panel},
         Action{{GLFW_KEY_PAGE_DOWN, kCtrl}, kMenu, "Next", next, has_bookmarks},
         Action{{GLFW_KEY_PAGE_UP, kCtrl}, kMenu, "Previous", previous, has_bookmarks},
         Action{{GLFW_KEY_1, kAlt}, kMenu, "First", go_to<0>, there<0>},

@@ -33,12 +33,6 @@ bool is_on(const ViewModel& model) {
 bool can_undo(const ViewModel& model) {
     return !model.light_tools.undo.empty();
 }
-void toggle_panel(ViewModel& model) {
-    model.light_tools.show_panel = !model.light_tools.show_panel;
-}
-bool shows_panel(const ViewModel& model) {
-    return model.light_tools.show_panel;
-}
 void toggle_handles(ViewModel& model) {
     model.light_tools.show_handles = !model.light_tools.show_handles;
 }
@@ -64,7 +58,6 @@ std::span<const Action> light_actions() {
         Action{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
         Action{{GLFW_KEY_Z, GLFW_MOD_ALT}, "Light", "Undo", undo_lights, can_undo},
         Action{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
-        Action{{GLFW_KEY_L, GLFW_MOD_ALT}, "Window", "Light panel", toggle_panel, nullptr, shows_panel},
     };
     return kActions;
 }

@@ -88,12 +88,6 @@ void clear_clip(ViewModel& model) {
     model.scene.look.clip = {};
     model.scene_changed();
 }
-void toggle_panel(ViewModel& model) {
-    model.look_tools.show_panel = !model.look_tools.show_panel;
-}
-bool shows_panel(const ViewModel& model) {
-    return model.look_tools.show_panel;
-}
 
 }  // namespace
 
@@ -112,7 +106,6 @@ std::span<const Action> look_actions() {
         Action{{GLFW_KEY_I}, "Look/Clip", "Add a box", add_clip_box},
         Action{{GLFW_KEY_I, GLFW_MOD_SHIFT}, "Look/Clip", "Add a plane", add_clip_plane},
         Action{{GLFW_KEY_I, GLFW_MOD_ALT}, "Look/Clip", "Clip nothing", clear_clip, is_clipped},
-        Action{{GLFW_KEY_Y}, "Window", "View panel", toggle_panel, nullptr, shows_panel},
     };
     return kActions;
 }

@@ -10,7 +10,9 @@ namespace {
 
 template <MeasureKind Kind>
 void use(ViewModel& model) {
-    model.measure.tool == Kind ? model.measure.stop() : model.measure.start(Kind);
+    if (model.measure.tool == Kind) return model.measure.stop();
+    model.measure.start(Kind);
+    model.side_bar().unfold(BarSection::measure);
 }
 template <MeasureKind Kind>
 bool used(const ViewModel& model) {
@@ -55,12 +57,6 @@ void save_as(ViewModel& model, const char* extension) {
 std::span<const Action> measure_actions() {
     using Kind = MeasureKind;
     static constexpr std::array kActions = {
-        Action{{GLFW_KEY_M},
-               "Measure",
-               "Measurements",
-               [](ViewModel& m) { m.measure.show_panel = !m.measure.show_panel; },
-               nullptr,
-               [](const ViewModel& m) { return m.measure.show_panel; }},
         tool<Kind::point>(GLFW_KEY_1, "Point"),
         tool<Kind::distance>(GLFW_KEY_2, "Distance"),
         tool<Kind::height>(GLFW_KEY_3, "Height"),

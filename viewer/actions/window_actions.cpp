@@ -16,24 +16,18 @@ void toggle_help(ViewModel& model) {
 bool shows_help(const ViewModel& model) {
     return model.show_help;
 }
-void toggle_panels(ViewModel& model) {
-    model.show_panels = !model.show_panels;
+void toggle_side_bar(ViewModel& model) {
+    model.side_bar().shown = !model.side_bar().shown;
 }
-bool shows_panels(const ViewModel& model) {
-    return model.show_panels;
-}
-void toggle_scans(ViewModel& model) {
-    model.shell.show_scans = !model.shell.show_scans;
-}
-bool shows_scans(const ViewModel& model) {
-    return model.shell.show_scans;
+bool shows_side_bar(const ViewModel& model) {
+    return model.side_bar().shown;
 }
 
-void toggle_controller(ViewModel& model) {
-    model.controller.show_panel = !model.controller.show_panel;
-}
-bool shows_controller(const ViewModel& model) {
-    return model.controller.show_panel;
+template <BarSection Of>
+constexpr Action section(KeyChord key, const char* name) {
+    return {key,     "Window",
+            name,    [](ViewModel& model) { model.side_bar().toggle(Of); },
+            nullptr, [](const ViewModel& model) { return model.side_bar().shows(Of); }};
 }
 
 void reload_shaders(ViewModel& model) {
@@ -60,12 +54,21 @@ void smaller_text(ViewModel& model) {
 
 std::span<const Action> window_actions() {
     static constexpr std::array kActions = {
-        Action{{GLFW_KEY_TAB}, "Window", "Panels", toggle_panels, nullptr, shows_panels},
-        Action{{GLFW_KEY_TAB, GLFW_MOD_SHIFT}, "Window", "Scans", toggle_scans, nullptr, shows_scans},
-        Action{{GLFW_KEY_F6}, "Window", "6-DoF controller", toggle_controller, nullptr, shows_controller},
+        Action{{GLFW_KEY_TAB}, "Window", "Side bar", toggle_side_bar, nullptr, shows_side_bar},
+        section<BarSection::scans>({GLFW_KEY_TAB, GLFW_MOD_SHIFT}, "Scans"),
+        section<BarSection::rendering>({GLFW_KEY_F7}, "Rendering"),
+        section<BarSection::look>({GLFW_KEY_Y}, "Look"),
+        section<BarSection::light>({GLFW_KEY_L, GLFW_MOD_ALT}, "Light"),
+        section<BarSection::measure>({GLFW_KEY_M}, "Measure"),
+        section<BarSection::bookmarks>({GLFW_KEY_B, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT}, "Bookmarks"),
+        section<BarSection::statistics>({GLFW_KEY_F8}, "Statistics"),
+        section<BarSection::controller>({GLFW_KEY_F6}, "6-DoF controller"),
         Action{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},
         Action{{GLFW_KEY_MINUS, GLFW_MOD_CONTROL}, "Window", "Smaller text", smaller_text},
-        Action{{GLFW_KEY_F5, GLFW_MOD_CONTROL}, "Window", "Read shader files again", reload_shaders,
+        Action{{GLFW_KEY_F5, GLFW_MOD_CONTROL},
+               "Window",
+               "Read shader files again",
+               reload_shaders,
                has_shader_files},
         Action{{GLFW_KEY_F1}, "Help", "Keys and mouse", toggle_help, nullptr, shows_help},
     };

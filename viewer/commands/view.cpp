@@ -72,7 +72,6 @@ std::string absolute(const std::string& path) {
 }
 
 void take_settings(Settings settings, ViewModel& model) {
-    model.show_panels = settings.panels;
     if (const auto mode = navigation_mode(settings.navigation)) model.navigation.set_mode(*mode);
     model.shell.settings = std::move(settings);
 }

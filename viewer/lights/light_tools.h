@@ -19,7 +19,7 @@ struct LightHandle {
 
 /// What the window keeps for lights, albedo, exposure and comparisons beside the scene itself.
 struct LightTools {
-    bool show_panel = true, show_handles = true;
+    bool show_handles = true;
     bool lumens = false;   ///< strengths are shown in lm and lx
     double kelvin = 6500;  ///< of the panel's temperature
     std::optional<LightHandle> held;

@@ -24,7 +24,6 @@ struct HandlePlace {
 
 /// What the window keeps for the looks of points beside the scene's look itself.
 struct LookTools {
-    bool show_panel = true;
     std::string lit_engine = "vpl";  ///< what switching light on again goes back to
     std::optional<ClipHandle> held;
     bool show_handles = true;

@@ -4,44 +4,37 @@
 
 namespace lucarne::viewer {
 
-void draw_bookmarks(ViewModel& model) {
+void draw_bookmarks_panel(ViewModel& model) {
     Shell& shell = model.shell;
-    if (!shell.show_bookmarks || !model.picture) return;
     const float font = ImGui::GetFontSize();
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(display.x - 8, display.y - 8), ImGuiCond_FirstUseEver, ImVec2(1, 1));
-    ImGui::SetNextWindowSize(ImVec2(font * 18, font * 22), ImGuiCond_FirstUseEver);
     size_t gone = shell.bookmarks.size();
-    if (ImGui::Begin("Bookmarks", &shell.show_bookmarks)) {
-        if (shell.bookmarks.empty()) ImGui::TextWrapped("Ctrl+B sets one where you are.");
-        for (size_t i = 0; i < shell.bookmarks.size(); ++i) {
-            Bookmark& bookmark = shell.bookmarks[i];
-            ImGui::PushID(static_cast<int>(i));
-            const float height = 4.5f * font;
-            const float width = bookmark.thumbnail.height
-                                    ? height * static_cast<float>(bookmark.thumbnail.width) /
-                                          static_cast<float>(bookmark.thumbnail.height)
-                                    : 0;
-            bool chosen = false;
-            if (bookmark.texture)
-                chosen = ImGui::ImageButton(
-                    reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(bookmark.texture)),
-                    ImVec2(width, height));
-            else
-                chosen = ImGui::Button("go there", ImVec2(8 * font, height));
-            ImGui::SameLine();
-            ImGui::BeginGroup();
-            ImGui::TextUnformatted(bookmark.camera.name.c_str());
-            if (ImGui::SmallButton("remove")) gone = i;
-            ImGui::EndGroup();
-            if (chosen) {
-                shell.bookmark = i;
-                model.go_to(bookmark.camera);
-            }
-            ImGui::PopID();
+    if (shell.bookmarks.empty()) ImGui::TextWrapped("Ctrl+B sets one where you are.");
+    for (size_t i = 0; i < shell.bookmarks.size(); ++i) {
+        Bookmark& bookmark = shell.bookmarks[i];
+        ImGui::PushID(static_cast<int>(i));
+        const float height = 4.5f * font;
+        const float width = bookmark.thumbnail.height
+                                ? height * static_cast<float>(bookmark.thumbnail.width) /
+                                      static_cast<float>(bookmark.thumbnail.height)
+                                : 0;
+        bool chosen = false;
+        if (bookmark.texture)
+            chosen =
+                ImGui::ImageButton(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(bookmark.texture)),
+                                   ImVec2(width, height));
+        else
+            chosen = ImGui::Button("go there", ImVec2(8 * font, height));
+        ImGui::SameLine();
+        ImGui::BeginGroup();
+        ImGui::TextUnformatted(bookmark.camera.name.c_str());
+        if (ImGui::SmallButton("remove")) gone = i;
+        ImGui::EndGroup();
+        if (chosen) {
+            shell.bookmark = i;
+            model.go_to(bookmark.camera);
         }
+        ImGui::PopID();
     }
-    ImGui::End();
     if (gone >= shell.bookmarks.size()) return;
     if (shell.bookmarks[gone].texture) shell.stale_textures.push_back(shell.bookmarks[gone].texture);
     shell.bookmarks.erase(shell.bookmarks.begin() + static_cast<std::ptrdiff_t>(gone));

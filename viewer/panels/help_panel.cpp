@@ -45,7 +45,8 @@ void draw_help(ViewModel& model) {
 
 void draw_message(const ViewModel& model, bool busy) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
+    const auto left = static_cast<float>(model.side_bar().pixels(ImGui::GetFontSize(), size.x));
+    ImGui::SetNextWindowPos(ImVec2((left + size.x) / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
     ImGui::SetNextWindowBgAlpha(0.6f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
@@ -56,7 +57,7 @@ void draw_message(const ViewModel& model, bool busy) {
     if (model.message.empty() && !busy && healthy) return;
     if (ImGui::Begin("##message", nullptr, flags)) {
         for (const std::string* problem : problems)
-            if (!problem->empty()) warning(*problem, size.x);
+            if (!problem->empty()) warning(*problem, size.x - left);
         if (!model.message.empty() || busy)
             ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
     }

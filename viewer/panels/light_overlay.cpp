@@ -127,7 +127,7 @@ bool take_light_handles(ViewModel& model) {
     if (!model.picture) return false;
     LightTools& tools = model.light_tools;
     if (take_border(model)) return true;
-    if (!tools.show_handles || !model.show_panels || model.engine == "unlit") {
+    if (!tools.show_handles || !model.side_bar().shown || model.engine == "unlit") {
         tools.held.reset();
         return false;
     }
@@ -161,7 +161,8 @@ void draw_convergence(const ViewModel& model) {
         model.picture->moving ? 0 : static_cast<float>(model.picture->stats.accumulated) / kMostAccumulated;
     const float font = ImGui::GetFontSize(), radius = 0.7f * font;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const ImVec2 centre(size.x / 2, size.y - 1.2f * font);
+    const auto left = static_cast<float>(model.side_bar().pixels(font, size.x));
+    const ImVec2 centre((left + size.x) / 2, size.y - 1.2f * font);
     constexpr float kTop = -std::numbers::pi_v<float> / 2;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     list.AddCircleFilled(centre, radius + 4, kPaper);

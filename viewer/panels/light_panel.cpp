@@ -174,27 +174,16 @@ void draw_buttons(ViewModel& model) {
 }  // namespace
 
 void draw_light_panel(ViewModel& model) {
-    const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos(ImVec2(8, font * 21), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(font * 22, 0), ImGuiCond_FirstUseEver);
-    // Between the panels Picture and Scans.
-    const float room = ImGui::GetIO().DisplaySize.y - font * 32 - 24;
-    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(font * 60, std::max(room, font * 8)));
-    if (ImGui::Begin("Light")) {
-        ImGui::PushItemWidth(-font * 8);
-        draw_list(model);
-        draw_buttons(model);
-        if (gi::SceneLight* light = model.selected_light()) {
-            ImGui::Separator();
-            if (edit_light(model, *light)) model.scene_changed();
-            if (light->kind != gi::LightKind::directional && ImGui::Button("Put it where the camera is"))
-                place_light_at_camera(model);
-        }
-        draw_sky(model);
-        draw_emitters(model);
-        ImGui::PopItemWidth();
+    draw_list(model);
+    draw_buttons(model);
+    if (gi::SceneLight* light = model.selected_light()) {
+        ImGui::Separator();
+        if (edit_light(model, *light)) model.scene_changed();
+        if (light->kind != gi::LightKind::directional && ImGui::Button("Put it where the camera is"))
+            place_light_at_camera(model);
     }
-    ImGui::End();
+    draw_sky(model);
+    draw_emitters(model);
 }
 
 }  // namespace lucarne::viewer

@@ -134,7 +134,7 @@ void draw_sun(ViewModel& model) {
 }
 
 void draw_sky(ViewModel& model) {
-    if (!ImGui::CollapsingHeader("Sky")) return;
+    if (!fold("Sky")) return;
     ImGui::PushID("sky");
     if (!model.scene.environment) {
         if (ImGui::Button("Even sky")) {
@@ -169,7 +169,7 @@ void draw_sky(ViewModel& model) {
 }
 
 void draw_emitters(ViewModel& model) {
-    if (!ImGui::CollapsingHeader("Classes that shine")) return;
+    if (!fold("Classes that shine")) return;
     ImGui::PushID("emitters");
     for (size_t i = 0; i < model.scene.materials.size(); ++i) {
         gi::SceneMaterial& material = model.scene.materials[i];

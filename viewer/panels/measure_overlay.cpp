@@ -94,7 +94,7 @@ void draw_measurements(ViewModel& model) {
         ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         if (const auto under = label_under_cursor(overlay)) {
             measure.selected = under;
-            measure.show_panel = true;
+            model.side_bar().unfold(BarSection::measure);
         }
     draw_pending(model, window, units);
 }

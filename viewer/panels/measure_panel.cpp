@@ -124,23 +124,12 @@ void edit_buttons(MeasureModel& measure, const UnitChoice& units) {
 
 void draw_measure_panel(ViewModel& model) {
     MeasureModel& measure = model.measure;
-    if (!measure.show_panel) return;
     const UnitChoice units = measure.units();
-    const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - font * 23, font * 3),
-                            ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(font * 22, std::min(font * 44, ImGui::GetIO().DisplaySize.y * 0.8f)),
-                             ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Measure", &measure.show_panel)) {
-        ImGui::PushItemWidth(-font * 7);
-        tool_buttons(measure);
-        thickness_field(measure, units);
-        list_of(measure, units);
-        edit_buttons(measure, units);
-        details(measure, units);
-        ImGui::PopItemWidth();
-    }
-    ImGui::End();
+    tool_buttons(measure);
+    thickness_field(measure, units);
+    list_of(measure, units);
+    edit_buttons(measure, units);
+    details(measure, units);
 }
 
 }  // namespace lucarne::viewer

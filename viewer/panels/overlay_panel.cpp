@@ -29,9 +29,9 @@ void draw_overlay(const ViewModel& model) {
     view.metres_per_unit = model.picture->metres_per_unit;
     view.size = {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)};
     view.font = ImGui::GetFontSize();
-    view.right = model.show_panels && model.look_tools.show_panel ? kViewPanelWidth * view.font + 16 : 8;
-    view.left = model.show_panels ? 33 * view.font : 8;  // the scans' tree
-    view.bottom = 2 * view.font;                         // the line of messages
+    view.left = model.side_bar().pixels(view.font, size.x) + 8;
+    view.right = 8;
+    view.bottom = 2 * view.font;  // the line of messages
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     std::vector<Mark> marks = overlay(model.scene.look, model.picture->values, view);
     std::ranges::move(figure_scale(model.scene, model.picture->exposure_ev, view), std::back_inserter(marks));

@@ -43,27 +43,25 @@ void progress(ScanSet& scans, const ScanRow& row) {
     }
 }
 
-/// Where the columns behind the names begin, from the left.
-struct Columns {
-    float points, memory, close;
-};
-Columns columns() {
-    const float font = ImGui::GetFontSize(), right = ImGui::GetWindowContentRegionMax().x;
-    return {right - 12 * font, right - 7 * font, right - 1.5f * font};
-}
-
-void files(const ScanRow& row, const Columns& at) {
+void files(const ScanRow& row) {
     for (size_t i = 0; i < row.paths.size(); ++i) {
         const size_t slash = row.paths[i].find_last_of('/');
         ImGui::BulletText("%s", row.paths[i].c_str() + (slash == std::string::npos ? 0 : slash + 1));
         if (i >= row.of_path.size()) continue;
-        ImGui::SameLine(at.points);
-        ImGui::TextUnformatted(points_text(row.of_path[i]).c_str());
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s", points_text(row.of_path[i]).c_str());
     }
 }
 
+/// Its points and what it holds of memory, as far as they are known.
+std::string figures(const ScanRow& row) {
+    std::string text = row.points ? points_text(row.points) + " points" : "";
+    if (row.memory) text += (text.empty() ? "" : ", ") + bytes_text(row.memory) + " in memory";
+    return text;
+}
+
 void draw_row(ScanSet& scans, const ScanRow& row) {
-    const Columns at = columns();
+    const float font = ImGui::GetFontSize(), button = ImGui::GetContentRegionMax().x - 1.5f * font;
     ImGui::PushID(static_cast<int>(row.id));
     bool visible = row.visible;
     if (ImGui::Checkbox("##visible", &visible)) scans.set_visible(row.id, visible);
@@ -71,18 +69,19 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
     ImGui::SameLine();
     const bool tree = row.paths.size() > 1;
     const ImGuiTreeNodeFlags leaf = ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();  // long names end at the button
+    const float end = ImGui::GetWindowPos().x + button - 0.5f * font;
+    ImGui::PushClipRect(corner, ImVec2(end, corner.y + ImGui::GetFrameHeight()), true);
     const bool open = ImGui::TreeNodeEx("##name", tree ? 0 : leaf, "%s", row.name().c_str());
+    ImGui::PopClipRect();
     tip(fmt::format("{}\n{} on disk; its directory takes {} of memory", row.paths.front(),
                     bytes_text(row.file_bytes), bytes_text(row.memory)));
-    ImGui::SameLine(at.points);
-    ImGui::TextUnformatted(row.points ? points_text(row.points).c_str() : "");
-    ImGui::SameLine(at.memory);
-    ImGui::TextUnformatted(row.memory ? bytes_text(row.memory).c_str() : "");
-    ImGui::SameLine(at.close);
+    ImGui::SameLine(button);
     const bool close = ImGui::SmallButton("x");
     tip("close it");
+    if (const std::string text = figures(row); !text.empty()) ImGui::TextDisabled("   %s", text.c_str());
     if (tree && open) {
-        files(row, at);
+        files(row);
         ImGui::TreePop();
     }
     progress(scans, row);
@@ -94,22 +93,9 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
 
 void draw_scans_panel(ViewModel& model) {
     ScanSet* scans = model.shell.scans;
-    if (!scans || scans->rows().empty() || !model.shell.show_scans || !model.show_panels) return;
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos(ImVec2(8, display.y - 8), ImGuiCond_FirstUseEver, ImVec2(0, 1));
-    ImGui::SetNextWindowSize(ImVec2(font * 32, font * 11), ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Scans", &model.shell.show_scans)) {
-        const Columns at = columns();
-        ImGui::TextDisabled("scan");
-        ImGui::SameLine(at.points);
-        ImGui::TextDisabled("points");
-        ImGui::SameLine(at.memory);
-        ImGui::TextDisabled("memory");
-        const std::vector<ScanRow> rows = scans->rows();  // a row may go while they are drawn
-        for (const ScanRow& row : rows) draw_row(*scans, row);
-    }
-    ImGui::End();
+    if (!scans) return;
+    const std::vector<ScanRow> rows = scans->rows();  // a row may go while they are drawn
+    for (const ScanRow& row : rows) draw_row(*scans, row);
 }
 
 }  // namespace lucarne::viewer

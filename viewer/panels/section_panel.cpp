@@ -47,12 +47,14 @@ void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, c
 void SectionPanel::draw(ViewModel& model) {
     MeasureModel& measure = model.measure;
     const Measurement* one = measure.selected_one();
-    if (!one || one->kind != MeasureKind::section || !measure.show_panel) return;
+    if (!one || one->kind != MeasureKind::section || !model.side_bar().is_open(BarSection::measure))
+        return;
     const UnitChoice units = measure.units();
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const float font = ImGui::GetFontSize();
-    ImGui::SetNextWindowPos(ImVec2(font, display.y - font * 19), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(display.x - font * 25, font * 17), ImGuiCond_FirstUseEver);
+    const float left = static_cast<float>(model.side_bar().pixels(font, display.x)) + font;
+    ImGui::SetNextWindowPos(ImVec2(left, display.y - font * 19), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(display.x - left - font, font * 17), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowBgAlpha(1);
     if (ImGui::Begin("Section")) {
         const Section* section = measure.section.get();

@@ -1,5 +1,3 @@
-#include <cfloat>
-
 #include <imgui.h>
 
 #include "io/core/options.h"
@@ -38,39 +36,31 @@ void passes_table(const FrameStats& stats) {
 }  // namespace
 
 void draw_statistics_panel(ViewModel& model) {
-    const float width = ImGui::GetFontSize() * 22;
-    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 8, ImGui::GetFrameHeight() + 8),
-                            ImGuiCond_FirstUseEver, ImVec2(1, 0));
-    ImGui::SetNextWindowCollapsed(true, ImGuiCond_FirstUseEver);  // leaves room for the view below
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, FLT_MAX));
-    if (ImGui::Begin("Statistics", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        const FrameTimes& frames = model.health.frames;
-        ImGui::Text("window: %.1f ms a frame, 95 %% within %.1f ms", frames.quantile(0.5) * 1e3,
-                    frames.quantile(0.95) * 1e3);
-        if (model.picture) {
-            const Picture& picture = *model.picture;
-            const FrameStats& stats = picture.stats;
-            ImGui::Text("%.1f ms a picture, %u x %u%s", stats.seconds * 1e3, picture.size.width,
-                        picture.size.height, picture.moving ? ", moving" : "");
-            ImGui::Text("cuts %.1f %% complete, %llu nodes to come", stats.complete() * 100,
-                        static_cast<unsigned long long>(stats.nodes_pending));
-            if (stats.nodes_lost > 0)
-                ImGui::Text("%llu nodes left out: they cannot be read",
-                            static_cast<unsigned long long>(stats.nodes_lost));
-            ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
-            ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
-            ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
-                        bytes_text(model.caps.memory).c_str());
-            ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
-                        bytes_text(model.caps.device_memory).c_str());
-            ImGui::Text("the program holds %s", bytes_text(stats.memory.resident).c_str());
-            passes_table(stats);
-        } else {
-            ImGui::TextUnformatted("The first picture is on its way.");
-        }
-        ImGui::TextDisabled("%s", model.device.renderer.c_str());
+    const FrameTimes& frames = model.health.frames;
+    ImGui::Text("window: %.1f ms a frame, 95 %% within %.1f ms", frames.quantile(0.5) * 1e3,
+                frames.quantile(0.95) * 1e3);
+    if (model.picture) {
+        const Picture& picture = *model.picture;
+        const FrameStats& stats = picture.stats;
+        ImGui::Text("%.1f ms a picture, %u x %u%s", stats.seconds * 1e3, picture.size.width,
+                    picture.size.height, picture.moving ? ", moving" : "");
+        ImGui::Text("cuts %.1f %% complete, %llu nodes to come", stats.complete() * 100,
+                    static_cast<unsigned long long>(stats.nodes_pending));
+        if (stats.nodes_lost > 0)
+            ImGui::Text("%llu nodes left out: they cannot be read",
+                        static_cast<unsigned long long>(stats.nodes_lost));
+        ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
+        ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
+        ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
+                    bytes_text(model.caps.memory).c_str());
+        ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
+                    bytes_text(model.caps.device_memory).c_str());
+        ImGui::Text("the program holds %s", bytes_text(stats.memory.resident).c_str());
+        passes_table(stats);
+    } else {
+        ImGui::TextUnformatted("The first picture is on its way.");
     }
-    ImGui::End();
+    ImGui::TextDisabled("%s", model.device.renderer.c_str());
 }
 
 }  // namespace lucarne::viewer

@@ -21,7 +21,6 @@ std::string absolute(const std::string& path) {
 /// Written at the end as well; a failure is told on the terminal, the window is gone.
 Desk::~Desk() {
     model_.shell.settings.window = window_.size();
-    model_.shell.settings.panels = model_.show_panels;
     model_.shell.settings.navigation = navigation_name(model_.navigation.mode());
     if (const auto saved = save_settings(model_.shell.settings, config_folder()); !saved)
         log::warn("{}", saved.error().line());
@@ -111,10 +110,7 @@ std::optional<double> Desk::floor() {
 
 void Desk::draw() {
     follow_bookmarks();
-    draw_bookmarks(model_);
-
     draw_menu_bar(model_);
-    draw_scans_panel(model_);
     if (scans_.rows().empty()) draw_start_page(model_);
     draw_file_browser(model_, browser_);
     draw_closing_question(model_);

@@ -47,6 +47,30 @@ nlohmann::json mapping_json(const io::SixDofMapping& mapping) {
     return json;
 }
 
+/// {"shown": true, "width": 24, "open": ["scans", "light"]}; sections of other versions are left out.
+Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
+    SideBar bar;
+    LUCARNE_ASSIGN(bar.shown, object.boolean("shown", bar.shown));
+    LUCARNE_ASSIGN(bar.width, object.number("width", {SideBar::kLeast, SideBar::kMost}, bar.width));
+    const auto open = json.find("open");
+    if (open == json.end()) return bar;
+    if (!open->is_array()) return object.wrong("is no list", "open");
+    bar.open.fill(false);
+    for (const auto& name : *open) {
+        if (!name.is_string()) return object.wrong("holds what is no text", "open");
+        const auto at = std::ranges::find(kSectionNames, name.get_ref<const std::string&>());
+        if (at != kSectionNames.end()) bar.open[static_cast<size_t>(at - kSectionNames.begin())] = true;
+    }
+    return bar;
+}
+
+nlohmann::json side_bar_json(const SideBar& bar) {
+    nlohmann::json open = nlohmann::json::array();
+    for (size_t i = 0; i < kSections; ++i)
+        if (bar.open[i]) open.push_back(kSectionNames[i]);
+    return {{"shown", bar.shown}, {"width", bar.width}, {"open", std::move(open)}};
+}
+
 Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     Settings settings;
     LUCARNE_ASSIGN(JsonObject object, JsonObject::of(json, name));
@@ -58,7 +82,10 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     }
     LUCARNE_ASSIGN(settings.navigation, object.text("navigation", ""));
     LUCARNE_ASSIGN(settings.text_size, object.number("text_size", {0.5, 4}, 1.0));
-    LUCARNE_ASSIGN(settings.panels, object.boolean("panels", true));
+    LUCARNE_ASSIGN(auto side_bar, object.object("side_bar"));
+    if (side_bar) {
+        LUCARNE_ASSIGN(settings.side_bar, read_side_bar(*side_bar, json["side_bar"]));
+    }
     LUCARNE_ASSIGN(auto controller, object.object("controller"));
     if (controller) {
         LUCARNE_ASSIGN(settings.controller, read_mapping(*controller));
@@ -71,7 +98,7 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
         }
     }
     settings.others = json;
-    for (const char* known : {"window", "navigation", "text_size", "panels", "controller", "recent"})
+    for (const char* known : {"window", "navigation", "text_size", "side_bar", "controller", "recent"})
         settings.others.erase(known);
     return settings;
 }
@@ -129,7 +156,7 @@ Result<void> save_settings(const Settings& settings, const fs::path& folder) {
         json["window"] = {{"width", settings.window.width}, {"height", settings.window.height}};
     if (!settings.navigation.empty()) json["navigation"] = settings.navigation;
     json["text_size"] = settings.text_size;
-    json["panels"] = settings.panels;
+    json["side_bar"] = side_bar_json(settings.side_bar);
     if (!(settings.controller == io::SixDofMapping{})) json["controller"] = mapping_json(settings.controller);
     json["recent"] = settings.recent;
     // Names of files may hold any bytes.

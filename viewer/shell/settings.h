@@ -9,6 +9,7 @@
 #include "io/core/error.h"
 #include "io/core/options.h"
 #include "io/input/six_dof.h"
+#include "viewer/shell/side_bar.h"
 
 namespace lucarne::viewer {
 
@@ -18,7 +19,7 @@ struct Settings {
     std::vector<std::string> recent;  ///< paths, the newest first
     std::string navigation;           ///< "orbit", "turntable", "fly" or "walk"; empty: not chosen yet
     double text_size = 1;             ///< beside the screen's own scale
-    bool panels = true;
+    SideBar side_bar;
     io::SixDofMapping controller;
     nlohmann::json others = nlohmann::json::object();  ///< keys that this version does not know; kept
 

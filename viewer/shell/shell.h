@@ -15,7 +15,6 @@ struct Shell {
     ScanSet* scans = nullptr;          ///< what is open; outlives the model
     std::vector<std::string> to_open;  ///< paths
     bool want_file = false;            ///< File > Open
-    bool show_scans = true;
     bool ask_to_close = false;  ///< the question is on the screen
     bool close_now = false;     ///< and was answered
     Settings settings;
@@ -23,7 +22,6 @@ struct Shell {
     std::vector<Bookmark> bookmarks;
     bool bookmarks_changed = false;        ///< by the user; they are to be written
     std::vector<unsigned> stale_textures;  ///< of bookmarks that are gone
-    bool show_bookmarks = false;
     size_t bookmark = 0;  ///< the last that was gone to
 };
 

@@ -12,7 +12,6 @@ namespace lucarne::viewer {
 void MeasureModel::start(MeasureKind kind) {
     tool = kind;
     pending.clear();
-    show_panel = true;
     message = fmt::format("{}: click {}", info_of(kind).title, info_of(kind).hint);
 }
 

@@ -16,7 +16,7 @@ struct MeasureModel {
     std::vector<ExactPoint> pending;  ///< those it has taken
     MeasureList list;
     std::optional<size_t> selected;  ///< in the list
-    bool metres = true, labels = true, show_panel = false;
+    bool metres = true, labels = true;
     double thickness = 0;        ///< of the next section, world units; 0: none was chosen yet
     double metres_per_unit = 1;  ///< of the world, in which all positions are
     /// To save to and load from: .csv or .json.

@@ -211,30 +211,21 @@ bool edit_clip(ViewModel& model, gi::Clip& clip) {
 
 }  // namespace
 
-void draw_view_panel(ViewModel& model) {
-    const float font = ImGui::GetFontSize(), width = kViewPanelWidth * font;
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float top = 2 * ImGui::GetFrameHeight() + 14;  // below the statistics, which are folded at first
-    ImGui::SetNextWindowPos(ImVec2(window.x - width - 8, top), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(width, std::min(24 * font, window.y - top - 2 * font)),
-                             ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("View")) {
-        gi::Look& look = model.scene.look;
-        bool changed = edit_colours(model, look);
-        changed |= edit_points(look);
-        changed |= edit_shading(model, look);
-        changed |= edit_backdrop(look);
-        changed |= edit_classes(model, look);
-        changed |= edit_clip(model, look.clip);
-        // These are drawn over the picture, which stays as it is.
-        ImGui::Checkbox("legend", &look.legend);
-        ImGui::SameLine();
-        ImGui::Checkbox("axes", &look.axes);
-        ImGui::SameLine();
-        ImGui::Checkbox("scale bar", &look.scale_bar);
-        if (changed) model.scene_changed();
-    }
-    ImGui::End();
+void draw_look_panel(ViewModel& model) {
+    gi::Look& look = model.scene.look;
+    bool changed = edit_colours(model, look);
+    changed |= edit_points(look);
+    changed |= edit_shading(model, look);
+    changed |= edit_backdrop(look);
+    changed |= edit_classes(model, look);
+    changed |= edit_clip(model, look.clip);
+    // These are drawn over the picture, which stays as it is.
+    ImGui::Checkbox("legend", &look.legend);
+    ImGui::SameLine();
+    ImGui::Checkbox("axes", &look.axes);
+    ImGui::SameLine();
+    ImGui::Checkbox("scale bar", &look.scale_bar);
+    if (changed) model.scene_changed();
 }
 
 }  // namespace lucarne::viewer

@@ -88,7 +88,7 @@ bool choose_power(const char* label, uint32_t& value, int least, int most) {
 
 /// How much is computed, each with what it costs.
 void effort(ViewModel& model) {
-    if (!ImGui::CollapsingHeader("Effort")) return;
+    if (!fold("Effort")) return;
     gi::EngineSettings& settings = model.settings;
     int bounces = static_cast<int>(settings.bounces);
     if (ImGui::SliderInt("bounces", &bounces, 0, 8, "%d", ImGuiSliderFlags_AlwaysClamp))
@@ -124,7 +124,7 @@ void effort(ViewModel& model) {
 }
 
 void albedo(ViewModel& model) {
-    if (!ImGui::CollapsingHeader("Albedo")) return;
+    if (!fold("Albedo")) return;
     gi::Albedo& albedo = model.scene.albedo;
     float scale = static_cast<float>(albedo.scale), flatten = static_cast<float>(albedo.flatten);
     if (ImGui::SliderFloat("scale", &scale, 0, 3, "%.2f")) {
@@ -143,7 +143,7 @@ void albedo(ViewModel& model) {
 }
 
 void comparison(ViewModel& model) {
-    if (!ImGui::CollapsingHeader("Compare")) return;
+    if (!fold("Compare")) return;
     auto& comparison = model.scene.comparison;
     if (ImGui::BeginCombo("with", comparison ? comparison->engine.c_str() : "nothing")) {
         if (ImGui::Selectable("nothing", !comparison)) compare_with(model, "");
@@ -171,22 +171,13 @@ void comparison(ViewModel& model) {
 
 }  // namespace
 
-void draw_settings_panel(ViewModel& model) {
-    const float width = ImGui::GetFontSize() * 22;
-    const float top = ImGui::GetFrameHeight() + 8;  // below the menu bar
-    ImGui::SetNextWindowPos(ImVec2(8, top), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(width, 0), ImGuiCond_FirstUseEver);
-    if (ImGui::Begin("Picture")) {
-        engine_choice(model);
-        preset_choice(model);
-        effort(model);
-        exposure(model);
-        albedo(model);
-        comparison(model);
-        if (ImGui::Button("Save picture")) model.save_picture = true;
-        ImGui::TextDisabled("F1: all keys");
-    }
-    ImGui::End();
+void draw_rendering_panel(ViewModel& model) {
+    engine_choice(model);
+    preset_choice(model);
+    effort(model);
+    exposure(model);
+    albedo(model);
+    comparison(model);
 }
 
 }  // namespace lucarne::viewer

@@ -1,0 +1,58 @@
+// The side bar in a real window, see window_fixture.h.
+#include <nlohmann/json.hpp>
+
+#include "tests/viewer/window_fixture.h"
+
+namespace lucarne {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// Where a header stands in a bar whose sections are all closed, as high as ImGui makes them of 13 pixels.
+int header(int number) {
+    return 19 + 8 + 23 * number + 9;
+}
+
+class SideBarWindow : public ViewerWindow {
+ protected:
+    /// Closes the window; what it keeps of the bar.
+    nlohmann::json close() {
+        xdo("key ctrl+q");
+        EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
+        EXPECT_EQ(viewer_->code(), 0);
+        return nlohmann::json::parse(bytes_of(folder_ / "config/settings.json"))["side_bar"];
+    }
+};
+
+TEST_F(SideBarWindow, SectionsOpenByKeysAndClicksItsEdgeIsDraggedAndTheNextWindowHasThemSo) {
+    start();
+    ASSERT_TRUE(picture(lit));
+    for (const char* key : {"shift+Tab", "F7", "y", "alt+l"}) xdo(std::string("key ") + key);
+    nlohmann::json kept = close();
+    EXPECT_THAT(kept["open"], IsEmpty());
+    const double width = kept["width"];
+    // A machine under load may miss a short click.
+    ASSERT_TRUE(eventually([&] {
+        start();
+        if (!picture(lit)) return false;
+        if (kept["open"].empty())
+            xdo("mousemove 60 " + std::to_string(header(6)) + " sleep 0.3 mousedown 1 sleep 0.3 mouseup 1");
+        if (kept["width"] == width) drag(1, 287, 300, 268, 300);
+        kept = close();
+        return !kept["open"].empty() && kept["width"] != width;
+    })) << kept;
+    EXPECT_THAT(kept["open"], ElementsAre("statistics"));
+    EXPECT_LT(kept["width"], width);
+    start();
+    ASSERT_TRUE(picture(lit));
+    xdo("key Tab key m");  // the bar goes, and comes back for a section
+    const nlohmann::json then = close();
+    EXPECT_THAT(then["open"], ElementsAre("measure", "statistics"));
+    EXPECT_EQ(then["shown"], true);
+    EXPECT_EQ(then["width"], kept["width"]);
+}
+
+}  // namespace
+}  // namespace lucarne
