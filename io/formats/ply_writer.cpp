@@ -7,14 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/file.h"
+#include "io/formats/counted_writer.h"
 #include "io/formats/ply_layout.h"
 
 namespace lucarne::io::ply {
 namespace {
-
-constexpr size_t kChunkBytes = size_t{2} << 20;
-constexpr int kCountWidth = 20;  ///< digits of the largest 64-bit count: filled in at the end
 
 /// A property of the file and where its value stands in a record.
 struct Output {
@@ -120,38 +117,22 @@ class OutputPlan {
     std::vector<std::pair<std::string, uint32_t>> done_;  ///< attribute and component
 };
 
-class PlyWriter final : public PointWriter {
+class PlyWriter final : public CountedWriter {
  public:
     PlyWriter(OutputFile file, const Schema& schema, std::vector<Output> outputs)
-        : file_(std::move(file)), schema_(schema), outputs_(std::move(outputs)) {
-        for (const Output& o : outputs_) record_bytes_ += scalar_bytes(o.to);
-    }
+        : CountedWriter(std::move(file), schema), outputs_(std::move(outputs)) {}
 
     Result<void> begin(const ScanInfo& info) {
         std::string header = "ply\nformat binary_little_endian 1.0\n";
         header += kept_lines(info) + remark_lines(info, "comment ") + "element vertex ";
-        count_offset_ = header.size();
-        header += std::string(kCountWidth, ' ') + '\n';
-        for (const Output& o : outputs_) header += fmt::format("property {} {}\n", word_of(o.to), o.name);
-        return file_.append(header + "end_header\n");
-    }
-
-    Result<void> write(std::span<const std::byte> records) override {
-        for (; !records.empty(); records = records.subspan(schema_.stride)) {
-            const size_t at = buffer_.size();
-            buffer_.resize(at + record_bytes_);
-            pack(records.data(), buffer_.data() + at);
-            ++count_;
-            if (buffer_.size() >= kChunkBytes) LUCARNE_TRY(flush());
+        leave_room_for_count(header);
+        header += '\n';
+        size_t bytes = 0;
+        for (const Output& o : outputs_) {
+            header += fmt::format("property {} {}\n", word_of(o.to), o.name);
+            bytes += scalar_bytes(o.to);
         }
-        return {};
-    }
-
-    Result<void> finish() override {
-        LUCARNE_TRY(flush());
-        const std::string count = std::to_string(count_);
-        LUCARNE_TRY(file_.write_at(count_offset_, std::as_bytes(std::span(count))));
-        return file_.commit();
+        return CountedWriter::begin(header + "end_header\n", bytes);
     }
 
  private:
@@ -171,7 +152,7 @@ class PlyWriter final : public PointWriter {
         return lines;
     }
 
-    void pack(const std::byte* record, std::byte* out) const {
+    void pack(const std::byte* record, std::byte* out) const override {
         const bool scaled = schema_.position == PositionType::i32_scaled;
         for (const Output& o : outputs_) {
             if (scaled && o.offset < 12) {
@@ -187,18 +168,7 @@ class PlyWriter final : public PointWriter {
         }
     }
 
-    Result<void> flush() {
-        LUCARNE_TRY(file_.append(buffer_));
-        buffer_.clear();
-        return {};
-    }
-
-    OutputFile file_;
-    Schema schema_;
     std::vector<Output> outputs_;
-    size_t record_bytes_ = 0, count_offset_ = 0;
-    uint64_t count_ = 0;
-    std::vector<std::byte> buffer_;
 };
 
 }  // namespace

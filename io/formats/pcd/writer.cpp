@@ -7,14 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/file.h"
+#include "io/formats/counted_writer.h"
 #include "io/formats/pcd/header.h"
 
 namespace lucarne::io::pcd {
 namespace {
-
-constexpr size_t kChunkBytes = size_t{2} << 20;
-constexpr int kCountWidth = 20;  ///< digits of the largest 64-bit count: filled in at the end
 
 /// A field of the file and where its values stand in a record.
 struct Output {
@@ -85,12 +82,10 @@ class OutputPlan {
     std::vector<Output> outputs_;
 };
 
-class PcdWriter final : public PointWriter {
+class PcdWriter final : public CountedWriter {
  public:
     PcdWriter(OutputFile file, const Schema& schema)
-        : file_(std::move(file)), schema_(schema), outputs_(OutputPlan(schema).make()) {
-        for (const Output& o : outputs_) record_bytes_ += o.field.bytes();
-    }
+        : CountedWriter(std::move(file), schema), outputs_(OutputPlan(schema_).make()) {}
 
     Result<void> begin(const ScanInfo& info) {
         std::string header =
@@ -105,30 +100,13 @@ class PcdWriter final : public PointWriter {
         line("TYPE", [](const Field& f) { return letter_of(f.type); });
         line("COUNT", [](const Field& f) { return f.count; });
         header += "WIDTH ";
-        width_offset_ = header.size();
-        header += std::string(kCountWidth, ' ') + "\nHEIGHT 1\nVIEWPOINT " + viewpoint_of(info) + "\nPOINTS ";
-        points_offset_ = header.size();
-        header += std::string(kCountWidth, ' ') + "\nDATA binary\n";
-        return file_.append(header);
-    }
-
-    Result<void> write(std::span<const std::byte> records) override {
-        for (; !records.empty(); records = records.subspan(schema_.stride)) {
-            const size_t at = buffer_.size();
-            buffer_.resize(at + record_bytes_);
-            pack(records.data(), buffer_.data() + at);
-            ++count_;
-            if (buffer_.size() >= kChunkBytes) LUCARNE_TRY(flush());
-        }
-        return {};
-    }
-
-    Result<void> finish() override {
-        LUCARNE_TRY(flush());
-        const std::string count = std::to_string(count_);
-        for (const uint64_t offset : {width_offset_, points_offset_})
-            LUCARNE_TRY(file_.write_at(offset, std::as_bytes(std::span(count))));
-        return file_.commit();
+        leave_room_for_count(header);
+        header += "\nHEIGHT 1\nVIEWPOINT " + viewpoint_of(info) + "\nPOINTS ";
+        leave_room_for_count(header);
+        header += "\nDATA binary\n";
+        size_t bytes = 0;
+        for (const Output& o : outputs_) bytes += o.field.bytes();
+        return CountedWriter::begin(header, bytes);
     }
 
  private:
@@ -147,7 +125,7 @@ class PcdWriter final : public PointWriter {
         return fmt::format("{} {} {} 1 0 0 0", at.x, at.y, at.z);
     }
 
-    void pack(const std::byte* record, std::byte* out) const {
+    void pack(const std::byte* record, std::byte* out) const override {
         for (const Output& o : outputs_) {
             const std::byte* from = record + o.from;
             switch (o.kind) {
@@ -169,18 +147,7 @@ class PcdWriter final : public PointWriter {
         }
     }
 
-    Result<void> flush() {
-        LUCARNE_TRY(file_.append(buffer_));
-        buffer_.clear();
-        return {};
-    }
-
-    OutputFile file_;
-    Schema schema_;
     std::vector<Output> outputs_;
-    size_t record_bytes_ = 0;
-    uint64_t width_offset_ = 0, points_offset_ = 0, count_ = 0;
-    std::vector<std::byte> buffer_;
 };
 
 }  // namespace
