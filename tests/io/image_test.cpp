@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <gmock/gmock.h>
+#include <turbojpeg.h>
 
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
@@ -234,6 +235,64 @@ TEST(Png, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
     const auto read = read_png(folder / "b.png");
     ASSERT_FALSE(read);
     EXPECT_THAT(read.error().line(), ::testing::HasSubstr("shorter than its 8000x8000 pixels"));
+}
+
+/// A slope in red and one in green, as JPEG of this colour subsampling.
+std::string slopes_jpeg(int width, int height, TJSAMP sampling) {
+    std::vector<unsigned char> rgb;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (const int value : {255 * x / width, 255 * y / height, 60})
+                rgb.push_back(static_cast<unsigned char>(value));
+    const tjhandle encoder = tjInitCompress();
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    EXPECT_EQ(tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, sampling, 95, 0), 0);
+    const std::string encoded(reinterpret_cast<const char*>(bytes), size);
+    tjFree(bytes);
+    tjDestroy(encoder);
+    return encoded;
+}
+
+TEST(Jpeg, ColoursComeBackWhateverTheirSubsampling) {
+    constexpr int kWidth = 61, kHeight = 43;  // no whole blocks
+    for (const TJSAMP sampling : {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_GRAY}) {
+        const MemoryFile file;
+        file.set(slopes_jpeg(kWidth, kHeight, sampling));
+        const auto read = read_jpeg(file.path());
+        ASSERT_TRUE(read) << read.error().line();
+        ASSERT_TRUE(read->width == kWidth && read->height == kHeight && read->bytes.size() == 3 * kWidth * kHeight);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const uint8_t* pixel = &read->bytes[3 * (static_cast<size_t>(y) * kWidth + x)];
+                const double red = 255 * x / kWidth, green = 255 * y / kHeight;
+                if (sampling == TJSAMP_GRAY) {  // JFIF's luminance, the same in all three
+                    EXPECT_NEAR(pixel[0], .299 * red + .587 * green + .114 * 60, 4);
+                    EXPECT_TRUE(pixel[1] == pixel[0] && pixel[2] == pixel[0]);
+                } else {
+                    EXPECT_NEAR(pixel[0], red, 10) << x << " " << y;
+                    EXPECT_NEAR(pixel[1], green, 10) << x << " " << y;
+                    EXPECT_NEAR(pixel[2], 60, 14) << x << " " << y;
+                }
+            }
+    }
+}
+
+TEST(Jpeg, OneThatIsNotWholeOrNoneIsRefusedOrReadAndNeverCrashes) {
+    const std::string whole = slopes_jpeg(64, 48, TJSAMP_420);
+    size_t refused = 0;
+    for (size_t length = 0; length < whole.size(); ++length) {
+        const MemoryFile file;
+        file.set(std::string_view(whole).substr(0, length));
+        const auto read = read_jpeg(file.path());
+        refused += !read;
+        if (!read) {
+            EXPECT_EQ(read.error().kind, ErrorKind::input_rejected);
+        } else {
+            EXPECT_EQ(read->bytes.size(), 3u * 64 * 48);
+        }
+    }
+    EXPECT_GT(refused, 20u) << "not even the start of it is needed";
 }
 
 TEST(Jpeg, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
