@@ -16,6 +16,7 @@
 #include "octree/open.h"
 #include "viewer/inputs.h"
 #include "viewer/kept_cache.h"
+#include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -91,6 +92,17 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
                     "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
                     "else they are guessed, and the guess is printed")
         ->type_name("NAMES");
+    command
+        .add_option_function<std::string>(
+            "--unit",
+            [&options](const std::string& text) {
+                options.metres_per_unit = metres_of(text);
+                if (!options.metres_per_unit)
+                    throw CLI::ValidationError("--unit", "is none of m, cm, mm, km, ft, us-ft, in, nor a number of metres");
+            },
+            "The unit of the scans' coordinates, where a file does not say it or is wrong: m, cm, mm, km, ft, us-ft, "
+            "in, or how many metres it has")
+        ->type_name("UNIT");
     command
         .add_option("--spacing", options.mesh.spacing,
                     "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "

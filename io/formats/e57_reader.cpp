@@ -79,7 +79,7 @@ class E57Reader final : public PointReader {
 
 class E57Source final : public PointSource {
  public:
-    explicit E57Source(E57 e57) : e57_(std::move(e57)) {
+    E57Source(E57 e57, const ReadOptions& options) : e57_(std::move(e57)) {
         const auto& document = e57_.document;
         info_.path = e57_.file->path().string();
         info_.format = fmt::format("E57 1.0, {} scan{}, {} image{}", document.scans.size(),
@@ -87,6 +87,7 @@ class E57Source final : public PointSource {
                                    document.images.size() == 1 ? "" : "s");
         info_.file_bytes = e57_.file->size();
         info_.modified = e57_.file->modified();
+        info_.metres_per_unit = options.metres_per_unit.value_or(1.0);
         info_.color_bits = e57_.layout.color_bits;
         info_.losses = e57_.losses;
         add_loss(info_.losses, "images, which are listed but not read", document.images.size());
@@ -168,7 +169,7 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> f
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
         log::warn("{}: there are more bytes than its header promises, they are left out", name);
     e57.file = std::move(file);
-    return std::make_unique<E57Source>(std::move(e57));
+    return std::make_unique<E57Source>(std::move(e57), options);
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ class LasSource final : public PointSource {
     LasSource(std::shared_ptr<const InputFile> file, las::Header header)
         : file_(std::move(file)), header_(std::move(header)), schema_(las::make_schema(header_)) {}
 
-    Result<void> describe(bool salvage) {
+    Result<void> describe(const ReadOptions& options) {
         const std::string name = file_->path().string();
-        if (header_.compressed) LUCARNE_TRY(find_chunks(salvage));
+        if (header_.compressed) LUCARNE_TRY(find_chunks(options.salvage));
         info_.path = name;
         info_.format =
             fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
@@ -69,6 +69,7 @@ class LasSource final : public PointSource {
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
         info_.metres_per_unit = las::metres_per_unit(name, header_);
+        if (options.metres_per_unit) info_.metres_per_unit = *options.metres_per_unit;
         const auto system = las::coordinate_system(header_);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
@@ -77,7 +78,7 @@ class LasSource final : public PointSource {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
         if (const Attribute* color = schema_.find(names::color)) {
-            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, salvage));
+            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
         las::Header kept = header_;
         kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
@@ -175,7 +176,7 @@ class LasSource final : public PointSource {
 Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, las::read_header(*file, options.salvage));
     auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
-    LUCARNE_TRY(source->describe(options.salvage));
+    LUCARNE_TRY(source->describe(options));
     return source;
 }
 

@@ -198,6 +198,7 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     info.path = file->path().string();
     info.file_bytes = file->size();
     info.modified = file->modified();
+    info.metres_per_unit = options.metres_per_unit.value_or(1.0);
     nlohmann::json details;
     if (parser.other() > 0) {
         details["mesh"]["left_out_lines_points_curves"] = parser.other();

@@ -151,7 +151,7 @@ class PlySource final : public PointSource {
           mesh_(mesh),
           layout_(ply::make_layout(header_.vertices().properties, header_.encoding)) {}
 
-    Result<void> describe() {
+    Result<void> describe(const ReadOptions& options) {
         const std::string name = file_->path().string();
         LUCARNE_TRY(find_vertices());
         note_what_is_not_read();
@@ -163,7 +163,7 @@ class PlySource final : public PointSource {
         info_.modified = file_->modified();
         LUCARNE_ASSIGN(auto remarks, remarks_of(name, header_.comments));
         info_.stations = std::move(remarks.stations);
-        info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
+        info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
         LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
         nlohmann::json details = ply::to_details(header_);
@@ -281,7 +281,7 @@ class PlySource final : public PointSource {
 Result<std::unique_ptr<PointSource>> open_mesh(const std::shared_ptr<const InputFile>& file,
                                                const ply::Header& header, const ReadOptions& options) {
     auto vertices = std::make_unique<PlySource>(file, header, false, true);
-    LUCARNE_TRY(vertices->describe());
+    LUCARNE_TRY(vertices->describe(options));
     return ply::open_mesh(file, header, std::move(vertices), options);
 }
 
@@ -295,7 +295,7 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> f
     if (options.salvage) header = ply::read_header(file, true);
     if (!header) return tl::unexpected(std::move(header).error());
     auto source = std::make_unique<PlySource>(std::move(file), std::move(*header), options.salvage, false);
-    LUCARNE_TRY(source->describe());
+    LUCARNE_TRY(source->describe(options));
     return source;
 }
 

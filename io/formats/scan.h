@@ -27,6 +27,8 @@ struct ReadOptions {
     MeshOptions mesh;
     /// What can be read of a damaged or truncated file is; `losses` of its info and readers say what is not.
     bool salvage = false;
+    /// How many metres a length of 1 in the file is; none: what the file says, metres where it says nothing.
+    std::optional<double> metres_per_unit;
 };
 /// What of the options changes the points; empty where all are as usual. Kept with a cache, so that one that
 /// was made with others is not taken for it.

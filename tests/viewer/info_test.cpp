@@ -1,4 +1,6 @@
 // `lucarne info` says what a scan file holds.
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +23,56 @@ TEST(InfoCommand, ListsTheScansAndStationsOfAnE57File) {
     ASSERT_EQ(info["scans"].size(), 3u);
     EXPECT_EQ(info["scans"][1]["name"], "posed 250");
     EXPECT_TRUE(info["images"].empty());
+}
+
+/// A number of what `lucarne info` says of a file.
+double info_number(const TemporaryFolder& folder, const std::string& arguments, const std::string& key) {
+    const std::string json_file = folder / "number.json";
+    const auto outcome = lucarne("info " + arguments + " --overwrite --json " + json_file);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    std::ifstream in(json_file);
+    return nlohmann::json::parse(in).value(key, -1.0);
+}
+
+TEST(UnitOption, IsTheUnitOfFilesOfEveryFormatAndOfTheCachesMadeOfThem) {
+    const TemporaryFolder folder;
+    const std::vector<std::pair<std::string, std::string>> files = {
+        {"a.xyz", "1 2 3\n4 5 6\n"},
+        {"a.pts", "2\n1 2 3 0 9 9 9\n4 5 6 0 9 9 9\n"},
+        {"a.ptx", "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n"},
+        {"a.pcd",
+         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA "
+         "ascii\n1 2 3\n"},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+         "z\nend_header\n1 2 3\n"},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
+    std::vector<std::string> paths = {LUCARNE_SOURCE_DIR "/tests/io/e57_posed.e57"};
+    for (const auto& [name, text] : files) {
+        std::ofstream(folder / name) << text;
+        paths.push_back(folder / name);
+    }
+    paths.push_back(folder / "cornell.las");
+    ASSERT_EQ(lucarne("generate cornell --points 1k -o " + paths.back()).code, 0);
+    for (const std::string& path : paths) {
+        EXPECT_EQ(info_number(folder, path, "metres_per_unit"), 1) << path;
+        EXPECT_DOUBLE_EQ(info_number(folder, path + " --unit us-ft", "metres_per_unit"), 1200.0 / 3937)
+            << path;
+    }
+    const std::string cache = folder / "a.luc";
+    ASSERT_EQ(lucarne("convert " + paths.back() + " --unit 0.25 -o " + cache).code, 0);
+    EXPECT_EQ(info_number(folder, cache, "metres_per_unit"), .25);
+    for (const char* none : {"mile", "0", "-1", "nan", "1e300"})
+        EXPECT_EQ(lucarne("info " + paths.back() + " --unit=" + none).code, 2) << none;
+}
+
+TEST(UnitOption, AMeshIsSampledByMetresOfItsUnit) {
+    const TemporaryFolder folder;
+    const std::string mesh = folder / "square.obj";
+    std::ofstream(mesh) << "v 0 0 0\nv 100 0 0\nv 100 100 0\nv 0 100 0\nf 1 2 3 4\n";  // a square metre in cm
+    ASSERT_EQ(lucarne("convert " + mesh + " --unit cm --spacing 0.02 -o " + (folder / "a.luc")).code, 0);
+    // Blue noise of a mean distance d has about 1 / d^2 points an area.
+    EXPECT_NEAR(info_number(folder, folder / "a.luc", "points"), 2500, 1000);
 }
 
 }  // namespace

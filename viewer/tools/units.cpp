@@ -3,23 +3,38 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "io/formats/text.h"
+
 namespace lucarne::viewer {
 
+namespace {
+
+// The two feet differ by 2e-6.
+constexpr std::array<std::pair<double, std::string_view>, 7> kUnits = {{{1, "m"},
+                                                                        {0.3048, "ft"},
+                                                                        {1200.0 / 3937, "US ft"},
+                                                                        {0.01, "cm"},
+                                                                        {0.001, "mm"},
+                                                                        {1000, "km"},
+                                                                        {0.0254, "in"}}};
+
+}  // namespace
+
+std::optional<double> metres_of(const std::string& unit) {
+    for (const auto& [metres, name] : kUnits)
+        if (unit == name || (unit == "us-ft" && name == "US ft")) return metres;
+    const auto metres = io::parse_number<double>(unit);
+    return metres && *metres > 1e-9 && *metres < 1e9 ? metres : std::nullopt;
+}
+
 std::string unit_name(double metres_per_unit) {
-    // The two feet differ by 2e-6.
-    static constexpr std::array<std::pair<double, const char*>, 7> kNames = {{{1, "m"},
-                                                                              {0.3048, "ft"},
-                                                                              {1200.0 / 3937, "US ft"},
-                                                                              {0.01, "cm"},
-                                                                              {0.001, "mm"},
-                                                                              {1000, "km"},
-                                                                              {0.0254, "in"}}};
-    for (const auto& [metres, name] : kNames)
-        if (std::abs(metres_per_unit / metres - 1) < 1e-7) return name;
+    for (const auto& [metres, name] : kUnits)
+        if (std::abs(metres_per_unit / metres - 1) < 1e-7) return std::string(name);
     return fmt::format("units of {} m", metres_per_unit);
 }
 

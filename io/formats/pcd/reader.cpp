@@ -125,7 +125,7 @@ class PcdSource final : public PointSource {
     PcdSource(std::shared_ptr<const InputFile> file, Header header, bool salvage)
         : file_(std::move(file)), header_(std::move(header)), salvage_(salvage), layout_(pcd::make_layout(header_)) {}
 
-    Result<void> describe() {
+    Result<void> describe(const ReadOptions& options) {
         const bool organised = header_.height > 1;
         LUCARNE_TRY(check_size());
         if (header_.encoding == Encoding::compressed) LUCARNE_TRY(find_fields());
@@ -142,7 +142,7 @@ class PcdSource final : public PointSource {
         info_.modified = file_->modified();
         LUCARNE_ASSIGN(auto remarks, remarks_of(info_.path, header_.comments));
         info_.stations = std::move(remarks.stations);
-        info_.metres_per_unit = remarks.metres_per_unit.value_or(1.0);
+        info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
         if (const Attribute* color = schema().find(names::color); color && color->type != ScalarType::u8)
             info_.color_bits = remarks.color_bits.value_or(color->type == ScalarType::u16 ? 16u : 0u);
         const auto& v = header_.viewpoint;
@@ -260,7 +260,7 @@ Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> f
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
     auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);
-    LUCARNE_TRY(source->describe());
+    LUCARNE_TRY(source->describe(options));
     return source;
 }
 

@@ -207,13 +207,14 @@ class ScanFinder {
 class PtxSource final : public PointSource {
  public:
     PtxSource(std::shared_ptr<const InputFile> file, const std::vector<Scan>& scans, char line_end,
-              bool salvage, bool lost_a_scan)
-        : file_(std::move(file)), salvage_(salvage) {
+              const ReadOptions& options, bool lost_a_scan)
+        : file_(std::move(file)), salvage_(options.salvage) {
         add_loss(info_.losses, lost::cut_scan, lost_a_scan);
         info_.path = file_->path().string();
         info_.format = fmt::format("PTX, {} {}", scans.size(), scans.size() == 1 ? "scan" : "scans");
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
+        info_.metres_per_unit = options.metres_per_unit.value_or(1.0);
         info_.details = nlohmann::json{{"color_bits", info_.color_bits}}.dump();
         size_t values = 3;
         for (const Scan& scan : scans) values = std::max(values, scan.values);
@@ -274,8 +275,7 @@ Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> f
     const char line_end = line_end_of({reinterpret_cast<const char*>(bytes.data()), got});
     ScanFinder finder(file, line_end, options.salvage);
     LUCARNE_ASSIGN(const auto scans, finder.find());
-    return std::make_unique<PtxSource>(std::move(file), scans, line_end, options.salvage,
-                                       finder.lost_a_scan());
+    return std::make_unique<PtxSource>(std::move(file), scans, line_end, options, finder.lost_a_scan());
 }
 
 /// Two counts and three numbers.
