@@ -165,6 +165,25 @@ void ViewSession::follow_scans() {
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
 
+/// Pictures of skies that the panel asks for.
+void ViewSession::follow_sky() {
+    LightTools& tools = model_.light_tools;
+    if (std::exchange(tools.load_sky, false)) {
+        tools.sky_problem.clear();
+        skies_.load(tools.sky_image);
+    }
+    if (auto sky = skies_.take()) {
+        if (*sky) {
+            model_.scene.environment = std::move(**sky);
+            model_.scene.environment_on = true;
+            model_.scene_changed();
+        } else {
+            model_.message = tools.sky_problem = sky->error().line();
+        }
+    }
+    tools.reading_sky = skies_.reading();
+}
+
 /// Shift and the mouse are the light's.
 void ViewSession::take_light_gesture() {
     const glm::dvec2 move = cursor_move();
@@ -291,10 +310,13 @@ Result<void> ViewSession::save() {
 }
 
 Result<void> ViewSession::run() {
+    Clock::time_point awake = Clock::now();
     while (!desk_.closing(shot_.has_value())) {
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
-        window_.wait(lively ? kStep : kRest);
-        const auto awake = Clock::now();
+        // From one frame's beginning to the next one's: what a frame takes does not slow it down further.
+        const double since = std::chrono::duration<double>(Clock::now() - awake).count();
+        window_.wait((lively ? kStep : kRest) - since);
+        awake = Clock::now();
         LUCARNE_TRY(recover());
         take_picture();
         window_.set_text_size(model_.shell.settings.text_size);
@@ -302,13 +324,14 @@ Result<void> ViewSession::run() {
         if (model_.picture) window_.show(*model_.picture);
         desk_.take_files();
         follow_scans();
+        follow_sky();
         take_input();
         draw_panels();
-        window_.draw();
+        const bool drawn = window_.draw(shot_.has_value());
         LUCARNE_TRY(save());
-        window_.swap();
+        if (drawn) window_.swap();
         send_request();
-        model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());
+        if (drawn) model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());
         if (!shot_) continue;
         if (given_up_) return tl::make_unexpected(*worker_.lost_device());
         LUCARNE_TRY(worker_.error());

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "viewer/cost_model.h"
+#include "viewer/lights/sky_loader.h"
 #include "viewer/measure_session.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
@@ -50,6 +51,7 @@ class ViewSession {
     Result<void> recover();
     void follow_device();
     void follow_scans();
+    void follow_sky();
     void take_extent();
     void take_input();
     void take_light_gesture();
@@ -73,6 +75,7 @@ class ViewSession {
     bool given_up_ = false;  ///< the device is lost for good
     MovingQuality quality_;
     FrameBudget budget_;
+    SkyLoader skies_{&Window::wake};
     MeasureSession measure_{&Window::wake};
     PictureRequest sent_;
     uint64_t sent_number_ = 0;

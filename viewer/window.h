@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,15 +28,17 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// Makes the hidden context current on the calling thread; `release` lets go of it there. The window
-    /// outlives the device.
+    /// Of the calling thread, which gives way to the window's; the window outlives the device. Where the
+    /// window is drawn by the processor it is a device of its own: Mesa's threads then belong to the one who
+    /// uses it, and give way as well. Else the hidden context is made current, and `release` lets go of it
+    /// there.
     WorkerDevice worker_device();
     /// The same with a new hidden context, in place of one that was lost and released.
     Result<WorkerDevice> renew_worker_device();
     /// Whether the driver has lost the window's own context: nothing that is drawn is seen until recover().
     bool lost() { return watch_.lost(); }
-    /// A new window in the place of the old one, with a new context; ImGui's state stays, pictures and small textures
-    /// are gone. Errors: the driver makes none.
+    /// A new window in the place of the old one, with a new context; ImGui's state stays, pictures and small
+    /// textures are gone. Errors: the driver makes none.
     Result<void> recover();
     /// Ends wait() early; any thread.
     static void wake();
@@ -63,15 +66,32 @@ class Window {
     void begin_frame();
     /// Fills the window with a picture, scaled without changing its shape. Uploads it when its number is new.
     void show(const Picture& picture);
-    void draw();
-    /// What was drawn, RGBA8 of framebuffer()'s size, row 0 on top. Between draw() and swap().
+    /// False where the window shows just that already, and nothing was drawn: motion and input draw more
+    /// often than pictures come, and without a GPU filling the window takes the processor from those.
+    bool draw(bool even_if_seen);
+    /// What draw() has drawn, RGBA8 of framebuffer()'s size, row 0 on top. Between draw() and swap().
     std::vector<std::byte> capture() const;
     void swap();
     /// Off the screen at once, though a picture may still have to be finished before the program ends.
     void hide();
 
  private:
+    /// Pixels of the framebuffer, y downward.
+    struct PictureRect {
+        int left = 0, top = 0, right = 0, bottom = 0;
+        bool empty() const { return right <= left || bottom <= top; }
+    };
+
+    /// What the window shows.
+    struct Seen {
+        uint64_t panels = 0, picture = 0;
+        uint32_t width = 0, height = 0;
+        bool operator==(const Seen&) const = default;
+    };
+
     Window() = default;
+    Result<std::unique_ptr<gi::Device>> own_device();
+    void draw_picture(ImageSize size);
     void fit_text();
     Result<void> create(ImageSize size, const std::string& title);
     Result<void> create_window(ImageSize size, const std::string& title);
@@ -82,11 +102,14 @@ class Window {
     GLFWwindow* hidden_ = nullptr;
     std::string title_;
     bool initialised_ = false, imgui_ = false;
-    double text_size_ = 1, text_scale_ = 0;  ///< wanted; what the glyphs are of
-    unsigned texture_ = 0;
-    std::vector<unsigned> small_;  ///< textures
+    double text_size_ = 1, text_scale_ = 0;   ///< wanted; what the glyphs are of
+    unsigned texture_ = 0, framebuffer_ = 0;  ///< the picture, and what it is copied from
+    std::vector<unsigned> small_;             ///< textures
     ImageSize texture_size_;
-    uint64_t shown_ = 0;
+    uint64_t shown_ = 0;        ///< the number of the picture in the texture
+    PictureRect place_;         ///< of it, in this frame; empty: there is none
+    std::optional<Seen> seen_;  ///< none: not known
+    bool software_ = false;     ///< the window is drawn by the processor
     std::vector<KeyChord> pressed_;
     std::vector<std::string> dropped_;
     gi::ContextWatch watch_;

@@ -26,6 +26,8 @@ struct LightTools {
     bool holds_border = false;
     std::vector<std::vector<gi::SceneLight>> undo;  ///< the lights as they were, the newest last
     std::string sky_image;                          ///< as typed
+    bool load_sky = false;                          ///< it is to be read
+    std::string reading_sky, sky_problem;           ///< what is being read; why the last one is not shown
     std::string scene_file;                         ///< what Save scene writes
     bool save_scene = false;
 };

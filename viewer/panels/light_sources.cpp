@@ -1,5 +1,6 @@
 // What shines beside lamps: the sun, the sky, classes of points.
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -79,15 +80,20 @@ void edit_even_sky(ViewModel& model) {
     });
 }
 
-void load_sky(ViewModel& model) {
-    auto sky = gi::load_environment(model.light_tools.sky_image, glm::dvec3(1), 0);
-    if (!sky) {
-        model.message = sky.error().line();
-        return;
+/// Of a picture, read by a thread.
+void choose_sky(LightTools& tools) {
+    const bool entered = ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &tools.sky_image,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    if ((ImGui::Button("Load") || entered) && !tools.sky_image.empty()) tools.load_sky = true;
+    if (!tools.reading_sky.empty()) {
+        // It is not known how far it is: a bar that comes and goes.
+        const auto seconds = static_cast<float>(ImGui::GetTime());
+        ImGui::ProgressBar(0.5f - 0.5f * std::cos(3 * seconds), ImVec2(-FLT_MIN, 0),
+                           ("reading " + tools.reading_sky).c_str());
+    } else if (!tools.sky_problem.empty()) {
+        ImGui::TextWrapped("%s", tools.sky_problem.c_str());
     }
-    model.scene.environment = std::make_shared<const gi::Environment>(std::move(*sky));
-    model.scene.environment_on = true;
-    model.scene_changed();
 }
 
 void choose_class(gi::SceneMaterial& material, ViewModel& model) {
@@ -162,9 +168,7 @@ void draw_sky(ViewModel& model) {
             change_sky(model,
                        [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
     }
-    ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &model.light_tools.sky_image);
-    ImGui::SameLine();
-    if (ImGui::Button("Load")) load_sky(model);
+    choose_sky(model.light_tools);
     ImGui::PopID();
 }
 

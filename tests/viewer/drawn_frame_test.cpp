@@ -1,0 +1,54 @@
+#include "viewer/drawn_frame.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace lucarne::viewer {
+namespace {
+
+/// Frames of ImGui without a window.
+class DrawnFrame : public testing::Test {
+ protected:
+    DrawnFrame() {
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        for (int i = 0; i < 3; ++i) of("a", {100, 100});  // new windows are laid out in more than one frame
+    }
+    ~DrawnFrame() override { ImGui::DestroyContext(); }
+
+    uint64_t of(const char* text, const ImVec2& mouse, bool dot = false) {
+        ImGui::GetIO().DisplaySize = {640, 480};
+        ImGui::GetIO().DeltaTime = 1.0f / 60;
+        ImGui::GetIO().MousePos = mouse;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({200, 200});
+        ImGui::Begin("window");
+        ImGui::TextUnformatted(text);
+        ImGui::Button("button", {180, 60});
+        ImGui::End();
+        if (dot) ImGui::GetBackgroundDrawList()->AddCircleFilled({400, 400}, 3, IM_COL32_WHITE);
+        ImGui::Render();
+        return fingerprint(*ImGui::GetDrawData());
+    }
+};
+
+TEST_F(DrawnFrame, HasTheSameNumberWhereItLooksTheSame) {
+    const uint64_t first = of("a", {400, 300});
+    EXPECT_EQ(of("a", {400, 300}), first);
+    EXPECT_EQ(of("a", {500, 100}), first) << "the cursor over nothing";
+}
+
+TEST_F(DrawnFrame, HasAnotherNumberWhereAnythingIsAnother) {
+    const uint64_t first = of("a", {400, 300});
+    EXPECT_NE(of("b", {400, 300}), first) << "a letter";
+    EXPECT_NE(of("a", {100, 80}), first) << "a button that is lit under the cursor";
+    EXPECT_NE(of("a", {400, 300}, true), first) << "a dot";
+    EXPECT_EQ(of("a", {400, 300}), first);
+}
+
+}  // namespace
+}  // namespace lucarne::viewer
