@@ -232,7 +232,7 @@ void ViewSession::take_input() {
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
     if (!io.WantCaptureKeyboard && !model_.shell.ask_to_close) run_actions(model_, keys);
-    if (take_clip_handles(model_) || take_light_handles(model_)) return;
+    if (legend_.take(model_) || take_clip_handles(model_) || take_light_handles(model_)) return;
     measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                                           ImGui::IsMouseDown(ImGuiMouseButton_Right));

@@ -8,6 +8,7 @@
 #include "viewer/cost_model.h"
 #include "viewer/lights/sky_loader.h"
 #include "viewer/measure_session.h"
+#include "viewer/panels/legend_handles.h"
 #include "viewer/picture_worker.h"
 #include "viewer/quality.h"
 #include "viewer/shell/controller_input.h"
@@ -75,6 +76,7 @@ class ViewSession {
     bool given_up_ = false;  ///< the device is lost for good
     MovingQuality quality_;
     FrameBudget budget_;
+    LegendHandles legend_;
     SkyLoader skies_{&Window::wake};
     MeasureSession measure_{&Window::wake};
     PictureRequest sent_;

@@ -55,6 +55,47 @@ TEST(Overlay, ScaleBarsAreInTheScansUnitAndInMetres) {
     EXPECT_TRUE(scale_bars(0, 1, 320).empty());
 }
 
+TEST(Overlay, AnEndOfTheLegendGoesWhereItIsDraggedAndKeepsClearOfTheOther) {
+    const gi::ValueRange range{10, 30};
+    EXPECT_EQ(dragged_range(range, RangeEnd::high, 0.5), (gi::ValueRange{10, 40}));
+    EXPECT_EQ(dragged_range(range, RangeEnd::high, -0.25), (gi::ValueRange{10, 25}));
+    EXPECT_EQ(dragged_range(range, RangeEnd::low, 0.5), (gi::ValueRange{20, 30}));
+    EXPECT_EQ(dragged_range(range, RangeEnd::low, -1), (gi::ValueRange{-10, 30}));
+    EXPECT_NEAR(dragged_range(range, RangeEnd::low, 7).low, 29.8, 1e-12);
+    EXPECT_NEAR(dragged_range(range, RangeEnd::high, -7).high, 10.2, 1e-12);
+    EXPECT_EQ(dragged_range({30, 10}, RangeEnd::high, 0.5), (gi::ValueRange{30, 0})) << "upside down";
+    EXPECT_EQ(dragged_range({5, 5}, RangeEnd::high, 1), (gi::ValueRange{5, 7})) << "no range yet";
+    EXPECT_EQ(dragged_range(range, RangeEnd::high, HUGE_VAL), range);
+}
+
+TEST(Overlay, TheLegendsBarStandsWhereItIsDrawnAndOnlyWhereColoursAreOfARange) {
+    gi::Look look;
+    look.legend = true;
+    look.colour = gi::ColourBy::elevation;
+    gi::ShownValues values;
+    OverlayView view;
+    view.size = {640, 480};
+    EXPECT_FALSE(legend_bar(look, values, view)) << "no point has it";
+    values.range = gi::ValueRange{0, 5};
+    const auto bar = legend_bar(look, values, view);
+    ASSERT_TRUE(bar);
+    double top = 1e9, bottom = 0;
+    for (const Mark& mark : overlay(look, values, view))
+        if (mark.kind == Mark::Kind::area && mark.opacity == 1) {
+            top = std::min(top, mark.from.y);
+            bottom = std::max(bottom, mark.to.y);
+            EXPECT_EQ(mark.from.x, bar->from.x);
+            EXPECT_NEAR(mark.to.x, bar->to.x, 1e-9);
+        }
+    EXPECT_NEAR(top, bar->from.y, 1e-9);
+    EXPECT_NEAR(bottom, bar->to.y, 1e-9);
+    look.legend = false;
+    EXPECT_FALSE(legend_bar(look, values, view));
+    look.legend = true;
+    look.colour = gi::ColourBy::classification;
+    EXPECT_FALSE(legend_bar(look, values, view));
+}
+
 TEST(Overlay, AxesPointWhereTheCameraSeesThem) {
     gi::SceneCamera camera;  // from the origin along +y, z up
     const auto axes = axes_in(camera);

@@ -79,6 +79,8 @@ std::span<const Gesture> gestures() {
         Gesture{"click", "measure the point there, with a tool; select what a label belongs to"},
         Gesture{"left drag on a clip's handle", "move the box's face, or the plane"},
         Gesture{"left drag on a light's handle", "move it, or what it shines at; a sun about the scene"},
+        Gesture{"left drag on an end of the legend's bar",
+                "other values for its colours; double-click: where most values lie"},
         Gesture{"left drag on a comparison's border", "show more of one engine"},
         Gesture{"Shift + left drag", "aim the light at the point under the cursor"},
         Gesture{"Shift + right drag", "move the light sideways"},

@@ -75,11 +75,19 @@ void draw_numbers(Sheet& sheet, const gi::Look& look, const gi::ShownValues& val
     draw_rows(sheet, legend_title(look), rows);
 }
 
-void draw_range(Sheet& sheet, const gi::Look& look, const gi::ValueRange& range) {
-    constexpr int kBands = 96;
+LegendBar range_bar(const Sheet& sheet) {
     const double em = sheet.em(), length = std::min(18 * em, 0.6 * sheet.height());
     const dvec2 top(sheet.width() - 10 * em, 4 * em);
-    sheet.area(top - dvec2(0.6 * em, 2.1 * em), top + dvec2(9.4 * em, length + 0.9 * em), kPaper, 0.6f);
+    return {top, top + dvec2(1.6 * em, length), top - dvec2(0.6 * em, 2.1 * em),
+            top + dvec2(9.4 * em, length + 0.9 * em)};
+}
+
+void draw_range(Sheet& sheet, const gi::Look& look, const gi::ValueRange& range) {
+    constexpr int kBands = 96;
+    const LegendBar bar = range_bar(sheet);
+    const double em = sheet.em(), length = bar.to.y - bar.from.y;
+    const dvec2 top = bar.from;
+    sheet.area(bar.paper_from, bar.paper_to, kPaper, 0.6f);
     sheet.text(top - dvec2(0, 1.6 * em), legend_title(look));
     for (int i = 0; i < kBands; ++i) {
         const double place = 1 - (i + 0.5) / kBands;
@@ -186,6 +194,20 @@ std::string legend_title(const gi::Look& look) {
                                            "Return number", "Scan",      "Normal"};
     if (look.colour == gi::ColourBy::attribute) return look.attribute;
     return kTitles[static_cast<size_t>(look.colour)];
+}
+
+std::optional<LegendBar> legend_bar(const gi::Look& look, const gi::ShownValues& values,
+                                    const OverlayView& view) {
+    if (!look.legend || !values.range || !gi::has_range(look.colour)) return std::nullopt;
+    return range_bar(Sheet(view));
+}
+
+gi::ValueRange dragged_range(const gi::ValueRange& range, RangeEnd end, double up) {
+    const double span = range.high != range.low ? range.high - range.low : 1;
+    const double left = std::max(1 + (end == RangeEnd::high ? up : -up), 0.01) * span;
+    if (!std::isfinite(left)) return range;
+    return end == RangeEnd::high ? gi::ValueRange{range.low, range.low + left}
+                                 : gi::ValueRange{range.high - left, range.high};
 }
 
 std::vector<Mark> overlay(const gi::Look& look, const gi::ShownValues& values, const OverlayView& view) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,26 @@ struct OverlayView {
     double distance = 1;  ///< along the view to what the scale bar measures, world units
     double metres_per_unit = 1;
     ImageSize size;
-    double font = 13;              ///< height of the text, pixels
+    double font = 13;                        ///< height of the text, pixels
     double left = 0, right = 0, bottom = 0;  ///< kept free, pixels
 };
 
 /// Legend, axes and scale bar, as far as the look asks for them.
 std::vector<Mark> overlay(const gi::Look& look, const gi::ShownValues& values, const OverlayView& view);
+
+/// Where the legend's colour bar stands where colours are of a range; its top is the range's `high`. None:
+/// there is no such legend.
+struct LegendBar {
+    glm::dvec2 from{0.0}, to{0.0};              ///< opposite corners, pixels from the top left
+    glm::dvec2 paper_from{0.0}, paper_to{0.0};  ///< of the whole legend
+};
+std::optional<LegendBar> legend_bar(const gi::Look& look, const gi::ShownValues& values,
+                                    const OverlayView& view);
+
+/// A range whose one end was dragged up along the bar by a share of its length; the ends keep a hundredth of
+/// their distance.
+enum class RangeEnd : uint8_t { low, high };
+gi::ValueRange dragged_range(const gi::ValueRange& range, RangeEnd end, double up);
 
 /// What a legend is called: "Elevation", or an attribute's name.
 std::string legend_title(const gi::Look& look);

@@ -58,7 +58,7 @@ bool edit_range(const ViewModel& model, gi::Look& look) {
         ImGui::TextDisabled("no point has this attribute");
         return changed;
     }
-    // The handles: each end drags by hundredths of the range.
+    // Each end drags by hundredths of the range, as it does in the legend.
     gi::ValueRange range = look.range.value_or(*measured);
     const auto speed = static_cast<float>(std::max(std::abs(range.high - range.low) / 200, 1e-9));
     bool dragged =

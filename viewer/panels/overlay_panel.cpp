@@ -5,7 +5,7 @@
 #include <imgui.h>
 
 #include "viewer/overlay/figure_scale.h"
-#include "viewer/overlay/overlay.h"
+#include "viewer/panels/overlay_view.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -20,8 +20,7 @@ ImVec2 point(const glm::dvec2& v) {
 
 }  // namespace
 
-void draw_overlay(const ViewModel& model) {
-    if (!model.picture) return;
+OverlayView overlay_view(const ViewModel& model) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     OverlayView view;
     view.camera = model.rig.camera();
@@ -32,6 +31,12 @@ void draw_overlay(const ViewModel& model) {
     view.left = model.side_bar().pixels(view.font, size.x) + 8;
     view.right = 8;
     view.bottom = 2 * view.font;  // the line of messages
+    return view;
+}
+
+void draw_overlay(const ViewModel& model) {
+    if (!model.picture) return;
+    const OverlayView view = overlay_view(model);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     std::vector<Mark> marks = overlay(model.scene.look, model.picture->values, view);
     std::ranges::move(figure_scale(model.scene, model.picture->exposure_ev, view), std::back_inserter(marks));

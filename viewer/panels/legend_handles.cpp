@@ -1,0 +1,73 @@
+#include "viewer/panels/legend_handles.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/panels/overlay_view.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kReach = 7,
+                kThick = 3;  ///< pixels from a handle's middle: that the mouse takes, that are drawn
+constexpr ImU32 kInk = IM_COL32(255, 240, 200, 255), kLit = IM_COL32(255, 140, 40, 255),
+                kRim = IM_COL32(20, 20, 20, 230);
+
+/// The end of the bar at a height, and beside it the value that it stands for.
+void draw_handle(const LegendBar& bar, float y, double value, bool lit) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const auto left = static_cast<float>(bar.from.x) - 4, right = static_cast<float>(bar.to.x) + 4;
+    list.AddRectFilled({left - 1, y - kThick - 1}, {right + 1, y + kThick + 1}, kRim, 2);
+    list.AddRectFilled({left, y - kThick}, {right, y + kThick}, lit ? kLit : kInk, 2);
+    if (!lit) return;
+    const std::string text = fmt::format("{:.6g}", value);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 at(left - size.x - 12, y - size.y / 2);
+    list.AddRectFilled({at.x - 4, at.y - 3}, {at.x + size.x + 4, at.y + size.y + 3}, kRim, 3);
+    list.AddText(at, kInk, text.c_str());
+}
+
+}  // namespace
+
+bool LegendHandles::take(ViewModel& model) {
+    const auto bar = model.picture ? legend_bar(model.scene.look, model.picture->values, overlay_view(model))
+                                   : std::nullopt;
+    if (!bar || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) held_.reset();
+    if (!bar) return false;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto over = [&](const glm::dvec2& from, const glm::dvec2& to) {
+        return mouse.x >= from.x && mouse.x < to.x && mouse.y >= from.y && mouse.y < to.y;
+    };
+    if (!held_ && (ImGui::GetIO().WantCaptureMouse || !over(bar->paper_from, bar->paper_to))) return false;
+    gi::Look& look = model.scene.look;
+    const gi::ValueRange range = look.range.value_or(*model.picture->values.range);
+    for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {
+        const double y = end == RangeEnd::high ? bar->from.y : bar->to.y;
+        const bool hovered =
+            !held_ && over({bar->from.x - kReach, y - kReach}, {bar->to.x + kReach, y + kReach});
+        if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+            look.range.reset();
+            model.scene_changed();
+            return true;
+        }
+        if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+            held_ = Held{end, range, mouse.y};
+        }
+        const bool lit = held_ ? held_->end == end : hovered;
+        const float moved = held_ && lit ? mouse.y - held_->y : 0;  // it follows the mouse
+        draw_handle(*bar, static_cast<float>(y) + moved, end == RangeEnd::high ? range.high : range.low, lit);
+        if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
+    }
+    if (!held_) return false;
+    const double up = static_cast<double>(held_->y - mouse.y) / (bar->to.y - bar->from.y);
+    const gi::ValueRange dragged = dragged_range(held_->range, held_->end, up);
+    if (up != 0 && dragged != range) {
+        look.range = dragged;
+        model.scene_changed();
+    }
+    return true;
+}
+
+}  // namespace lucarne::viewer
