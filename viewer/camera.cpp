@@ -80,9 +80,11 @@ glm::dvec3 CameraRig::up() const {
     return glm::cross(right(), forward());
 }
 
-glm::dvec3 CameraRig::ray(const glm::dvec2& place, double aspect) const {
-    const double tangent = std::tan(vertical_fov_ / 2);
-    return forward() + right() * (place.x * tangent * aspect) + up() * (place.y * tangent);
+CameraRig::Ray CameraRig::ray(const glm::dvec2& place, double aspect) const {
+    const double half = orthographic() ? height_ / 2 : std::tan(vertical_fov_ / 2);
+    const glm::dvec3 aside = right() * (place.x * half * aspect) + up() * (place.y * half);
+    if (orthographic()) return {position_ + aside, forward()};
+    return {position_, forward() + aside};
 }
 
 void CameraRig::orbit(double yaw, double pitch) {

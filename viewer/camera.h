@@ -23,9 +23,11 @@ class CameraRig {
     glm::dvec3 right() const;
     glm::dvec3 up() const;
 
-    /// The direction through a place of the picture, [-1, 1] to the right and up; dot(direction, forward)
-    /// = 1.
-    glm::dvec3 ray(const glm::dvec2& place, double aspect) const;
+    /// Through a place of the picture, [-1, 1] to the right and up; dot(along, forward) = 1.
+    struct Ray {
+        glm::dvec3 from, along;
+    };
+    Ray ray(const glm::dvec2& place, double aspect) const;
     void set_pivot(const glm::dvec3& pivot) { pivot_ = pivot; }
     void set_position(const glm::dvec3& position) { position_ = position; }
 

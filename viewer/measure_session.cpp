@@ -4,13 +4,14 @@
 #include <imgui.h>
 
 #include "viewer/axis_marks.h"
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 #include "viewer/tools/measure_file.h"
 
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kClickReach = 4;  ///< pixels: what moves further between press and release is a drag
+constexpr float kClickReach = 4;  ///< to be scaled(): what moves further between press and release is a drag
 constexpr int kMostFiles = 10000;
 
 /// The first name of the kind section-0001 that is free.
@@ -76,7 +77,7 @@ void MeasureSession::take_input(ViewModel& model) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool click = ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.WantCaptureMouse &&
                        !io.KeyShift &&
-                       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClickReach * kClickReach;
+                       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < scaled(kClickReach) * scaled(kClickReach);
     if (click && model.measure.tool && model.picture) {
         const ImVec2 at = io.MouseClickedPos[ImGuiMouseButton_Left];
         worker_.pick(model.picture, {at.x / io.DisplaySize.x, at.y / io.DisplaySize.y});

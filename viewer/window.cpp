@@ -18,7 +18,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kTextPixels = 13;      ///< on a screen of scale 1, as the font was drawn for
+constexpr float kDoubleClickReach = 6;  ///< of the second click from the first, on a screen of scale 1
 constexpr size_t kMostPressed = 64;    ///< keys kept between two frames
 constexpr size_t kMostDropped = 1000;  ///< files
 constexpr const char* kTodo =
@@ -199,23 +199,36 @@ void Window::stay() {
     glfwSetWindowShouldClose(window_, GLFW_FALSE);
 }
 
+double Window::screen_scale() const {
+    float scale = 1;
+    glfwGetWindowContentScale(window_, &scale, nullptr);
+    return scale > 0 ? scale : 1;
+}
+
 ImageSize Window::size() const {
-    int width = 0, height = 0;
-    glfwGetWindowSize(window_, &width, &height);
-    return {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))};
+    const ImageSize pixels = framebuffer();
+    const auto side = [&](uint32_t length) {
+        return static_cast<uint32_t>(std::max(std::lround(length / screen_scale()), 1l));
+    };
+    return {side(pixels.width), side(pixels.height)};
 }
 
 /// Draws the glyphs anew in the size that they are shown in: stretched ones would be blurred.
 void Window::fit_text() {
-    float screen = 1;
-    glfwGetWindowContentScale(window_, &screen, nullptr);
-    const double scale = std::clamp(screen * text_size_, 0.5, 8.0);
-    if (std::abs(scale - text_scale_) < 1e-3) return;
+    const double scale = std::clamp(screen_scale() * text_size_, 0.5, 8.0);
+    // X11 counts in pixels, Wayland in units of several, which ImGui then does, too.
+    int units = 0;
+    glfwGetWindowSize(window_, &units, nullptr);
+    const double pixels = framebuffer().width / static_cast<double>(std::max(units, 1));
+    if (std::abs(scale - text_scale_) < 1e-3 && std::abs(pixels - text_pixels_) < 1e-3) return;
     text_scale_ = scale;
+    text_pixels_ = pixels;
     ImGui::GetStyle() = ImGuiStyle();
     ImGui::StyleColorsDark();
-    ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale));
+    ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale / pixels));
     ImGuiIO& io = ImGui::GetIO();
+    io.FontGlobalScale = static_cast<float>(1 / pixels);
+    io.MouseDoubleClickMaxDist = kDoubleClickReach * static_cast<float>(scale / pixels);
     io.Fonts->Clear();
     ImFontConfig config;
     config.SizePixels = std::round(kTextPixels * static_cast<float>(scale));

@@ -18,6 +18,8 @@ struct GLFWwindow;
 
 namespace lucarne::viewer {
 
+inline constexpr float kTextPixels = 13;  ///< on a screen of scale 1, as the font was drawn for
+
 /// The program's window with Dear ImGui in it, and a second, hidden context of the same driver for the
 /// worker. Main thread only, but for wake().
 class Window {
@@ -46,7 +48,7 @@ class Window {
     void set_title(const std::string& title);
     bool closing() const;
     void stay();             ///< closing() is taken back
-    ImageSize size() const;  ///< in the desktop's units, as open() takes it
+    ImageSize size() const;  ///< as open() takes it: of a screen of scale 1
     /// How large text is, beside the scale of the screen that the window is on; glyphs are drawn anew for it.
     void set_text_size(double size) { text_size_ = size; }
     /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
@@ -92,6 +94,7 @@ class Window {
     Window() = default;
     Result<std::unique_ptr<gi::Device>> own_device();
     void draw_picture(ImageSize size);
+    double screen_scale() const;  ///< 1: of about 96 dots an inch
     void fit_text();
     Result<void> create(ImageSize size, const std::string& title);
     Result<void> create_window(ImageSize size, const std::string& title);
@@ -102,9 +105,10 @@ class Window {
     GLFWwindow* hidden_ = nullptr;
     std::string title_;
     bool initialised_ = false, imgui_ = false;
-    double text_size_ = 1, text_scale_ = 0;   ///< wanted; what the glyphs are of
-    unsigned texture_ = 0, framebuffer_ = 0;  ///< the picture, and what it is copied from
-    std::vector<unsigned> small_;             ///< textures
+    double text_size_ = 1;                     ///< wanted
+    double text_scale_ = 0, text_pixels_ = 0;  ///< what the glyphs are of, and the pixels of a unit of the desktop's then
+    unsigned texture_ = 0, framebuffer_ = 0;   ///< the picture, and what it is copied from
+    std::vector<unsigned> small_;              ///< textures
     ImageSize texture_size_;
     uint64_t shown_ = 0;        ///< the number of the picture in the texture
     PictureRect place_;         ///< of it, in this frame; empty: there is none

@@ -63,13 +63,23 @@ TEST(CameraRig, ZoomingKeepsThePointInPlaceAndNeverPassesIt) {
 }
 
 TEST(CameraRig, RaysGoThroughThePicture) {
-    const CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
-    const glm::dvec3 direction = rig.ray({0.5, -0.25}, 1.5);
-    EXPECT_NEAR(glm::dot(direction, rig.forward()), 1, 1e-12);
-    const glm::dvec2 place = seen(rig, rig.position() + 7.0 * direction);
+    CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
+    const CameraRig::Ray ray = rig.ray({0.5, -0.25}, 1.5);
+    EXPECT_EQ(ray.from, rig.position());
+    EXPECT_NEAR(glm::dot(ray.along, rig.forward()), 1, 1e-12);
+    const glm::dvec2 place = seen(rig, rig.position() + 7.0 * ray.along);
     const double tangent = std::tan(rig.camera().vertical_fov / 2);
     EXPECT_NEAR(place.x, 0.5 * 1.5 * tangent, 1e-12);
     EXPECT_NEAR(place.y, -0.25 * tangent, 1e-12);
+
+    rig.set_orthographic(true);
+    const CameraRig::Ray parallel = rig.ray({0.5, -0.25}, 1.5);
+    EXPECT_EQ(parallel.along, rig.forward());
+    const double half = rig.camera().orthographic_height / 2;
+    const glm::dvec3 aside = parallel.from - rig.position();
+    EXPECT_NEAR(glm::dot(aside, rig.right()), 0.5 * 1.5 * half, 1e-9);
+    EXPECT_NEAR(glm::dot(aside, rig.up()), -0.25 * half, 1e-9);
+    EXPECT_NEAR(glm::dot(aside, rig.forward()), 0, 1e-9);
 }
 
 TEST(Navigation, OrbitDragsTurnScrollGoesNearerAndKeysDoNothing) {

@@ -89,7 +89,7 @@ class ViewerWindow : public testing::Test {
     void SetUp() override {
         if (!installed("Xvfb") || !installed("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool";
         const std::string number = folder_ / "display";
-        server_.emplace("Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset 3>" + number +
+        server_.emplace("Xvfb -displayfd 3 -screen 0 1000x750x24 -nolisten tcp -noreset 3>" + number +
                         " 2>/dev/null");
         ASSERT_TRUE(eventually([&] { return bytes_of(number).find('\n') != std::string::npos; }))
             << "Xvfb does not start";
@@ -137,7 +137,8 @@ class ViewerWindow : public testing::Test {
             for (int i = 0; i < 20 && !std::filesystem::exists(file); ++i)
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
             const auto saved = io::read_png(file);
-            if (!saved || saved->width != kWidth || saved->height != kHeight || !wanted(*saved)) return false;
+            if (!saved || saved->width != kWidth * scale_ ||
+                saved->height != kHeight * scale_ || !wanted(*saved)) return false;
             result = *saved;
             return true;
         });
@@ -148,6 +149,7 @@ class ViewerWindow : public testing::Test {
     TemporaryFolder folder_;
     std::optional<Background> server_, viewer_;
     std::string display_, cache_;
+    uint32_t scale_ = 1;  ///< pixels of the screen along a side of what a desktop counts as one
 };
 
 /// Under a small window manager (openbox), which frames windows, gives focus and closes politely.

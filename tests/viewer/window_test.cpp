@@ -3,9 +3,7 @@
 
 #include <fstream>
 
-#include <fmt/format.h>
-
-#include "tests/viewer/measured_scan.h"
+#include "tests/viewer/measuring_window.h"
 
 namespace lucarne {
 namespace {
@@ -152,49 +150,8 @@ TEST_F(ViewerWindow, ClosingDuringAConversionAsksAndTheNextOneGoesOn) {
     }
 }
 
-TEST_F(ViewerWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigits) {
-    const test::MeasuredScan scan;
-    cache_ = scan.file();
-    const std::string scene = folder_ / "front.json";
-    const glm::dvec3 from = test::MeasuredScan::kCorner + glm::dvec3(2, -4, 1.5);
-    std::ofstream(scene) << fmt::format(
-        R"({{"cameras": [{{"name": "front", "position": [{0}, {1}, {2}], "target": [{0}, {3}, {2}], "fov": 50}}],
-            "lights": [{{"type": "point", "position": [{0}, {1}, {2}], "intensity": [50, 50, 50]}}]}})",
-        from.x, from.y, from.z, from.y + 4);
-    start(" --scene " + scene);
-    ASSERT_TRUE(picture(lit));
-    xdo("key Tab");
-    xdo("key ctrl+2");
-    // Where points of the front wall are seen, by number: 10th and 66th of the third row.
-    const auto click = [&](uint64_t number) {
-        const glm::dvec3 d = test::MeasuredScan::position(number) - from;
-        const double half = std::tan(25.0 / 180 * M_PI);
-        const double x = kWidth / 2.0 + d.x / d.y / half * kHeight / 2.0;
-        const double y = kHeight / 2.0 - d.z / d.y / half * kHeight / 2.0;
-        EXPECT_EQ(xdo(fmt::format("mousemove {:.0f} {:.0f} sleep 0.4 click 1 sleep 0.4", std::floor(x),
-                                  std::floor(y)))
-                      .code,
-                  0);
-    };
-    const uint64_t a = 9 + 2 * test::MeasuredScan::kAcross, b = 65 + 2 * test::MeasuredScan::kAcross;
-    click(a);
-    click(b);
-    const std::string file = folder_ / "measurements.csv";
-    ASSERT_TRUE(eventually([&] {
-        xdo("key ctrl+e sleep 0.3");
-        return !viewer_->running() || std::filesystem::exists(file);
-    })) << "nothing was measured";
-    const std::string csv = test::bytes_of(file);
-    const auto digits = [](uint64_t number) {
-        const glm::ivec3 p = test::MeasuredScan::integers(number);
-        return fmt::format("{}.{:03},{}.{:03},{}.{:03}", 1'500'000 + p.x / 1000, p.x % 1000,
-                           200'000 + p.y / 1000, p.y % 1000, p.z / 1000, p.z % 1000);
-    };
-    EXPECT_THAT(csv, HasSubstr("Distance 1,distance,point 1,,," + digits(a)));
-    EXPECT_THAT(csv, HasSubstr("Distance 1,distance,point 2,,," + digits(b)));
-    const size_t at = csv.find("Distance 1,distance,length,");
-    ASSERT_NE(at, std::string::npos) << csv;
-    EXPECT_NEAR(std::stod(csv.substr(at + 27)), 56 * 0.05 * test::MeasuredScan::kFoot, 1e-9) << "metres";
+TEST_F(MeasuringWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigits) {
+    measure_a_known_distance();
 }
 
 TEST_F(ViewerWindow, OpensWithNothingTakesFilesFromTheDesktopsDialogAndOutlivesABrokenOne) {

@@ -10,7 +10,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kHandle = 7;  // pixels, radius
+constexpr float kHandle = 7;  // radius, to be scaled()
 constexpr ImU32 kEdge = IM_COL32(255, 210, 80, 200), kFace = IM_COL32(255, 240, 200, 255),
                 kHeld = IM_COL32(255, 120, 40, 255);
 
@@ -21,21 +21,14 @@ void draw_edges(const Picture& picture, const gi::ClipBox& box) {
             if (i >> axis & 1) continue;
             const auto from = on_screen(picture, corners[i]),
                        to = on_screen(picture, corners[i | 1u << axis]);
-            if (from && to) ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kEdge, 1.5f);
+            if (from && to) ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kEdge, scaled(1.5f));
         }
-}
-
-/// The ray through the cursor, from the camera.
-glm::dvec3 cursor_ray(const ViewModel& model) {
-    const ImGuiIO& io = ImGui::GetIO();
-    return model.rig.ray(
-        {2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
-        static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
 }
 
 void drag(ViewModel& model, const ClipHandle& handle) {
     const HandlePlace place = handle_place(model.scene.look.clip, handle);
-    const auto by = along_axis(place.position, place.axis, model.rig.position(), cursor_ray(model));
+    const CameraRig::Ray ray = cursor_ray(model.rig);
+    const auto by = along_axis(place.position, place.axis, ray.from, ray.along);
     if (!by || *by == 0) return;
     move_handle(model.scene.look.clip, handle, *by);
     model.scene_changed();
@@ -53,6 +46,7 @@ bool take_clip_handles(ViewModel& model) {
     for (const gi::ClipBox& box : clip.boxes) draw_edges(*model.picture, box);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const bool free = !ImGui::GetIO().WantCaptureMouse;
+    const float radius = scaled(kHandle);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.held.reset();
     std::optional<ClipHandle> under;
     const auto handles = clip_handles(clip);
@@ -62,10 +56,10 @@ bool take_clip_handles(ViewModel& model) {
         const auto at = on_screen(*model.picture, handle_place(clip, handle).position);
         if (!at) continue;
         const float x = at->x - mouse.x, y = at->y - mouse.y;
-        const bool hovered = free && x * x + y * y < 4 * kHandle * kHandle;
+        const bool hovered = free && x * x + y * y < 4 * radius * radius;
         if (hovered) under = handle;
         const bool lit = tools.held ? *tools.held == handle : hovered;
-        ImGui::GetBackgroundDrawList()->AddCircleFilled(*at, kHandle, lit ? kHeld : kFace);
+        ImGui::GetBackgroundDrawList()->AddCircleFilled(*at, radius, lit ? kHeld : kFace);
     }
     if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.held = under;
     if (tools.held) drag(model, *tools.held);

@@ -15,7 +15,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kHandle = 7, kGrip = 6;  // pixels, radius
+constexpr float kHandle = 7, kGrip = 6;  // radius, to be scaled()
 constexpr ImU32 kOn = IM_COL32(255, 226, 120, 255), kOff = IM_COL32(130, 130, 130, 255),
                 kSelected = IM_COL32(255, 140, 40, 255), kRim = IM_COL32(20, 20, 20, 220),
                 kBeam = IM_COL32(255, 226, 120, 130), kPaper = IM_COL32(10, 10, 10, 150);
@@ -24,25 +24,10 @@ LightSphere sky_of(const ViewModel& model) {
     return {model.rig.pivot(), model.scene_size / 5};
 }
 
-struct Ray {
-    glm::dvec3 from, along;
-};
-Ray cursor_ray(const ViewModel& model) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const glm::dvec2 place(2.0 * io.MousePos.x / io.DisplaySize.x - 1,
-                           1 - 2.0 * io.MousePos.y / io.DisplaySize.y);
-    const double aspect = static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y;
-    if (!model.rig.orthographic()) return {model.rig.position(), model.rig.ray(place, aspect)};
-    const double half = model.rig.camera().orthographic_height / 2;
-    return {model.rig.position() + model.rig.right() * (place.x * half * aspect) +
-                model.rig.up() * (place.y * half),
-            model.rig.forward()};
-}
-
 void drag(ViewModel& model, const LightHandle& handle) {
     gi::SceneLight& light = model.scene.lights[handle.light];
     const LightSphere sky = sky_of(model);
-    const Ray ray = cursor_ray(model);
+    const CameraRig::Ray ray = cursor_ray(model.rig);
     auto to = dragged_place(light, handle.part, sky, ray.from, ray.along, model.rig.forward());
     const ImGuiIO& io = ImGui::GetIO();
     // What a light shines at is put on the surface under the cursor.
@@ -60,24 +45,27 @@ bool draw_handle(const ViewModel& model, const LightHandle& handle, const ImVec2
     const ImU32 colour = handle.light == model.light ? kSelected : light.on ? kOn : kOff;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float x = at.x - mouse.x, y = at.y - mouse.y;
-    const bool hovered = !ImGui::GetIO().WantCaptureMouse && x * x + y * y < 4 * kHandle * kHandle;
-    const float radius = hovered ? kHandle + 2 : kHandle;
+    const bool hovered =
+        !ImGui::GetIO().WantCaptureMouse && x * x + y * y < 4 * scaled(kHandle) * scaled(kHandle);
+    const float radius = scaled(hovered ? kHandle + 2 : kHandle);
     if (handle.part == LightHandle::Part::target) {
-        list.AddCircle(at, radius - 1, kRim, 0, 4);
-        list.AddCircle(at, radius - 1, colour, 0, 2);
+        list.AddCircle(at, radius - scaled(1), kRim, 0, scaled(4));
+        list.AddCircle(at, radius - scaled(1), colour, 0, scaled(2));
     } else {
-        list.AddCircleFilled(at, radius + 1.5f, kRim);
+        list.AddCircleFilled(at, radius + scaled(1.5f), kRim);
         list.AddCircleFilled(at, radius, colour);
     }
     if (handle.part == LightHandle::Part::sky)  // rays
         for (int i = 0; i < 8; ++i) {
             const float angle = static_cast<float>(i) * std::numbers::pi_v<float> / 4, c = std::cos(angle),
                         s = std::sin(angle);
-            list.AddLine({at.x + c * (radius + 3), at.y + s * (radius + 3)},
-                         {at.x + c * (radius + 7), at.y + s * (radius + 7)}, colour, 2);
+            const float from = radius + scaled(3), to = radius + scaled(7);
+            list.AddLine({at.x + c * from, at.y + s * from}, {at.x + c * to, at.y + s * to}, colour,
+                         scaled(2));
         }
     if ((hovered || handle.light == model.light) && handle.part != LightHandle::Part::target)
-        list.AddText({at.x + radius + 6, at.y - ImGui::GetFontSize() / 2}, colour, light.name.c_str());
+        list.AddText({at.x + radius + scaled(6), at.y - ImGui::GetFontSize() / 2}, colour,
+                     light.name.c_str());
     return hovered;
 }
 
@@ -88,7 +76,7 @@ void draw_beam(const ViewModel& model, const gi::SceneLight& light) {
         on_screen(*model.picture, sun ? handle_place(light, LightHandle::Part::sky, sky) : light.position);
     const auto to = on_screen(*model.picture, sun ? sky.centre : light.target);
     if (from && to && light.kind != gi::LightKind::point)
-        ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kBeam, 1.5f);
+        ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kBeam, scaled(1.5f));
 }
 
 bool take_border(ViewModel& model) {
@@ -98,19 +86,21 @@ bool take_border(ViewModel& model) {
     const ImGuiIO& io = ImGui::GetIO();
     const float x = static_cast<float>(comparison->border) * io.DisplaySize.x;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const bool hovered = !io.WantCaptureMouse && std::abs(io.MousePos.x - x) < kGrip;
+    const bool hovered = !io.WantCaptureMouse && std::abs(io.MousePos.x - x) < scaled(kGrip);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.holds_border = false;
     if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.holds_border = true;
     list.AddLine({x, 0}, {x, io.DisplaySize.y}, hovered || tools.holds_border ? kSelected : IM_COL32_WHITE,
-                 2);
+                 scaled(2));
     const float font = ImGui::GetFontSize(), y = io.DisplaySize.y - 3.5f * font;
     const std::string left = model.engine, right = comparison->engine;
     const ImVec2 size = ImGui::CalcTextSize(left.c_str());
     const float right_width = ImGui::CalcTextSize(right.c_str()).x;
-    list.AddRectFilled({x - size.x - 14, y - 3}, {x + right_width + 14, y + size.y + 3}, kPaper, 4);
-    list.AddText({x - size.x - 8, y}, IM_COL32_WHITE, left.c_str());
-    list.AddText({x + 8, y}, IM_COL32_WHITE, right.c_str());
-    list.AddLine({x, y - 3}, {x, y + size.y + 3}, IM_COL32_WHITE, 2);
+    const float gap = scaled(8), edge = scaled(14), above = scaled(3);
+    list.AddRectFilled({x - size.x - edge, y - above}, {x + right_width + edge, y + size.y + above}, kPaper,
+                       scaled(4));
+    list.AddText({x - size.x - gap, y}, IM_COL32_WHITE, left.c_str());
+    list.AddText({x + gap, y}, IM_COL32_WHITE, right.c_str());
+    list.AddLine({x, y - above}, {x, y + size.y + above}, IM_COL32_WHITE, scaled(2));
     if (hovered || tools.holds_border) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (!tools.holds_border) return false;
     const double border = std::clamp(static_cast<double>(io.MousePos.x / io.DisplaySize.x), 0.0, 1.0);
@@ -165,12 +155,12 @@ void draw_convergence(const ViewModel& model) {
     const ImVec2 centre((left + size.x) / 2, size.y - 1.2f * font);
     constexpr float kTop = -std::numbers::pi_v<float> / 2;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddCircleFilled(centre, radius + 4, kPaper);
-    list.AddCircle(centre, radius, kOff, 32, 3);
+    list.AddCircleFilled(centre, radius + scaled(4), kPaper);
+    list.AddCircle(centre, radius, kOff, 32, scaled(3));
     list.PathArcTo(centre, radius, kTop, kTop + share * 2 * std::numbers::pi_v<float>, 32);
-    list.PathStroke(kOn, 0, 3);
+    list.PathStroke(kOn, 0, scaled(3));
     if (!model.picture->moving)
-        list.AddText({centre.x + radius + 7, centre.y - font / 2}, IM_COL32_WHITE,
+        list.AddText({centre.x + radius + scaled(7), centre.y - font / 2}, IM_COL32_WHITE,
                      fmt::format("{} of {}", model.picture->stats.accumulated, kMostAccumulated).c_str());
 }
 

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 #include "viewer/tools/overlay.h"
 
@@ -11,7 +12,8 @@ namespace {
 
 constexpr ImU32 kColor = IM_COL32(255, 220, 60, 255), kSelected = IM_COL32(90, 230, 255, 255),
                 kPending = IM_COL32(255, 120, 90, 255), kPaper = IM_COL32(0, 0, 0, 170);
-constexpr float kDimmed = 0.35f;  ///< of what a surface hides
+constexpr float kDimmed = 0.35f;       ///< of what a surface hides
+constexpr float kPadX = 5, kPadY = 3;  ///< around a label's text, to be scaled()
 
 ImVec2 at(const glm::dvec2& p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y)};
@@ -28,7 +30,7 @@ struct Box {
 };
 Box box_of(const OverlayLabel& label) {
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-    const ImVec2 middle = at(label.at), pad(5, 3);
+    const ImVec2 middle = at(label.at), pad(scaled(kPadX), scaled(kPadY));
     const float above = size.y;  // so that the point or line itself is not covered
     return {{middle.x - size.x / 2 - pad.x, middle.y - above - size.y / 2 - pad.y},
             {middle.x + size.x / 2 + pad.x, middle.y - above + size.y / 2 + pad.y}};
@@ -38,17 +40,17 @@ template <class ColorOf>
 void draw(const Overlay& overlay, bool labels, const ColorOf& color_of) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const OverlayLine& line : overlay.lines)
-        list.AddLine(at(line.from), at(line.to), dimmed(color_of(line.measurement), line.hidden), 2);
+        list.AddLine(at(line.from), at(line.to), dimmed(color_of(line.measurement), line.hidden), scaled(2));
     for (const OverlayMark& mark : overlay.marks) {
-        list.AddCircleFilled(at(mark.at), 4, dimmed(color_of(mark.measurement), mark.hidden));
-        list.AddCircle(at(mark.at), 4.5f, dimmed(IM_COL32_BLACK, mark.hidden));
+        list.AddCircleFilled(at(mark.at), scaled(4), dimmed(color_of(mark.measurement), mark.hidden));
+        list.AddCircle(at(mark.at), scaled(4.5f), dimmed(IM_COL32_BLACK, mark.hidden));
     }
     for (const OverlayLabel& label : overlay.labels) {
         if (!labels) continue;
         const Box box = box_of(label);
-        list.AddRectFilled(box.min, box.max, dimmed(kPaper, label.hidden), 4);
-        list.AddText({box.min.x + 5, box.min.y + 3}, dimmed(color_of(label.measurement), label.hidden),
-                     label.text.c_str());
+        list.AddRectFilled(box.min, box.max, dimmed(kPaper, label.hidden), scaled(4));
+        list.AddText({box.min.x + scaled(kPadX), box.min.y + scaled(kPadY)},
+                     dimmed(color_of(label.measurement), label.hidden), label.text.c_str());
     }
 }
 
@@ -73,7 +75,7 @@ void draw_pending(const ViewModel& model, const glm::dvec2& window, const UnitCh
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (!overlay.marks.empty() && measure.tool != MeasureKind::point)
         ImGui::GetBackgroundDrawList()->AddLine(at(overlay.marks.back().at), ImGui::GetIO().MousePos,
-                                                dimmed(kPending, true), 1);
+                                                dimmed(kPending, true), scaled(1));
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <imgui.h>
 
+#include "viewer/camera.h"
 #include "viewer/tools/pick.h"
+#include "viewer/window.h"
 
 namespace lucarne::viewer {
 
@@ -15,6 +17,18 @@ inline std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3&
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
                   static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
+}
+
+/// The ray through the cursor.
+inline CameraRig::Ray cursor_ray(const CameraRig& rig) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return rig.ray({2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
+                   static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
+}
+
+/// A length for what is drawn over the picture, of `dots` on a screen of scale 1: it grows with the text.
+inline float scaled(float dots) {
+    return dots * ImGui::GetFontSize() / kTextPixels;
 }
 
 }  // namespace lucarne::viewer

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include "viewer/overlay/figure_scale.h"
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/overlay_view.h"
 #include "viewer/panels/panels.h"
 
@@ -42,7 +43,7 @@ void draw_overlay(const ViewModel& model) {
     std::ranges::move(figure_scale(model.scene, model.picture->exposure_ev, view), std::back_inserter(marks));
     for (const Mark& mark : marks) {
         if (mark.kind == Mark::Kind::area) list.AddRectFilled(point(mark.from), point(mark.to), packed(mark));
-        if (mark.kind == Mark::Kind::line) list.AddLine(point(mark.from), point(mark.to), packed(mark), 2.0f);
+        if (mark.kind == Mark::Kind::line) list.AddLine(point(mark.from), point(mark.to), packed(mark), scaled(2));
         if (mark.kind == Mark::Kind::text) list.AddText(point(mark.from), packed(mark), mark.text.c_str());
     }
 }
