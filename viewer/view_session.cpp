@@ -231,7 +231,10 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
-    if (!io.WantCaptureKeyboard && !model_.shell.ask_to_close) run_actions(model_, keys);
+    if (model_.shell.ask_to_close)
+        desk_.answer(keys);
+    else if (!io.WantCaptureKeyboard)
+        run_actions(model_, keys);
     if (legend_.take(model_) || take_clip_handles(model_) || take_light_handles(model_)) return;
     measure_.take_input(model_);
     const bool at_light = io.KeyShift && (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||

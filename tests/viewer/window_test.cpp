@@ -124,32 +124,6 @@ TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
         << "the picture stays another than the cache's";
 }
 
-TEST_F(ViewerWindow, ClosingDuringAConversionAsksAndTheNextOneGoesOn) {
-    const std::string scan = folder_ / "large.las";
-    ASSERT_EQ(lucarne("generate nave --points 600k -o " + scan).code, 0);
-    const auto cached = [&] { return std::filesystem::exists(scan + ".luc"); };
-    start_with(scan);
-    ASSERT_TRUE(eventually(
-        [&] { return xdo("search --name 'Lucarne - .*(normals|building)'").code == 0 || cached(); }));
-    xdo("key ctrl+q sleep 0.3");
-    if (!cached()) {
-        EXPECT_TRUE(viewer_->running()) << "it did not ask";
-    }
-    xdo("key Escape sleep 0.3");
-    if (!cached()) {
-        EXPECT_TRUE(viewer_->running()) << "staying closes it";
-    }
-    xdo("key ctrl+q sleep 0.3 key Return");
-    ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
-    EXPECT_EQ(viewer_->code(), 0);
-    const bool interrupted = !cached();
-    start_with(scan);
-    ASSERT_TRUE(eventually(cached));
-    if (interrupted) {
-        EXPECT_THAT(log(), HasSubstr("going on after"));
-    }
-}
-
 TEST_F(MeasuringWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigits) {
     measure_a_known_distance();
 }

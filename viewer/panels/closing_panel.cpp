@@ -15,11 +15,9 @@ void draw_closing_question(ViewModel& model) {
             "What is finished of it is kept: the conversion goes on from there\nwhen the scan is opened "
             "again.");
         ImGui::Spacing();
-        if (ImGui::Button("Close now (Enter)") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)))
-            model.shell.close_now = true;
+        if (ImGui::Button("Close now (Enter)")) model.shell.close_now = true;
         ImGui::SameLine();
-        if (ImGui::Button("Stay (Escape)") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-            model.shell.ask_to_close = false;
+        if (ImGui::Button("Stay (Escape)")) model.shell.ask_to_close = false;
     }
     ImGui::End();
 }

@@ -4,6 +4,9 @@
 #include <iterator>
 #include <system_error>
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 #include "io/core/log.h"
 #include "viewer/panels/panels.h"
 
@@ -121,8 +124,18 @@ bool Desk::closing(bool at_once) {
     if (at_once || !scans_.converting()) return true;
     model_.close = false;
     window_.stay();
-    model_.shell.ask_to_close = true;
+    if (!std::exchange(model_.shell.ask_to_close, true))
+        log::info("a scan is being converted: asked whether to close all the same");
     return false;
+}
+
+void Desk::answer(std::span<const KeyChord> keys) {
+    Shell& shell = model_.shell;
+    for (const KeyChord& chord : keys) {
+        if (chord.key == GLFW_KEY_ESCAPE) shell.ask_to_close = false;
+        shell.close_now |=
+            shell.ask_to_close && (chord.key == GLFW_KEY_ENTER || chord.key == GLFW_KEY_KP_ENTER);
+    }
 }
 
 }  // namespace lucarne::viewer

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "viewer/shell/file_browser.h"
 #include "viewer/shell/floor_finder.h"
@@ -26,6 +27,8 @@ class Desk {
     std::optional<double> floor();
     /// Whether the window is to go; asks first where a conversion is running, unless `at_once`.
     bool closing(bool at_once);
+    /// Keys that were pressed while that question stands.
+    void answer(std::span<const KeyChord> keys);
 
  private:
     void choose_files();
