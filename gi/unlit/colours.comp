@@ -15,10 +15,10 @@ float shade(ivec2 pixel, GBufferTexel texel) {
     const vec2 kDirections[8] = vec2[](vec2(1.0, 0.0), vec2(0.7071, 0.7071), vec2(0.0, 1.0), vec2(-0.7071, 0.7071),
                                        vec2(-1.0, 0.0), vec2(-0.7071, -0.7071), vec2(0.0, -1.0),
                                        vec2(0.7071, -0.7071));
-    float own = log2(texel.depth), sum = 0.0;
+    float sum = 0.0;
     for (int i = 0; i < 8; ++i) {
         float depth = texel_at(pixel + ivec2(round(neighbour * kDirections[i]))).depth;
-        if (depth > 0.0) sum += max(own - log2(depth), 0.0);
+        if (depth > 0.0) sum += log2(1.0 + max(texel.depth - depth, 0.0) / sight_distance(depth));
     }
     return exp(-kEyeDome * strength * sum / 8.0);
 }
@@ -30,8 +30,8 @@ float shade(ivec2 pixel, GBufferTexel texel) {
     for (int y = -2; y < 2; ++y)
         for (int x = -2; x < 2; ++x) {
             ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), ivec2(camera.width, camera.height) - 1);
-            float apart = abs(texel_at(at).depth / texel.depth - 1.0);
-            float weight = max(1.0 - 40.0 * apart, 0.0);  // nothing from beyond 2.5 % of the depth
+            float apart = abs(texel_at(at).depth - texel.depth) / sight_distance(texel.depth);
+            float weight = max(1.0 - 40.0 * apart, 0.0);  // nothing from beyond 2.5 % of the distance
             sum += weight * obscurance[at.y * int(camera.width) + at.x];
             weights += weight;
         }

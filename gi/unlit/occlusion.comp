@@ -32,9 +32,6 @@ vec3 plane_normal(ivec2 pixel, float depth) {
     return dot(normal, toward_viewer(camera, camera.origin.xyz + here)) < 0.0 ? -normal : normal;
 }
 
-// What a reach is a share of: to the eye; orthographic, to where an eye of a field of 53 degrees would stand.
-float sight_distance(float depth) { return is_parallel(camera) ? 2.0 * length(camera.up.xyz) : depth; }
-
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= int(camera.width) || pixel.y >= int(camera.height)) return;
@@ -44,7 +41,7 @@ void main() {
     if (texel.depth > 0.0) {
         vec3 here = place_of(pixel, texel.depth);
         vec3 normal = (texel.albedo & kSurfelHasNormal) != 0u ? texel_normal(texel) : plane_normal(pixel, texel.depth);
-        float radius = reach * sight_distance(texel.depth), radius2 = radius * radius;
+        float sight = sight_distance(texel.depth), radius = reach * sight, radius2 = radius * radius;
         float in_pixels = radius / pixel_height(camera, texel.depth);
         // Each of the 4 x 4 pixels by another sixteenth of a turn, in an order that neighbours share little of.
         int turn = ((pixel.x & 3) * 4 + (pixel.y & 3) * 9) & 15;
@@ -58,7 +55,7 @@ void main() {
             float distance2 = dot(apart, apart);
             float fall = max(radius2 - distance2, 0.0) / radius2;
             // A surface known to a few thousandths of its distance darkens itself by less.
-            float over = max(dot(apart, normal) - 0.003 * texel.depth, 0.0);
+            float over = max(dot(apart, normal) - 0.003 * sight, 0.0);
             sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
         }
     }

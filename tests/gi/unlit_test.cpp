@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "gi/registry.h"
@@ -75,13 +76,19 @@ TEST_F(UnlitTest, EyeDomeLeavesAWallAsItIsAndDrawsADarkEdgeBehindAStep) {
     }
 }
 
+/// A floor and a wall that meet at y = 2, z = -1.
+std::vector<Surfel> crease(bool normals) {
+    std::vector<Surfel> surfels;
+    scenes::add_rectangle(surfels, {-4, -4, -1}, 8.0f * kX, 8.0f * kY, 200, glm::vec3(0.5f));
+    scenes::add_rectangle(surfels, {-4, 2, -1}, 8.0f * kX, 4.0f * kZ, 200, glm::vec3(0.5f));
+    if (!normals)
+        for (Surfel& s : surfels) s.normal = glm::vec3(0.0f);
+    return surfels;
+}
+
 TEST_F(UnlitTest, OcclusionDarkensACornerAndLeavesAnOpenFloorBright) {
     for (const bool normals : {true, false}) {
-        std::vector<Surfel> surfels;
-        scenes::add_rectangle(surfels, {-4, -4, -1}, 8.0f * kX, 8.0f * kY, 200, glm::vec3(0.5f));
-        scenes::add_rectangle(surfels, {-4, 2, -1}, 8.0f * kX, 4.0f * kZ, 200, glm::vec3(0.5f));
-        if (!normals)
-            for (Surfel& s : surfels) s.normal = glm::vec3(0.0f);
+        const std::vector<Surfel> surfels = crease(normals);
         const CameraView camera = look({0, -3, 1}, {0, 1.6f, -0.6f}, kWidth, kHeight);
         LitOptions options;
         options.unlit.occlusion_reach = 12;
@@ -96,6 +103,57 @@ TEST_F(UnlitTest, OcclusionDarkensACornerAndLeavesAnOpenFloorBright) {
         EXPECT_LT(corner, 0.38f) << "with normals: " << normals;
         EXPECT_GT(floor, 0.46f) << "with normals: " << normals;
     }
+}
+
+/// Onto the crease, which is seen 2 m high, from a distance; orthographic or from an eye.
+CameraView onto_crease(float distance, bool orthographic) {
+    const glm::vec3 along = glm::normalize(glm::vec3(0, 1, -0.7f)), middle(0, 2, -1);
+    CameraView view = look(middle - distance * along, middle, kWidth, kHeight);
+    view.projection = orthographic ? kOrthographic : kPerspective;
+    const float half = orthographic ? 1 : 1 / distance;
+    view.up = glm::vec4(half * glm::normalize(glm::vec3(view.up)), 0);
+    view.right = glm::vec4(half * kWidth / kHeight * glm::normalize(glm::vec3(view.right)), 0);
+    return view;
+}
+
+TEST_F(UnlitTest, AnOrthographicViewIsShadedTheSameHoweverFarBackItStands) {
+    for (const bool normals : {true, false})
+        for (const Shading shading : {Shading::occlusion, Shading::eye_dome}) {
+            SCOPED_TRACE(fmt::format("shading {}, normals {}", static_cast<int>(shading), normals));
+            std::vector<Surfel> surfels = crease(normals);
+            // A plate that floats before the floor has an edge.
+            scenes::add_rectangle(surfels, {-1, 0.8f, -0.7f}, 2.0f * kX, 0.4f * kY, 60, glm::vec3(0.5f));
+            LitOptions options;
+            options.unlit.occlusion_reach = 12;
+            const Lit near = draw(surfels, onto_crease(6, true), shading, options),
+                      far = draw(surfels, onto_crease(100, true), shading, options);
+            size_t differing = 0, shaded = 0;
+            for (size_t i = 0; i < near.radiance.size(); ++i) {
+                differing += std::abs(near.radiance[i].x - far.radiance[i].x) > 0.02f;
+                shaded += far.radiance[i].x < 0.45f;
+            }
+            EXPECT_LT(differing, near.radiance.size() / 50)
+                << "but for pixels that fall on either side of an edge";
+            EXPECT_GT(shaded, near.radiance.size() / 100) << "there is something to be seen of it";
+        }
+}
+
+TEST_F(UnlitTest, AnOrthographicCornerIsAsDarkAsFromAnEyeThatSeesItAsLarge) {
+    const std::vector<Surfel> surfels = crease(true);
+    LitOptions options;
+    options.unlit.occlusion_reach = 12;
+    const Lit parallel = draw(surfels, onto_crease(50, true), Shading::occlusion, options),
+              eye = draw(surfels, onto_crease(2, false), Shading::occlusion, options);
+    // Across the crease, which lies in the middle of both pictures.
+    for (uint32_t y = kHeight / 2 - 12; y < kHeight / 2 + 12; ++y) {
+        float mean[2] = {};
+        for (uint32_t x = kWidth / 2 - 16; x < kWidth / 2 + 16; ++x) {
+            mean[0] += parallel.at(x, y).x / 32;
+            mean[1] += eye.at(x, y).x / 32;
+        }
+        EXPECT_NEAR(mean[0], mean[1], 0.03f) << "row " << y;
+    }
+    EXPECT_LT(parallel.at(kWidth / 2, kHeight / 2).x, 0.42f);
 }
 
 TEST_F(UnlitTest, PointsOfAFixedSizeCoverThatManyPixels) {
