@@ -422,7 +422,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
         times.end();
         accumulated = 0;
     }
-    if (!request.accumulate) accumulated = 0;
+    if (!request.accumulate || !averaged) accumulated = 0;  // else `mean` is of an earlier view
     LUCARNE_TRY(draw(request));
     return finish(request);
 }

@@ -1,5 +1,7 @@
 #include "viewer/picture_worker.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <semaphore>
@@ -94,6 +96,25 @@ TEST_F(Worker, PicksTheWorldPointUnderAPlace) {
     EXPECT_FALSE(picture->pick({-3, 9}));
 }
 
+TEST_F(Worker, APictureAtRestHoldsNothingOfTheOneBeforeTheMotion) {
+    request_.frame.accumulate = true;
+    ASSERT_TRUE(whole(worker_->request(request_)));
+    request_.frame.camera.target.z += glm::distance(header_.min, header_.max) / 4;
+    request_.frame.accumulate = false;
+    request_.frame.moving = request_.moving = true;
+    const auto moving = whole(worker_->request(request_));
+    ASSERT_TRUE(moving);
+    request_.frame.accumulate = true;  // it stops where it is
+    request_.frame.moving = request_.moving = false;
+    const auto still = whole(worker_->request(request_));
+    ASSERT_TRUE(still);
+    int largest = 0;
+    for (size_t i = 0; i < still->rgba.size(); ++i)
+        largest =
+            std::max(largest, std::abs(static_cast<int>(still->rgba[i]) - static_cast<int>(moving->rgba[i])));
+    EXPECT_LE(largest, 1) << "a spot's light is the same in every sample";
+}
+
 TEST_F(Worker, AnErrorIsShownAndTheNextRequestIsMadeAllTheSame) {
     request_.engine = "magic";
     EXPECT_EQ(whole(worker_->request(request_)), nullptr);
@@ -131,7 +152,8 @@ TEST_F(Worker, ADeviceThatCannotBeMadeAgainCountsAsLostAndTheWorkerStillEnds) {
     worker_ = std::move(*worker);
     worker_->request(request_);
     ASSERT_TRUE(loss());
-    worker_->set_device({[]() -> Result<std::unique_ptr<gi::Device>> { return failed("device", "is gone"); }, [] {}});
+    worker_->set_device(
+        {[]() -> Result<std::unique_ptr<gi::Device>> { return failed("device", "is gone"); }, [] {}});
     const auto lost = loss();
     ASSERT_TRUE(lost);
     EXPECT_EQ(lost->why, "is gone");
