@@ -50,6 +50,32 @@ std::span<const Preset> presets() {
     return all;
 }
 
+void apply(const gi::RenderSettings& settings, gi::EngineSettings& engine) {
+    engine.bounces = settings.bounces.value_or(engine.bounces);
+    if (settings.only_bounce) engine.only_bounce = static_cast<int32_t>(*settings.only_bounce);
+    engine.vpls = settings.vpls.value_or(engine.vpls);
+    engine.interleave = settings.interleave.value_or(engine.interleave);
+    engine.atlas = settings.atlas.value_or(engine.atlas);
+    engine.light_resolution = settings.light_resolution.value_or(engine.light_resolution);
+    engine.samples = settings.samples.value_or(engine.samples);
+}
+
+gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings& engine) {
+    gi::RenderSettings settings;
+    settings.preset = preset.name;
+    const auto put = [](std::optional<uint32_t>& setting, uint32_t value, uint32_t usual) {
+        if (value != usual) setting = value;
+    };
+    put(settings.bounces, engine.bounces, preset.engine.bounces);
+    if (engine.only_bounce >= 0) settings.only_bounce = static_cast<uint32_t>(engine.only_bounce);
+    put(settings.vpls, engine.vpls, preset.engine.vpls);
+    put(settings.interleave, engine.interleave, preset.engine.interleave);
+    put(settings.atlas, engine.atlas, preset.engine.atlas);
+    put(settings.light_resolution, engine.light_resolution, preset.engine.light_resolution);
+    put(settings.samples, engine.samples, preset.engine.samples);
+    return settings;
+}
+
 Result<Preset> find_preset(std::string_view name) {
     std::string known;
     for (const auto& preset : presets()) {

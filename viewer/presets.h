@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "gi/engine.h"
+#include "gi/scene/render_settings.h"
 
 namespace lucarne::viewer {
 
@@ -28,6 +29,11 @@ struct Preset {
     gi::EngineSettings engine;
     CutBudgets budgets;
 };
+
+/// Single settings in the place of the preset's.
+void apply(const gi::RenderSettings& settings, gi::EngineSettings& engine);
+/// What apply() makes `engine` of from this preset's; says the preset's name, and no engine.
+gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings& engine);
 
 inline constexpr std::string_view kDefaultPreset = "interactive";
 inline constexpr std::string_view kDefaultEngine = "vpl";

@@ -22,9 +22,9 @@ void MovingQuality::observe(double frame_seconds) {
     }
 }
 
-ImageSize MovingQuality::size(ImageSize full) const {
+ImageSize scaled_size(ImageSize full, double scale) {
     const auto side = [&](uint32_t pixels) {
-        return std::max(16u, static_cast<uint32_t>(std::lround(pixels * scale_)));
+        return std::max(16u, static_cast<uint32_t>(std::lround(pixels * scale)));
     };
     return {side(full.width), side(full.height)};
 }

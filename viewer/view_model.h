@@ -41,6 +41,7 @@ struct ViewModel {
     std::string engine, preset;
     gi::EngineSettings settings;
     CutBudgets budgets;
+    double resolution_scale = 1;  ///< of the window's sides, which pictures are made at
     double frame_time = 0.1;  ///< s: what a picture should take while something moves
     PipelineOptions caps;
 

@@ -268,7 +268,7 @@ void ViewSession::send_request() {
     request.settings = model_.settings;
     request.budgets = model_.budgets;
     request.frame.camera = model_.rig.camera();
-    request.frame.size = window_.framebuffer();
+    request.frame.size = scaled_size(window_.framebuffer(), model_.resolution_scale);
     request.frame.accumulate = !request.moving;
     request.frame.moving = request.moving;
     if (request.moving) {

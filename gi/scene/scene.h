@@ -12,6 +12,7 @@
 
 #include "gi/scene/environment.h"
 #include "gi/scene/look.h"
+#include "gi/scene/render_settings.h"
 #include "gi/scene/sun.h"
 #include "io/core/error.h"
 
@@ -104,6 +105,7 @@ struct Scene {
     Albedo albedo;
     Look look;  ///< of the points, whatever lights them
     std::optional<Comparison> comparison;
+    RenderSettings render;  ///< what the file says of it; the command line wins
 };
 
 /// Errors name the file and the place: the line for syntax, the JSON pointer for a wrong or unknown key.

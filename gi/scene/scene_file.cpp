@@ -7,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "gi/scene/look_file.h"
+#include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
 #include "gi/scene/scene_lights.h"
 #include "gi/scene/scene_limits.h"
@@ -155,6 +156,10 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
     LUCARNE_ASSIGN(const auto comparison, root.object("comparison"));
     if (comparison) {
         LUCARNE_ASSIGN(scene.comparison, read_comparison(*comparison));
+    }
+    LUCARNE_ASSIGN(const auto render, root.object("render"));
+    if (render) {
+        LUCARNE_ASSIGN(scene.render, read_render_settings(*render));
     }
     LUCARNE_ASSIGN(const auto look, root.object("look"));
     if (look) {

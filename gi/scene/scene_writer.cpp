@@ -7,6 +7,7 @@
 
 #include "gi/scene/degrees.h"
 #include "gi/scene/look_file.h"
+#include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
 #include "io/core/file.h"
 
@@ -137,10 +138,11 @@ Json write_comparison(const Comparison& comparison) {
 }
 
 void put_materials(Json& written, const std::vector<SceneMaterial>& materials) {
-    SceneMaterial usual;
-    usual.name = "default";
-    for (size_t i = 0; i < materials.size(); ++i)
-        if (i > 0 || materials[0] != usual) written["materials"].push_back(write_material(materials[i]));
+    const Json usual = {{"name", "default"}};
+    for (size_t i = 0; i < materials.size(); ++i) {
+        Json material = write_material(materials[i]);
+        if (i > 0 || material != usual) written["materials"].push_back(std::move(material));
+    }
 }
 
 }  // namespace
@@ -150,6 +152,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     const auto put_object = [&](const char* key, Json object) {
         if (!object.empty()) written[key] = std::move(object);
     };
+    put_object("render", write_render_settings(scene.render));
     put_object("exposure", write_exposure(scene));
     if (scene.environment)
         written["environment"] = write_environment(*scene.environment, scene.environment_on, folder);

@@ -45,6 +45,7 @@ class Stage {
         LUCARNE_ASSIGN(const auto source, viewer::open_input(scan_.cache()));
         viewer::DrawingOptions options;
         options.scene = bench::scene_file(scene);
+        LUCARNE_TRY(viewer::take_render_settings(options));
         LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
         LUCARNE_ASSIGN(gi::Scene loaded, viewer::load_scene_for(options, *source));
         LUCARNE_ASSIGN(request_.camera, viewer::find_camera(loaded, ""));

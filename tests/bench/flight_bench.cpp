@@ -80,6 +80,7 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     LUCARNE_ASSIGN(const auto source, viewer::open_input(cache));
     viewer::DrawingOptions options;
     options.scene = kScene;
+    LUCARNE_TRY(viewer::take_render_settings(options));
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
     LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
     drawing.caps = caps;

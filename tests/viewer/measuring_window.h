@@ -13,14 +13,14 @@ namespace lucarne::test {
 class MeasuringWindow : public ViewerWindow {
  protected:
     /// With the scan's wall before the camera, two clicks and a saved file.
-    void measure_a_known_distance() {
+    void measure_a_known_distance(const std::string& options = "") {
         cache_ = scan_.file();
         const std::string scene = folder_ / "front.json";
         std::ofstream(scene) << fmt::format(
             R"({{"cameras": [{{"name": "front", "position": [{0}, {1}, {2}], "target": [{0}, {3}, {2}], "fov": 50}}],
             "lights": [{{"type": "point", "position": [{0}, {1}, {2}], "intensity": [50, 50, 50]}}]}})",
             from_.x, from_.y, from_.z, from_.y + 4);
-        start(" --scene " + scene);
+        start(" --scene " + scene + options);
         ASSERT_TRUE(picture(lit));
         xdo("key Tab");
         xdo("key ctrl+2");

@@ -137,8 +137,8 @@ class ViewerWindow : public testing::Test {
             for (int i = 0; i < 20 && !std::filesystem::exists(file); ++i)
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
             const auto saved = io::read_png(file);
-            if (!saved || saved->width != kWidth * scale_ ||
-                saved->height != kHeight * scale_ || !wanted(*saved)) return false;
+            if (!saved || saved->width != kWidth * scale_ * resolution_ ||
+                saved->height != kHeight * scale_ * resolution_ || !wanted(*saved)) return false;
             result = *saved;
             return true;
         });
@@ -149,7 +149,8 @@ class ViewerWindow : public testing::Test {
     TemporaryFolder folder_;
     std::optional<Background> server_, viewer_;
     std::string display_, cache_;
-    uint32_t scale_ = 1;  ///< pixels of the screen along a side of what a desktop counts as one
+    uint32_t scale_ = 1;      ///< pixels of the screen along a side of what a desktop counts as one
+    double resolution_ = 1;  ///< of the window's sides that pictures are made at (--scale)
 };
 
 /// Under a small window manager (openbox), which frames windows, gives focus and closes politely.

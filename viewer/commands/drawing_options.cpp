@@ -7,15 +7,22 @@
 
 #include "gi/registry.h"
 #include "gi/scene/colouring.h"
+#include "gi/scene/render_settings_file.h"
 #include "io/core/log.h"
 #include "octree/bulk.h"
 
 namespace lucarne::viewer {
 namespace {
 
-template <class T>
-void override_with(T& value, const auto& given) {
-    if (given) value = static_cast<T>(*given);
+/// What is not said, as `otherwise` says it.
+void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
+    if (settings.engine.empty()) settings.engine = otherwise.engine;
+    if (settings.preset.empty()) settings.preset = otherwise.preset;
+    for (const auto member : {&gi::RenderSettings::bounces, &gi::RenderSettings::only_bounce, &gi::RenderSettings::vpls,
+                              &gi::RenderSettings::interleave, &gi::RenderSettings::atlas,
+                              &gi::RenderSettings::light_resolution, &gi::RenderSettings::samples})
+        if (!(settings.*member)) settings.*member = otherwise.*member;
+    if (!settings.scale) settings.scale = otherwise.scale;
 }
 
 std::string engine_names() {
@@ -44,22 +51,22 @@ bool all_have_normals(const octree::NodeSource& source) {
 void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.add_option("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
         ->type_name("FILE");
-    command.add_option("--engine", options.engine, "How light is computed, see below")
-        ->capture_default_str()
+    command.add_option("--engine", options.render.engine, "How light is computed, see below")
+        ->default_str(std::string(kDefaultEngine))
         ->type_name("NAME");
-    command.add_option("--preset", options.preset, "Effort, see below")
-        ->capture_default_str()
+    command.add_option("--preset", options.render.preset, "Effort, see below")
+        ->default_str(std::string(kDefaultPreset))
         ->type_name("NAME");
     command.add_option("--size", options.size, "Of the picture in pixels")
         ->capture_default_str()
         ->type_name("WxH");
-    command.add_option("--bounces", options.bounces, "Indirect bounces; 0: direct light alone")
+    command.add_option("--bounces", options.render.bounces, "Indirect bounces; 0: direct light alone")
         ->check(CLI::Range(0, 64))
         ->type_name("N");
-    command.add_option("--only-bounce", options.only_bounce, "Just this bounce; 0: direct light")
+    command.add_option("--only-bounce", options.render.only_bounce, "Just this bounce; 0: direct light")
         ->check(CLI::Range(0, 64))
         ->type_name("K");
-    command.add_option("--vpls", options.vpls, "Virtual point lights")
+    command.add_option("--vpls", options.render.vpls, "Virtual point lights")
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
     command.add_flag(
@@ -67,15 +74,19 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
         "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
     command.add_flag("--no-reuse", options.no_reuse,
                      "vpl: light every frame of a motion by itself, without what the frames before knew");
-    command.add_option("--interleave", options.interleave, "Pixels along a side that share out the lights")
+    command.add_option("--interleave", options.render.interleave, "Pixels along a side that share out the lights")
         ->check(CLI::IsMember({1, 2, 4}))
         ->type_name("N");
-    command.add_option("--atlas", options.atlas, "Texels along a side of the shadow maps' atlas")
+    command.add_option("--atlas", options.render.atlas, "Texels along a side of the shadow maps' atlas")
         ->check(CLI::IsMember({256, 512, 1024, 2048, 4096, 8192}))
+        ->type_name("N");
+    command.add_option("--light-resolution", options.render.light_resolution,
+                       "Texels along a side of what each light sees: the sharpness of shadows' edges")
+        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048, 4096}))
         ->type_name("N");
     command.add_option("--points", options.points, "Most points that a cut takes: 200000, 2M")
         ->type_name("N");
-    command.add_option("--samples", options.samples, "Paths a pixel and frame (reference)")
+    command.add_option("--samples", options.render.samples, "Paths a pixel and frame (reference)")
         ->check(CLI::Range(1, 1 << 20))
         ->type_name("N");
     command.add_option("--seed", options.seed, "Of all random numbers")->type_name("N");
@@ -97,9 +108,25 @@ void add_drawing_options(CLI::App& command, DrawingOptions& options) {
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
 }
 
+Result<void> take_render_settings(DrawingOptions& options) {
+    if (!options.scene.empty()) {
+        LUCARNE_ASSIGN(const gi::RenderSettings said, gi::load_render_settings(options.scene));
+        if (!said.engine.empty() && !gi::make_engine(said.engine))
+            return rejected(options.scene, fmt::format("/render/engine: there is no engine '{}'", said.engine));
+        if (!said.preset.empty() && !find_preset(said.preset))
+            return rejected(options.scene, fmt::format("/render/preset: there is no preset '{}'", said.preset));
+        fill(options.render, said);
+    }
+    gi::RenderSettings usual;
+    usual.engine = kDefaultEngine;
+    usual.preset = kDefaultPreset;
+    fill(options.render, usual);
+    return {};
+}
+
 Result<Drawing> resolve(const DrawingOptions& options) {
     Drawing drawing;
-    LUCARNE_ASSIGN(drawing.preset, find_preset(options.preset));
+    LUCARNE_ASSIGN(drawing.preset, find_preset(options.render.preset));
     LUCARNE_ASSIGN(drawing.size, parse_size("--size", options.size));
     if (!options.memory.empty()) {
         LUCARNE_ASSIGN(drawing.caps.memory, parse_bytes("--memory", options.memory));
@@ -108,17 +135,12 @@ Result<Drawing> resolve(const DrawingOptions& options) {
         LUCARNE_ASSIGN(drawing.caps.device_memory, parse_bytes("--device-memory", options.device_memory));
     }
     drawing.caps.prefetch = !options.no_prefetch;
-    LUCARNE_TRY(gi::make_engine(options.engine));
+    LUCARNE_TRY(gi::make_engine(options.render.engine));
     gi::EngineSettings& engine = drawing.preset.engine;
-    override_with(engine.bounces, options.bounces);
-    override_with(engine.only_bounce, options.only_bounce);
-    override_with(engine.vpls, options.vpls);
-    override_with(engine.interleave, options.interleave);
+    apply(options.render, engine);
     engine.best_candidate = options.best_candidate;
     engine.reuse = !options.no_reuse;
-    override_with(engine.atlas, options.atlas);
-    override_with(engine.samples, options.samples);
-    override_with(engine.seed, options.seed);
+    engine.seed = options.seed.value_or(engine.seed);
     if (!options.points.empty()) {
         LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
         if (points == 0) return bad_arguments("--points", "a cut of none shows nothing", "allow 1 or more");
@@ -168,7 +190,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
             "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
             "convert with --normals estimate for correct light");
     LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));
-    LUCARNE_TRY(pipeline->set_engine(options.engine));
+    LUCARNE_TRY(pipeline->set_engine(options.render.engine));
     pipeline->set_settings(drawing.preset.engine);
     pipeline->set_budgets(drawing.preset.budgets);
     LUCARNE_TRY(pipeline->set_scene(std::move(scene)));

@@ -21,13 +21,9 @@ namespace lucarne::viewer {
 /// What `render`, `view` and `fly` ask for alike: how the picture is lit, how large it is and what it may
 /// take.
 struct DrawingOptions {
-    std::string scene;  ///< path; empty: gi::default_scene
-    std::string engine{kDefaultEngine};
-    std::string preset{kDefaultPreset};
+    std::string scene;          ///< path; empty: gi::default_scene
+    gi::RenderSettings render;  ///< engine, preset and single settings over the preset's
     std::string size = "1280x720";
-    // Single settings over the preset's:
-    std::optional<uint32_t> bounces, vpls, interleave, atlas, samples;
-    std::optional<int32_t> only_bounce;
     std::string points;
     std::optional<uint64_t> seed;
     std::optional<double> exposure;
@@ -37,11 +33,15 @@ struct DrawingOptions {
     bool best_candidate = false, no_reuse = false, no_prefetch = false;
 };
 
-/// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas --points
-/// --samples
-/// --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch, and those of
-/// add_look_options() and add_light_options(). `options` outlives the command.
+/// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas
+/// --light-resolution
+/// --points --samples --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch,
+/// and those of add_look_options() and add_light_options(). `options` outlives the command.
 void add_drawing_options(CLI::App& command, DrawingOptions& options);
+
+/// What the command line leaves open of `render`, as the scene file says it, else the defaults; engine and
+/// preset are there from then on. Errors: the file's.
+Result<void> take_render_settings(DrawingOptions& options);
 
 /// The same, looked up and checked.
 struct Drawing {
@@ -49,7 +49,8 @@ struct Drawing {
     ImageSize size;
     PipelineOptions caps;
 };
-/// Errors (ErrorKind::arguments): an unknown preset or engine, a size or an amount of memory that is none.
+/// After take_render_settings(). Errors (ErrorKind::arguments): an unknown preset or engine, a size or an
+/// amount of memory that is none.
 Result<Drawing> resolve(const DrawingOptions& options);
 
 /// The scene file, or the default scene for this cloud; the first camera is there in any case. Errors: the

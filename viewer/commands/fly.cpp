@@ -34,7 +34,7 @@ struct FlyOptions {
 };
 
 std::vector<std::string> engines_of(const FlyOptions& options) {
-    return CLI::detail::split(options.drawing.engine, ',');
+    return CLI::detail::split(options.drawing.render.engine, ',');
 }
 
 /// One of the flights of a call.
@@ -101,7 +101,7 @@ Result<FullFlight> fly_at_full_resolution(Pipeline& pipeline, const CameraPath& 
 
 Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraPath& path) {
     DrawingOptions drawing_options = options.drawing;
-    drawing_options.engine = plan.engine;
+    drawing_options.render.engine = plan.engine;
     LUCARNE_ASSIGN(const Drawing drawing, resolve(drawing_options));
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     FlightConditions conditions;
@@ -131,7 +131,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     conditions.inputs = options.inputs;
     conditions.path = options.path;
     conditions.engine = plan.engine;
-    conditions.preset = options.drawing.preset;
+    conditions.preset = options.drawing.render.preset;
     conditions.mode = options.realtime ? "realtime" : "wait";
     conditions.size = drawing.size;
     conditions.device = device->info();
@@ -157,7 +157,8 @@ Result<void> write_text(const std::string& path, const std::string& text, bool o
     return file.commit();
 }
 
-Result<void> fly_all(const FlyOptions& options) {
+Result<void> fly_all(FlyOptions options) {
+    LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_TRY(check(options));
     LUCARNE_ASSIGN(const CameraPath path, load_path(options.path));
     std::vector<Json> flights;

@@ -149,9 +149,9 @@ std::vector<std::string> layer_paths(const std::string& output, const gi::Engine
 
 /// Before any long work: whether the layers can be written.
 Result<void> check_layers(const RenderOptions& options) {
-    LUCARNE_ASSIGN(const auto engine, gi::make_engine(options.drawing.engine));
+    LUCARNE_ASSIGN(const auto engine, gi::make_engine(options.drawing.render.engine));
     if (engine->info().layers.empty())
-        return bad_arguments("--layers", fmt::format("engine {} has none", options.drawing.engine));
+        return bad_arguments("--layers", fmt::format("engine {} has none", options.drawing.render.engine));
     for (const auto& path : layer_paths(options.output, engine->info()))
         LUCARNE_TRY(check_output(path, options.overwrite));
     return {};
@@ -178,12 +178,13 @@ Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOption
     return open.source;
 }
 
-Result<void> render(const RenderOptions& options) {
+Result<void> render(RenderOptions options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
     LUCARNE_TRY(check_output(options.output, options.overwrite));
     for (const std::string& also : {options.json, options.gbuffer})
         if (!also.empty()) LUCARNE_TRY(check_output(also, options.overwrite));
+    LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));
     auto opening = std::async(std::launch::async, [&] { return open_source(options); });

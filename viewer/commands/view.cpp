@@ -51,7 +51,8 @@ Result<void> check_scene(const ViewOptions& options) {
 
 ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     ViewModel model(1.0);
-    model.engine = options.drawing.engine;
+    model.engine = options.drawing.render.engine;
+    model.resolution_scale = options.drawing.render.scale.value_or(1);
     model.preset = drawing.preset.name;
     model.settings = drawing.preset.engine;
     model.budgets = drawing.preset.budgets;
@@ -76,7 +77,8 @@ void take_settings(Settings settings, ViewModel& model) {
     model.shell.settings = std::move(settings);
 }
 
-Result<void> view(const ViewOptions& options) {
+Result<void> view(ViewOptions options) {
+    LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
     if (!options.measurements.empty()) LUCARNE_TRY(load_measurements(options.measurements, std::nullopt));
@@ -122,6 +124,12 @@ void add_view(CLI::App& app, Command& chosen) {
     add_input_options(*command, options->input);
     add_drawing_options(*command, options->drawing);
     command->add_option("--camera", options->camera, "Start with this camera of the scene");
+    command
+        ->add_option("--scale", options->drawing.render.scale,
+                     "Share of the window's sides that pictures are made at, and scaled up from: half takes a quarter of "
+                     "the pixels' time")
+        ->check(CLI::Range(gi::kLeastPictureScale, 1.0))
+        ->type_name("X");
     command
         ->add_option("--frame-time", options->frame_time_ms,
                      "What a picture should take while something moves; cuts and size follow it")

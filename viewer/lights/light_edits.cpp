@@ -141,6 +141,10 @@ gi::Scene scene_to_save(const ViewModel& model) {
     std::erase_if(scene.cameras, [](const gi::SceneCamera& camera) { return camera.name == "view"; });
     gi::SceneCamera view = model.rig.camera();
     view.name = "view";
+    if (const auto preset = find_preset(model.preset)) scene.render = settings_over(*preset, model.settings);
+    scene.render.engine = model.engine;
+    scene.render.scale.reset();
+    if (model.resolution_scale != 1) scene.render.scale = model.resolution_scale;
     scene.cameras.insert(scene.cameras.begin(), view);
     return scene;
 }

@@ -119,6 +119,13 @@ void effort(ViewModel& model) {
         choose_power("paths a pixel", settings.samples, 0, 10);
         tell_cost("of a picture: four times as many take four times as long and halve the noise");
     }
+    float scale = static_cast<float>(100 * model.resolution_scale);
+    if (ImGui::SliderFloat("resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
+                           ImGuiSliderFlags_AlwaysClamp))
+        model.resolution_scale = std::clamp(static_cast<double>(scale) / 100, gi::kLeastPictureScale, 1.0);
+    tell_cost(
+        "of the window's width and height that pictures are made at, and scaled up from:\n"
+        "half takes a quarter of the pixels' time, and blurs");
     ImGui::TextDisabled("picture scale %.2f while moving", model.scale);
     tell_cost("while something moves, slow pictures get smaller; at rest they are made in full");
 }

@@ -25,6 +25,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.albedo, b.albedo);
     EXPECT_EQ(a.look, b.look);
     EXPECT_EQ(a.comparison, b.comparison);
+    EXPECT_EQ(a.render, b.render);
     ASSERT_EQ(a.environment == nullptr, b.environment == nullptr);
     if (!a.environment) return;
     EXPECT_EQ(a.environment->texels, b.environment->texels);
@@ -137,7 +138,20 @@ class Chance {
                                    {"show", comparison_names()[below(3)]},
                                    {"border", number(0, 1)},
                                    {"range", number(1e-6, 9)}};
+        if (coin()) scene["render"] = render();
         return scene;
+    }
+    nlohmann::json render() {
+        nlohmann::json render = {{"engine", "vpl"}, {"preset", "high"}};
+        if (coin()) render["bounces"] = below(65);
+        if (coin()) render["only_bounce"] = below(65);
+        if (coin()) render["vpls"] = 1 + below(65536);
+        if (coin()) render["interleave"] = 1 << below(3);
+        if (coin()) render["atlas"] = 256 << below(6);
+        if (coin()) render["light_resolution"] = 64 << below(7);
+        if (coin()) render["samples"] = 1 + below(1 << 20);
+        if (coin()) render["scale"] = number(.25, 1);
+        return render;
     }
 
  private:
