@@ -312,7 +312,7 @@ void Window::show(const Picture& picture) {
     }
     // A picture made before the window changed its shape keeps its own until the next one is there.
     const ImageSize size = framebuffer();
-    const double scale = std::max(double{size.width} / width, double{size.height} / height);
+    const double scale = std::max(static_cast<double>(size.width) / width, static_cast<double>(size.height) / height);
     const auto half = [&](int length) { return length * scale / 2; };
     const double x = size.width / 2.0, y = size.height / 2.0;
     place_ = {static_cast<int>(std::lround(x - half(width))), static_cast<int>(std::lround(y - half(height))),
