@@ -5,27 +5,30 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/panels/on_screen.h"
 #include "viewer/panels/overlay_view.h"
 
 namespace lucarne::viewer {
 namespace {
 
 constexpr float kReach = 7,
-                kThick = 3;  ///< pixels from a handle's middle: that the mouse takes, that are drawn
+                kThick = 3;  ///< from a handle's middle, to be scaled(): that the mouse takes, that are drawn
 constexpr ImU32 kInk = IM_COL32(255, 240, 200, 255), kLit = IM_COL32(255, 140, 40, 255),
                 kRim = IM_COL32(20, 20, 20, 230);
 
 /// The end of the bar at a height, and beside it the value that it stands for.
 void draw_handle(const LegendBar& bar, float y, double value, bool lit) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    const auto left = static_cast<float>(bar.from.x) - 4, right = static_cast<float>(bar.to.x) + 4;
-    list.AddRectFilled({left - 1, y - kThick - 1}, {right + 1, y + kThick + 1}, kRim, 2);
-    list.AddRectFilled({left, y - kThick}, {right, y + kThick}, lit ? kLit : kInk, 2);
+    const float over = scaled(4), rim = scaled(1), half = scaled(kThick), round = scaled(2);
+    const auto left = static_cast<float>(bar.from.x) - over, right = static_cast<float>(bar.to.x) + over;
+    list.AddRectFilled({left - rim, y - half - rim}, {right + rim, y + half + rim}, kRim, round);
+    list.AddRectFilled({left, y - half}, {right, y + half}, lit ? kLit : kInk, round);
     if (!lit) return;
     const std::string text = fmt::format("{:.6g}", value);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const ImVec2 at(left - size.x - 12, y - size.y / 2);
-    list.AddRectFilled({at.x - 4, at.y - 3}, {at.x + size.x + 4, at.y + size.y + 3}, kRim, 3);
+    const ImVec2 at(left - size.x - scaled(12), y - size.y / 2), pad(scaled(4), scaled(3));
+    list.AddRectFilled({at.x - pad.x, at.y - pad.y}, {at.x + size.x + pad.x, at.y + size.y + pad.y}, kRim,
+                       scaled(3));
     list.AddText(at, kInk, text.c_str());
 }
 
@@ -43,10 +46,10 @@ bool LegendHandles::take(ViewModel& model) {
     if (!held_ && (ImGui::GetIO().WantCaptureMouse || !over(bar->paper_from, bar->paper_to))) return false;
     gi::Look& look = model.scene.look;
     const gi::ValueRange range = look.range.value_or(*model.picture->values.range);
+    const double reach = scaled(kReach);
     for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {
         const double y = end == RangeEnd::high ? bar->from.y : bar->to.y;
-        const bool hovered =
-            !held_ && over({bar->from.x - kReach, y - kReach}, {bar->to.x + kReach, y + kReach});
+        const bool hovered = !held_ && over({bar->from.x - reach, y - reach}, {bar->to.x + reach, y + reach});
         if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
             look.range.reset();
             model.scene_changed();
