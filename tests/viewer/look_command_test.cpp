@@ -99,6 +99,13 @@ TEST_F(LookCommand, HiddenClassesAndClipsShowWhatIsBehindThem) {
     both = halves("--colour classification --clip-outside -1,-1,1.5,9,9,9");
     EXPECT_THAT(both[0], Shows(gi::class_colour(2)));
     EXPECT_THAT(both[1], Shows(kBlack));
+    // A wall between the squares; turned, it runs through both.
+    both = halves("--colour classification --clip-box 0.875,-5,-1,1.175,6,9");
+    EXPECT_THAT(both[0], Shows(kBlack));
+    EXPECT_THAT(both[1], Shows(kBlack));
+    both = halves("--colour classification --clip-box 0.875,-5,-1,1.175,6,9,90");
+    EXPECT_THAT(both[0], Shows(gi::class_colour(2)));
+    EXPECT_THAT(both[1], Shows(gi::class_colour(7)));
 }
 
 TEST_F(LookCommand, TheBackgroundShowsWhereNoPointIs) {
@@ -127,6 +134,7 @@ TEST_F(LookCommand, MistakesAreBadArgumentsThatNameTheOption) {
         {"--colour-map jet", "viridis"},
         {"--clip-box 0,0,0,1,1", "--clip-box"},
         {"--clip-box 1,0,0,0,1,1", "--clip-box"},
+        {"--clip-box 0,0,0,1,1,1,x", "--clip-box"},
         {"--clip-plane 0,0,0,0,0,0", "--clip-plane"},
         {"--background 2,0,0", "--background"},
         {"--shading phong", "--shading"},

@@ -96,6 +96,25 @@ TEST(Overlay, TheLegendsBarStandsWhereItIsDrawnAndOnlyWhereColoursAreOfARange) {
     EXPECT_FALSE(legend_bar(look, values, view));
 }
 
+TEST(ClipHandles, ABoxTurnsWithItsCornerToWhereTheCursorIs) {
+    gi::ClipBox box;
+    box.min = {9, 19, 0};
+    box.max = {11, 21, 4};
+    const dvec3 down(0, 0, -1);
+    const auto rotation = [&](double x, double y) { return turned_to(box, {x, y, 50}, down); };
+    ASSERT_TRUE(rotation(11, 21));
+    EXPECT_NEAR(*rotation(11, 21), 0, 1e-12) << "where it is";
+    EXPECT_NEAR(*rotation(10, 25), M_PI / 4, 1e-12) << "from the corner at 45 degrees to straight ahead";
+    EXPECT_NEAR(*rotation(13, 20), -M_PI / 4, 1e-12);
+    box.rotation = *rotation(10, 25);
+    gi::Clip clip;
+    clip.boxes = {box};
+    const dvec3 corner = handle_place(clip, {false, 0, ClipHandle::kCorner}).position;
+    EXPECT_NEAR(glm::distance(corner, dvec3(10, 20 + std::sqrt(2.0), 4)), 0, 1e-12) << "the handle went along";
+    EXPECT_FALSE(turned_to(box, {0, 0, 4}, {1, 1, 0})) << "level with it";
+    EXPECT_FALSE(turned_to(box, {0, 0, 50}, {0, 0, 1})) << "away from it";
+}
+
 TEST(Overlay, AxesPointWhereTheCameraSeesThem) {
     gi::SceneCamera camera;  // from the origin along +y, z up
     const auto axes = axes_in(camera);

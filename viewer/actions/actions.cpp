@@ -77,7 +77,7 @@ std::span<const Gesture> gestures() {
         Gesture{"double-click", "choose the point to turn around"},
         Gesture{"W A S D, E Q", "fly or walk; with Shift faster"},
         Gesture{"click", "measure the point there, with a tool; select what a label belongs to"},
-        Gesture{"left drag on a clip's handle", "move the box's face, or the plane"},
+        Gesture{"left drag on a clip's handle", "move the box's face, or the plane; the ring turns the box"},
         Gesture{"left drag on a light's handle", "move it, or what it shines at; a sun about the scene"},
         Gesture{"left drag on an end of the legend's bar",
                 "other values for its colours; double-click: where most values lie"},

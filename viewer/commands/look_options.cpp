@@ -1,5 +1,6 @@
 #include "viewer/commands/look_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "viewer/commands/find_name.h"
 
@@ -33,8 +35,9 @@ Result<std::vector<double>> parse_numbers(std::string_view option, std::string_v
 }
 
 Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
-    LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', 6));
-    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, 0, inverted};
+    const bool turned = std::ranges::count(text, ',') == 6;
+    LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', turned ? 7 : 6));
+    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, turned ? glm::radians(n[6]) : 0, inverted};
     if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
         return bad_arguments(std::string(option),
                              fmt::format("'{}' has its second corner below its first", text),
@@ -143,14 +146,15 @@ void add_look_options(CLI::App& command, LookOptions& options) {
         ->delimiter(',')
         ->type_name("N,...");
     command
-        .add_option("--clip-box", options.clip_boxes, "Only points inside are there (several: inside any)")
+        .add_option("--clip-box", options.clip_boxes,
+                    "Only points inside are there (several: inside any); DEGREES turns it about the vertical")
         ->take_all()
         ->allow_extra_args(false)
-        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
     command.add_option("--clip-outside", options.clip_outside, "Only points outside are there")
         ->take_all()
         ->allow_extra_args(false)
-        ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
     command
         .add_option("--clip-plane", options.clip_planes,
                     "Only points on the side that the normal points to are there")

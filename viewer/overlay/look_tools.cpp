@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -21,7 +22,7 @@ dvec3 box_axis(const gi::ClipBox& box, int axis) {
 std::vector<ClipHandle> clip_handles(const gi::Clip& clip) {
     std::vector<ClipHandle> handles;
     for (size_t i = 0; i < clip.boxes.size(); ++i)
-        for (int face = 0; face < 6; ++face) handles.push_back({false, i, face});
+        for (int face = 0; face <= ClipHandle::kCorner; ++face) handles.push_back({false, i, face});
     for (size_t i = 0; i < clip.planes.size(); ++i) handles.push_back({true, i, 0});
     return handles;
 }
@@ -33,6 +34,7 @@ HandlePlace handle_place(const gi::Clip& clip, const ClipHandle& handle) {
     }
     const gi::ClipBox& box = clip.boxes[handle.index];
     const dvec3 half = (box.max - box.min) / 2.0;
+    if (handle.face == ClipHandle::kCorner) return {box_corners(box)[7], {0, 0, 1}};
     const int axis = handle.face / 2;
     const dvec3 outward = box_axis(box, axis) * (handle.face % 2 ? 1.0 : -1.0);
     return {(box.min + box.max) / 2.0 + outward * half[axis], outward};
@@ -65,6 +67,16 @@ std::array<dvec3, 8> box_corners(const gi::ClipBox& box) {
         corners[static_cast<size_t>(i)] = corner;
     }
     return corners;
+}
+
+std::optional<double> turned_to(const gi::ClipBox& box, const dvec3& eye, const dvec3& ray) {
+    const dvec3 centre = (box.min + box.max) / 2.0, corner = box_corners(box)[7] - centre;
+    if (!(std::abs(ray.z) > 1e-3 * glm::length(ray))) return std::nullopt;  // runs along the plane
+    const double along = (centre.z + corner.z - eye.z) / ray.z;
+    const dvec3 place = eye + ray * along - centre;
+    if (!(along > 0) || !(place.x * place.x + place.y * place.y > 0)) return std::nullopt;
+    const double turn = std::atan2(place.y, place.x) - std::atan2(corner.y, corner.x);
+    return std::remainder(box.rotation + turn, 2 * std::numbers::pi);
 }
 
 std::optional<double> along_axis(const dvec3& origin, const dvec3& axis, const dvec3& eye, const dvec3& ray) {

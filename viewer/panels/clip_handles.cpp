@@ -26,6 +26,14 @@ void draw_edges(const Picture& picture, const gi::ClipBox& box) {
 }
 
 void drag(ViewModel& model, const ClipHandle& handle) {
+    if (!handle.plane && handle.face == ClipHandle::kCorner) {
+        gi::ClipBox& box = model.scene.look.clip.boxes[handle.index];
+        const CameraRig::Ray ray = cursor_ray(model.rig);
+        const auto turned = turned_to(box, ray.from, ray.along);
+        if (!turned || *turned == box.rotation) return;
+        box.rotation = *turned;
+        return model.scene_changed();
+    }
     const HandlePlace place = handle_place(model.scene.look.clip, handle);
     const CameraRig::Ray ray = cursor_ray(model.rig);
     const auto by = along_axis(place.position, place.axis, ray.from, ray.along);
@@ -59,7 +67,11 @@ bool take_clip_handles(ViewModel& model) {
         const bool hovered = free && x * x + y * y < 4 * radius * radius;
         if (hovered) under = handle;
         const bool lit = tools.held ? *tools.held == handle : hovered;
-        ImGui::GetBackgroundDrawList()->AddCircleFilled(*at, radius, lit ? kHeld : kFace);
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        if (!handle.plane && handle.face == ClipHandle::kCorner)  // a ring: it turns
+            list.AddCircle(*at, radius, lit ? kHeld : kFace, 0, scaled(3));
+        else
+            list.AddCircleFilled(*at, radius, lit ? kHeld : kFace);
     }
     if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.held = under;
     if (tools.held) drag(model, *tools.held);
