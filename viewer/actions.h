@@ -27,6 +27,7 @@ std::span<const Action> bookmark_actions();
 std::span<const Action> light_actions();
 std::span<const Action> picture_actions();
 std::span<const Action> measure_actions();
+std::span<const Action> show_actions();
 std::span<const Action> window_actions();
 
 /// All of them, in the order of the menu bar. W, A, S, D, Q and E alone are not among the keys: they fly.

@@ -97,7 +97,7 @@ Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipe
 
 bool worth_another(const PictureRequest& request, const FrameStats& stats) {
     if (stats.nodes_pending > 0) return true;
-    return !request.moving && request.frame.accumulate && stats.accumulated < kMostAccumulated;
+    return !request.moving && request.frame.accumulate && stats.accumulated < request.pictures;
 }
 
 }  // namespace

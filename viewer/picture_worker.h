@@ -13,7 +13,7 @@
 
 namespace lucarne::viewer {
 
-inline constexpr uint32_t kMostAccumulated = 256;  ///< pictures averaged at rest before the worker rests too
+inline constexpr uint32_t kMostAccumulated = 256;  ///< pictures in an average
 
 /// What a picture is wanted of.
 struct PictureRequest {
@@ -25,6 +25,7 @@ struct PictureRequest {
     uint64_t scene_version = 0;  ///< another number: the scene is another
     uint64_t shader_version = 0; ///< another number: shader files are read again
     bool moving = false;         ///< one picture does: the next request is on its way
+    uint32_t pictures = kMostAccumulated;  ///< averaged at rest, before the worker rests too
 };
 
 /// A finished picture, on the host.

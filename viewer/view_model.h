@@ -13,6 +13,7 @@
 #include "viewer/picture_worker.h"
 #include "viewer/presets.h"
 #include "viewer/shell/shell.h"
+#include "viewer/show/show_model.h"
 #include "viewer/tools/measure_model.h"
 
 namespace lucarne::viewer {
@@ -47,6 +48,7 @@ struct ViewModel {
 
     Shell shell;  ///< the open scans and what stands around the picture
     MeasureModel measure;
+    ShowModel show;
 
     LookTools look_tools;  ///< beside scene.look
     LightTools light_tools;

@@ -20,6 +20,7 @@ namespace {
 constexpr double kRest = 0.25;      ///< s without a move until the picture is made in full
 constexpr double kStep = 1.0 / 60;  ///< s between frames of the window while something moves
 constexpr int kMostSavedPictures = 10000;
+constexpr uint32_t kIdleFrames = 4;  ///< until ImGui's windows have found their sizes
 
 bool same_request(const PictureRequest& a, const PictureRequest& b) {
     return a.frame.camera.position == b.frame.camera.position &&
@@ -92,8 +93,9 @@ void ViewSession::take_picture() {
     model_.health.nodes = lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
     if (lost > 1) model_.health.nodes += fmt::format(" (and {} more)", lost - 1);
     const bool last_source = scans_.settled() && latest->source == scans_.source();
-    if (latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source)
-        ++whole_pictures_;
+    const bool whole =
+        latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source;
+    whole_pictures_ = whole ? latest->stats.accumulated : 0;
 }
 
 /// A context that the driver has lost is made again, with all that was in it.
@@ -116,7 +118,7 @@ void ViewSession::follow_device() {
     log::warn("{}", lost->line());
     model_.message = lost->why + ": the graphics device is set up again";
     if (tries_.take(Clock::now())) {
-        if (auto device = window_.renew_worker_device()) return worker_.set_device(std::move(*device));
+        if (auto device = window_.renew_worker_device(Window::Hidden::view)) return worker_.set_device(std::move(*device));
     }
     given_up_ = true;
     model_.message.clear();
@@ -251,6 +253,7 @@ void ViewSession::draw_panels() {
     draw_convergence(model_);
     desk_.draw();
     measure_.draw(model_);
+    draw_flythrough(model_);
     draw_side_bar(model_, placed_);
     if (model_.show_help) draw_help(model_);
     if (const auto error = worker_.error(); !error) model_.message = error.error().line();
@@ -270,6 +273,7 @@ void ViewSession::send_request() {
     request.frame.camera = model_.rig.camera();
     request.frame.size = scaled_size(window_.framebuffer(), model_.resolution_scale);
     request.frame.accumulate = !request.moving;
+    if (shot_) request.pictures = shot_->pictures;
     request.frame.moving = request.moving;
     if (request.moving) {
         request.frame.size = quality_.size(request.frame.size);
@@ -306,7 +310,13 @@ Result<void> ViewSession::save() {
         model_.message = saved ? fmt::format("saved {}{}", path.string(), unfinished()) : saved.error().line();
         log::info(model_.message);
     }
-    if (!shot_ || whole_pictures_ < shot_->pictures) return {};
+    return save_shot();
+}
+
+Result<void> ViewSession::save_shot() {
+    const bool nothing = scans_.rows().empty() && scans_.settled();
+    idle_frames_ = nothing ? idle_frames_ + 1 : 0;
+    if (!shot_ || (whole_pictures_ < shot_->pictures && idle_frames_ < kIdleFrames)) return {};
     model_.close = true;
     return io::write_png(shot_->file, without_alpha(window_.capture(), window_.framebuffer()),
                          shot_->overwrite);
@@ -329,6 +339,7 @@ Result<void> ViewSession::run() {
         follow_scans();
         follow_sky();
         take_input();
+        if (show_.follow(model_, scans_.source())) moved_ = Clock::now();
         draw_panels();
         const bool drawn = window_.draw(shot_.has_value());
         LUCARNE_TRY(save());

@@ -14,13 +14,14 @@
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"
+#include "viewer/show/show_session.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
 
 namespace lucarne::viewer {
 
-/// For scripts: the window's own picture is saved once `pictures` whole ones were shown at rest, and the
-/// window closes.
+/// For scripts: the window's own picture is saved once it shows the average of exactly so many whole pictures, the same
+/// on every run, and the window closes. With nothing open it shows the start page, once that has its final size.
 struct ScriptedShot {
     std::filesystem::path file;
     uint32_t pictures = 1;
@@ -39,7 +40,8 @@ class ViewSession {
           scans_(scans),
           desk_(window, model, scans),
           quality_(model.frame_time),
-          budget_(model.frame_time) {}
+          budget_(model.frame_time),
+          show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
 
     /// Until the window is closed. Errors: the scripted shot cannot be made or written, or is not of all
     /// scans.
@@ -61,6 +63,7 @@ class ViewSession {
     void send_request();
     std::string unfinished() const;
     Result<void> save();
+    Result<void> save_shot();
     double seconds_at_rest() const;
 
     Window& window_;
@@ -79,11 +82,13 @@ class ViewSession {
     LegendHandles legend_;
     SkyLoader skies_{&Window::wake};
     MeasureSession measure_{&Window::wake};
+    ShowSession show_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the version that is no user's
     uint64_t scene_seen_ = 0;
-    uint32_t whole_pictures_ = 0;
+    uint32_t whole_pictures_ = 0;  ///< in the average that is shown
+    uint32_t idle_frames_ = 0;     ///< of the window, with nothing open
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
 };
 

@@ -44,7 +44,7 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     initialised_ = true;
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     LUCARNE_TRY(create_window(size, title));
-    LUCARNE_TRY(create_hidden());
+    LUCARNE_TRY(create_hidden(Hidden::view));
     glfwMakeContextCurrent(window_);
     ImGui::CreateContext();
     imgui_ = true;
@@ -66,10 +66,11 @@ Result<void> Window::create_window(ImageSize size, const std::string& title) {
     return {};
 }
 
-Result<void> Window::create_hidden() {
+Result<void> Window::create_hidden(Hidden which) {
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-    hidden_ = glfwCreateWindow(1, 1, "lucarne worker", nullptr, nullptr);
-    if (!hidden_) return failed("window", "a second context: " + glfw_reason(), kTodo);
+    GLFWwindow* window = glfwCreateWindow(1, 1, "lucarne worker", nullptr, nullptr);
+    if (!window) return failed("window", "a further context: " + glfw_reason(), kTodo);
+    hidden_[static_cast<size_t>(which)] = window;
     return {};
 }
 
@@ -137,22 +138,24 @@ Window::~Window() {
         ImGui_ImplGlfw_Shutdown();
         ImGui::DestroyContext();
     }
-    if (hidden_) glfwDestroyWindow(hidden_);
+    for (GLFWwindow* hidden : hidden_)
+        if (hidden) glfwDestroyWindow(hidden);
     if (window_) glfwDestroyWindow(window_);
     if (initialised_) glfwTerminate();
 }
 
-Result<std::unique_ptr<gi::Device>> Window::own_device() {
+Result<std::unique_ptr<gi::Device>> Window::own_device(Hidden which) {
     if (software_)
         if (auto device = gi::Device::headless()) return device;
-    glfwMakeContextCurrent(hidden_);
+    glfwMakeContextCurrent(hidden_[static_cast<size_t>(which)]);
     return gi::Device::current();
 }
 
-WorkerDevice Window::worker_device() {
-    return {[this] {
+WorkerDevice Window::worker_device(Hidden which) {
+    return {[this, which] {
                 give_way();
-                auto device = own_device();
+                auto device = own_device(which);
+                if (which != Hidden::view) return device;
                 if (const auto checks = worker_losses_.next(); checks && device)
                     (*device)->lose_after(*checks);
                 return device;
@@ -160,10 +163,11 @@ WorkerDevice Window::worker_device() {
             [] { glfwMakeContextCurrent(nullptr); }};
 }
 
-Result<WorkerDevice> Window::renew_worker_device() {
-    glfwDestroyWindow(std::exchange(hidden_, nullptr));
-    LUCARNE_TRY(create_hidden());
-    return worker_device();
+Result<WorkerDevice> Window::renew_worker_device(Hidden which) {
+    GLFWwindow*& before = hidden_[static_cast<size_t>(which)];
+    if (before) glfwDestroyWindow(std::exchange(before, nullptr));
+    LUCARNE_TRY(create_hidden(which));
+    return worker_device(which);
 }
 
 void Window::wake() {

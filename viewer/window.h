@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -20,8 +21,8 @@ namespace lucarne::viewer {
 
 inline constexpr float kTextPixels = 13;  ///< on a screen of scale 1, as the font was drawn for
 
-/// The program's window with Dear ImGui in it, and a second, hidden context of the same driver for the
-/// worker. Main thread only, but for wake().
+/// The program's window with Dear ImGui in it, and hidden contexts of the same driver for threads
+/// that draw. Main thread only, but for wake().
 class Window {
  public:
     /// Errors: no display, no OpenGL 4.5.
@@ -30,13 +31,15 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
+    /// What a device is for: the picture in the window, or those rendered beside it.
+    enum class Hidden : size_t { view, rendering };
     /// Of the calling thread, which gives way to the window's; the window outlives the device. Where the
     /// window is drawn by the processor it is a device of its own: Mesa's threads then belong to the one who
-    /// uses it, and give way as well. Else the hidden context is made current, and `release` lets go of it
-    /// there.
-    WorkerDevice worker_device();
-    /// The same with a new hidden context, in place of one that was lost and released.
-    Result<WorkerDevice> renew_worker_device();
+    /// uses it, and give way as well. Else a hidden context (open() makes the view's) is made current, and
+    /// `release` lets go of it there.
+    WorkerDevice worker_device(Hidden which);
+    /// The same with a new hidden context, in place of one that was released, if there was.
+    Result<WorkerDevice> renew_worker_device(Hidden which);
     /// Whether the driver has lost the window's own context: nothing that is drawn is seen until recover().
     bool lost() { return watch_.lost(); }
     /// A new window in the place of the old one, with a new context; ImGui's state stays, pictures and small
@@ -92,17 +95,17 @@ class Window {
     };
 
     Window() = default;
-    Result<std::unique_ptr<gi::Device>> own_device();
+    Result<std::unique_ptr<gi::Device>> own_device(Hidden which);
     void draw_picture(ImageSize size);
     double screen_scale() const;  ///< 1: of about 96 dots an inch
     void fit_text();
     Result<void> create(ImageSize size, const std::string& title);
     Result<void> create_window(ImageSize size, const std::string& title);
-    Result<void> create_hidden();
+    Result<void> create_hidden(Hidden which);
     void take_context();
 
     GLFWwindow* window_ = nullptr;
-    GLFWwindow* hidden_ = nullptr;
+    std::array<GLFWwindow*, 2> hidden_{};
     std::string title_;
     bool initialised_ = false, imgui_ = false;
     double text_size_ = 1;                     ///< wanted

@@ -7,6 +7,9 @@
 namespace lucarne::gi {
 namespace {
 
+/// Of gi/shared/many_threads.glsl.
+constexpr const char* kThreadsARow = "threads_a_row";
+
 constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                                  GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
 
@@ -76,14 +79,21 @@ void Program::set_block(std::string_view uniform, std::span<const float> values)
 
 void Program::dispatch(uint32_t x, uint32_t y, uint32_t z) const {
     const uint32_t wanted[3] = {x, y, z};
-    GLuint groups[3];
+    GLuint groups[3], rows = 1;
     for (GLuint i = 0; i < 3; ++i) {
         if (wanted[i] == 0) return;
         GLint most = 0;
         glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
         groups[i] = (wanted[i] - 1) / local_[i] + 1;
-        if (groups[i] > static_cast<GLuint>(most))
+        if (groups[i] <= static_cast<GLuint>(most)) continue;
+        if (i > 0 || y * z != 1 || !find(kThreadsARow))
             throw std::logic_error("dispatch: more groups than OpenGL takes");
+        rows = (groups[0] - 1) / static_cast<GLuint>(most) + 1;
+        groups[0] = (groups[0] - 1) / rows + 1;
+    }
+    if (rows > 1) {
+        groups[1] = rows;
+        set(kThreadsARow, uint32_t{groups[0] * local_[0]});
     }
     glUseProgram(id_);
     glDispatchCompute(groups[0], groups[1], groups[2]);

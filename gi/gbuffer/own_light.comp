@@ -1,5 +1,6 @@
 // What reaches the eye without being reflected: emission of surfaces, and the background where there is none.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 #include "gi/shared/environment.h"
 #include "gi/shared/gbuffer.glsl"
 #include "gi/shared/material.h"
@@ -23,7 +24,7 @@ vec3 background(uint at) {
 }
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at >= camera.width * camera.height) return;
     GBufferTexel texel = texels[at];
     uint material = min(texel_material(texel), uint(materials.length()) - 1u);

@@ -1,12 +1,13 @@
 // One invocation a pixel: the texel of the surfel that took it.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 #include "gi/gbuffer/disc.glsl"
 
 layout(std430, binding = 4) readonly buffer Ids { uint ids[]; };
 layout(std430, binding = 6) writeonly buffer Texels { GBufferTexel texels[]; };
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at >= view_width * view_height) return;
     uint id = ids[at];
     uint item;

@@ -1,5 +1,7 @@
 // The running mean of pictures.
 layout(local_size_x = 256) in;
+#include "gi/shared/many_threads.glsl"
+
 layout(std430, binding = 0) readonly buffer Sample {
     vec4 taken[];
 };
@@ -10,7 +12,7 @@ uniform uint pixels;
 uniform uint count;  // with this one
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = thread_number();
     if (i >= pixels) return;
     mean[i] = count <= 1u ? taken[i] : mean[i] + (taken[i] - mean[i]) / float(count);
 }

@@ -1,5 +1,6 @@
 // What is seen where no point is, from one colour on top to another at the bottom.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 
 layout(binding = 3) uniform usamplerBuffer gbuffer_texels;
 layout(std430, binding = 1) buffer Picture { uint picture[]; };
@@ -9,7 +10,7 @@ uniform uint width;
 uniform uint height;
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at >= width * height || texelFetch(gbuffer_texels, int(at)).x != 0u) return;
     float down = (float(at / width) + 0.5) / float(height);
     picture[at] = packUnorm4x8(mix(top, bottom, down));

@@ -1,5 +1,6 @@
 // Luminances, or how two pictures' luminances differ, as places along a ramp of colours.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 
 layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
 layout(std430, binding = 1) writeonly buffer Picture { uint picture[]; };
@@ -15,7 +16,7 @@ float luminance(vec3 rgb) {
 }
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at >= pixels) return;
     float own = luminance(radiance[at].rgb);
     float value = own > 0.0 ? log2(own) : -1e30;

@@ -1,5 +1,6 @@
 // One picture left of a border, another right of it.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 
 layout(std430, binding = 0) readonly buffer Other { uint other[]; };
 layout(std430, binding = 1) buffer Picture { uint picture[]; };
@@ -8,6 +9,6 @@ uniform uint width;
 uniform uint border;  // the first column of the other
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at < pixels && at % width >= border) picture[at] = other[at];
 }

@@ -1,5 +1,6 @@
 // Radiance to sRGB for the screen.
 layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
 #include "gi/shared/surfel_code.h"
 #include "gi/shared/tone_curve.h"
 
@@ -14,7 +15,7 @@ uniform float scale;
 uniform uint curve;
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = thread_number();
     if (at >= pixels) return;
     vec3 x = tone_curve(radiance[at].rgb * scale, curve);
     uint word = 255u << 24;

@@ -1,6 +1,6 @@
 // Shades pixels that have too few neighbours of their own surface by the panes that they lack.
 layout(local_size_x = 64) in;
-
+#include "gi/shared/many_threads.glsl"
 #include "gi/vpl/join.glsl"
 
 layout(std430, binding = 11) readonly buffer Lonely {
@@ -11,8 +11,9 @@ layout(std430, binding = 12) buffer OwnDiffuse { vec4 own_diffuse[]; };
 layout(std430, binding = 13) buffer OwnSpecular { vec4 own_specular[]; };
 
 void main() {
-    if (gl_GlobalInvocationID.x >= lonely_count) return;
-    uint index = lonely_pixels[gl_GlobalInvocationID.x];
+    uint number = thread_number();
+    if (number >= lonely_count) return;
+    uint index = lonely_pixels[number];
     uvec2 pixel = uvec2(index % camera.width, index / camera.width);
     Receiver receiver = pixel_receiver(pixel, camera_texel(index));
     int n = int(interleave);

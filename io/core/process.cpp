@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -38,6 +39,15 @@ double seconds_since_start() {
     if (!fields || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
     const double started = std::strtod(field.c_str(), nullptr) / static_cast<double>(sysconf(_SC_CLK_TCK));
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started;
+}
+
+bool program_installed(const std::string& program) {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (!folder.empty() && access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0)
+            return true;
+    return false;
 }
 
 }  // namespace lucarne

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace lucarne {
 
@@ -13,5 +14,8 @@ void give_way();
 
 /// Since this process was started, before main: to a hundredth of a second; 0 where the kernel does not say.
 double seconds_since_start();
+
+/// Whether a program of this name can be run from one of the folders in $PATH.
+bool program_installed(const std::string& program);
 
 }  // namespace lucarne

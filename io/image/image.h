@@ -20,6 +20,7 @@ struct Image {
 struct Image8 {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> bytes;
+    std::vector<uint8_t> alpha{};  ///< opacity, one byte a pixel, not multiplied in; empty: opaque
 };
 
 /// Readers reject a picture beyond these before they allocate anything for it.
@@ -38,7 +39,7 @@ Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels =
 /// exposure is taken out.
 Result<Image> read_hdr(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);
 
-/// 8 bits RGB, tagged sRGB. The file appears whole or not at all.
+/// 8 bits RGB, or RGBA where there is opacity, tagged sRGB. The file appears whole or not at all.
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite);
 /// Any PNG, brought to 8 bits sRGB (its gamma is respected) over black.
 Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels = kMostPixels);

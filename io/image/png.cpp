@@ -21,20 +21,34 @@ struct PngFree {
     void operator()(png_image* image) const { png_image_free(image); }
 };
 
+std::vector<uint8_t> interleaved(const Image8& image) {
+    std::vector<uint8_t> rgba;
+    rgba.reserve(image.alpha.size() * 4);
+    for (size_t i = 0; i < image.alpha.size(); ++i) {
+        for (size_t channel = 0; channel < 3; ++channel) rgba.push_back(image.bytes[3 * i + channel]);
+        rgba.push_back(image.alpha[i]);
+    }
+    return rgba;
+}
+
 }  // namespace
 
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite) {
     const std::string name = path.string();
-    if (image.width == 0 || image.height == 0 || image.bytes.size() != size_t{3} * image.width * image.height)
+    const size_t count = size_t{image.width} * image.height;
+    if (count == 0 || image.bytes.size() != 3 * count || (!image.alpha.empty() && image.alpha.size() != count))
         return failed(name, fmt::format("no picture of {}x{} can be written", image.width, image.height));
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
     png.width = image.width;
     png.height = image.height;
-    png.format = PNG_FORMAT_RGB;
+    std::vector<uint8_t> with_alpha;
+    if (!image.alpha.empty()) with_alpha = interleaved(image);
+    const void* pixels = with_alpha.empty() ? image.bytes.data() : with_alpha.data();
+    png.format = with_alpha.empty() ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
     std::vector<std::byte> encoded(bytes);
-    if (!png_image_write_to_memory(&png, encoded.data(), &bytes, 0, image.bytes.data(), 0, nullptr))
+    if (!png_image_write_to_memory(&png, encoded.data(), &bytes, 0, pixels, 0, nullptr))
         return failed(name, fmt::format("cannot be encoded as PNG ({})", png.message));
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
     LUCARNE_TRY(file.append(std::span<const std::byte>(encoded).first(bytes)));

@@ -94,6 +94,29 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     ASSERT_TRUE(above) << "from the top";
     xdo("key ctrl+b sleep 0.5");
 
+    xdo("key Insert sleep 0.3 key 1");
+    const auto front = changed(*above, 2);
+    ASSERT_TRUE(front) << "from the front";
+    xdo("key Insert sleep 0.3 key alt+Left");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *above, *front); }))
+        << "a flythrough's first key frame";
+    xdo("key space");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *front, *above); }))
+        << "playing ends at the last one";
+    const std::string path = folder_ / "flythrough.json";
+    xdo("key alt+s");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(path); })) << "flythrough";
+    const Outcome flown = lucarne("fly " + cache_ + " --path " + path +
+                                  " --engine direct --size 16x12 -o " + (folder_ / "report.json"));
+    EXPECT_EQ(flown.code, 0) << flown.output;
+
+    const std::string shot = folder_ / "picture.png";
+    xdo("key ctrl+F12");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(shot); })) << "screenshot\n" << log();
+    const auto saved = io::read_png(shot);
+    ASSERT_TRUE(saved && saved->width == kWidth && saved->height == kHeight);
+    EXPECT_TRUE(nearer(*saved, *front, *above)) << "it shows another view";
+
     close_window();
     EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr("cornell.las"));
 

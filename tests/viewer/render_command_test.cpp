@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -7,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <png.h>
 
 #include "gi/compare/metrics.h"
 #include "io/image/image.h"
@@ -279,6 +281,76 @@ TEST_F(RenderCommand, GBufferOfThePictureIsWrittenAndTellsCompareWhereEdgesAre) 
     EXPECT_LT(edges["pixels"], 160 * 120 / 2);
     ASSERT_EQ(render("small.exr", "--engine direct", "32x24").code, 0);
     EXPECT_EQ(test::lucarne(same + at("small.exr")).code, 3);
+}
+
+/// Pixels with opacity; our own reader leaves it out.
+std::vector<std::array<uint8_t, 4>> rgba(const std::string& file) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&png, file.c_str())) return {};
+    EXPECT_TRUE(png.format & PNG_FORMAT_FLAG_ALPHA) << "no opacity";
+    png.format = PNG_FORMAT_RGBA;
+    std::vector<std::array<uint8_t, 4>> pixels(size_t{png.width} * png.height);
+    EXPECT_TRUE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr));
+    return pixels;
+}
+
+TEST_F(RenderCommand, TransparentIsWhereNoPointIsAndNowhereElse) {
+    const std::string view = "--engine direct --background=0,0,1 --clip-box=-1,-1,-1,7,7,2.75 ";
+    ASSERT_EQ(render("solid.png", view + "--gbuffer " + at("seen.exr")).code, 0);
+    const Outcome ran = render("cutout.png", view + "--transparent");
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    const auto solid = io::read_png(at("solid.png"));
+    const auto seen = io::read_exr(at("seen.exr"));
+    const auto cutout = rgba(at("cutout.png"));
+    ASSERT_TRUE(solid && seen);
+    ASSERT_EQ(cutout.size(), seen->pixels.size());
+    size_t clear = 0;
+    for (size_t i = 0; i < cutout.size(); ++i) {
+        const bool point = seen->pixels[i].w > 0;
+        EXPECT_EQ(cutout[i][3], point ? 255 : 0) << i;
+        clear += !point;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(cutout[i][c], point ? solid->bytes[3 * i + c] : 0) << "colours are as they were";
+    }
+    EXPECT_GT(clear, cutout.size() / 10);
+    EXPECT_LT(clear, cutout.size() * 9 / 10);
+}
+
+TEST_F(RenderCommand, OverlaysStandOverTransparencyAndCanBeLeftOut) {
+    const std::string view = "--engine unlit --axes --transparent --clip-box=50,50,50,51,51,51 ";
+    ASSERT_EQ(render("axes.png", view, "320x240").code, 0);
+    ASSERT_EQ(render("none.png", view + "--no-overlay", "320x240").code, 0);
+    size_t opaque = 0;
+    for (const auto& pixel : rgba(at("axes.png"))) {
+        opaque += pixel[3] == 255;
+        if (pixel[3] == 255) {
+            EXPECT_GT(pixel[0] + pixel[1] + pixel[2], 0) << "a mark takes its own colour";
+        }
+    }
+    EXPECT_GT(opaque, 0u);
+    for (const auto& pixel : rgba(at("none.png"))) EXPECT_EQ(pixel[3], 0);
+}
+
+TEST_F(RenderCommand, PicturesOfMorePixelsThanOneRowOfGroupsAreWhole) {
+    // 65535 groups of 64 threads, which OpenGL takes at least, are fewer than these pixels.
+    const std::string view = "--engine direct --points 5k";
+    ASSERT_EQ(render("large.png", view, "3000x1500").code, 0);
+    ASSERT_EQ(render("small.png", view, "300x150").code, 0);
+    const auto lit = [](const io::Image8& picture, double from, double to) {  // share of some rows
+        const double row = 3.0 * picture.width;
+        const auto first = static_cast<size_t>(from * picture.height * row);
+        const auto last = static_cast<size_t>(to * picture.height * row);
+        size_t count = 0;
+        for (size_t i = first; i < last; ++i) count += picture.bytes[i] > 0;
+        return static_cast<double>(count) / static_cast<double>(last - first);
+    };
+    const auto large = io::read_png(at("large.png")), small = io::read_png(at("small.png"));
+    ASSERT_TRUE(large && small);
+    for (const double from : {0.2, 0.4, 0.6, 0.8}) {
+        EXPECT_GT(lit(*small, from, from + 0.2), 0.04);
+        EXPECT_NEAR(lit(*large, from, from + 0.2), lit(*small, from, from + 0.2), 0.05) << from;
+    }
 }
 
 }  // namespace

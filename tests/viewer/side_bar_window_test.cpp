@@ -38,7 +38,7 @@ TEST_F(SideBarWindow, SectionsOpenByKeysAndClicksItsEdgeIsDraggedAndTheNextWindo
         start();
         if (!picture(lit)) return false;
         if (kept["open"].empty())
-            xdo("mousemove 60 " + std::to_string(header(6)) + " sleep 0.3 mousedown 1 sleep 0.3 mouseup 1");
+            xdo("mousemove 60 " + std::to_string(header(8)) + " sleep 0.3 mousedown 1 sleep 0.3 mouseup 1");
         if (kept["width"] == width) drag(1, 287, 300, 268, 300);
         kept = close();
         return !kept["open"].empty() && kept["width"] != width;

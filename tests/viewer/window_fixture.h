@@ -144,6 +144,16 @@ class ViewerWindow : public testing::Test {
         });
         return result;
     }
+    /// Whether the picture saved last had all its points, and nothing moved.
+    bool whole() const {
+        const std::string said = log();
+        const size_t at = said.rfind("lucarne-0001.png");
+        return at != std::string::npos && said.find("sketch", at) == std::string::npos;
+    }
+    /// However far both are averaged: the same view differs in its edges alone.
+    static bool nearer(const io::Image8& image, const io::Image8& to, const io::Image8& than) {
+        return difference(image, to) < difference(image, than) / 4;
+    }
     static bool lit(const io::Image8& image) { return deviation(image) > 10; }
 
     TemporaryFolder folder_;

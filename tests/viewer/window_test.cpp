@@ -172,6 +172,40 @@ TEST_F(ViewerWindow, ABrokenSettingsFileIsReportedAndPutAside) {
     EXPECT_TRUE(picture(lit));
 }
 
+TEST_F(ViewerWindow, AFlythroughIsMadePlayedSavedAndRenderedByKeys) {
+    // What stands for ffmpeg keeps what it gets; the last argument is file:NAME.
+    const std::string program = folder_ / "ffmpeg";
+    std::ofstream(program) << "#!/bin/sh\nfor last; do :; done\nexec cat > \"${last#file:}\"\n";
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    start_with(cache_, "PATH=" + folder_.path().string() + ":$PATH");
+    const auto first = picture([&](const io::Image8& now) { return whole() && lit(now); });
+    ASSERT_TRUE(first);
+    xdo("key Tab");  // the panels would take the drags
+    xdo("key Insert sleep 0.3");
+    drag(1, 250, 200, 300, 210);
+    const auto turned =
+        picture([&](const io::Image8& now) { return whole() && difference(now, *first) > 2; });
+    ASSERT_TRUE(turned);
+    xdo("key Insert sleep 0.3 key alt+Left sleep 0.3");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *first, *turned); }))
+        << "the key frame before is not where it was set";
+    xdo("key space");
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *turned, *first); }))
+        << "playing does not end at the last key frame";
+    xdo("key alt+s");
+    const std::string path = folder_ / "flythrough.json", video = folder_ / "flythrough.mp4";
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(path); }));
+    const auto flown = lucarne("fly " + cache_ + " --path " + path + " --engine direct --size 16x12 -o " +
+                               (folder_ / "report.json"));
+    EXPECT_EQ(flown.code, 0) << flown.output;
+    EXPECT_THAT(bytes_of(folder_ / "report.json"), HasSubstr("\"frames\": 51"));
+    xdo("key ctrl+F11");
+    ASSERT_TRUE(eventually([&] { return !viewer_->running() || std::filesystem::exists(video); }));
+    EXPECT_EQ(std::filesystem::file_size(video), size_t{51} * kWidth * kHeight * 3);
+    xdo("key shift+t key ctrl+F12");
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "picture.png"); }));
+}
+
 TEST(Viewer, WithoutADisplayItSaysSoInOneLine) {
     const TemporaryFolder folder;
     const std::string cache = make_cornell(folder, "2k");

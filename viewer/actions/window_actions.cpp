@@ -61,6 +61,8 @@ std::span<const Action> window_actions() {
         section<BarSection::light>({GLFW_KEY_L, GLFW_MOD_ALT}, "Light"),
         section<BarSection::measure>({GLFW_KEY_M}, "Measure"),
         section<BarSection::bookmarks>({GLFW_KEY_B, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT}, "Bookmarks"),
+        section<BarSection::flythrough>({GLFW_KEY_P, GLFW_MOD_SHIFT}, "Flythrough"),
+        section<BarSection::picture>({GLFW_KEY_F12, GLFW_MOD_SHIFT}, "Save a picture"),
         section<BarSection::statistics>({GLFW_KEY_F8}, "Statistics"),
         section<BarSection::controller>({GLFW_KEY_F6}, "6-DoF controller"),
         Action{{GLFW_KEY_EQUAL, GLFW_MOD_CONTROL}, "Window", "Larger text", larger_text},

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "viewer/flythrough/compare_flights.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/html_report.h"
+#include "viewer/flythrough/video.h"
 #include "viewer/inputs.h"
 
 namespace lucarne::viewer {
@@ -27,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 struct FlyOptions {
     std::vector<std::string> inputs, compare;
-    std::string path, report, html, frames_folder;
+    std::string path, report, html, frames_folder, video;
     DrawingOptions drawing;
     double soak = 0, frame_time_ms = 0, margin = 3;
     bool wait = false, realtime = false, cold = false, flicker = false, popping = false, overwrite = false;
@@ -69,14 +71,16 @@ Result<void> check(const FlyOptions& options) {
                              "needs --realtime: flights that wait draw the same on every run");
     LUCARNE_TRY(check_output(options.report, options.overwrite));
     if (!options.html.empty()) LUCARNE_TRY(check_output(options.html, options.overwrite));
+    if (!options.video.empty()) {
+        if (options.realtime || options.soak > 0 || plans_of(options).size() > 1)
+            return bad_arguments("--video", "is of one flight that waits for its frames",
+                                 "leave out --realtime, --soak, --cold and further engines");
+        LUCARNE_TRY(VideoWriter::check(options.video, options.overwrite));
+    }
     for (const Plan& plan : plans_of(options)) {
         LUCARNE_TRY(gi::make_engine(plan.engine));
         if (plan.frames_folder.empty()) continue;
-        std::error_code error;
-        std::filesystem::create_directories(plan.frames_folder, error);
-        if (error) return failed(plan.frames_folder, error.message(), "name a folder that can be written");
-        LUCARNE_TRY(
-            check_output(std::filesystem::path(plan.frames_folder) / "frame_00001.png", options.overwrite));
+        LUCARNE_TRY(prepare_frames_folder(plan.frames_folder, options.overwrite));
     }
     return {};
 }
@@ -90,6 +94,7 @@ Result<FullFlight> fly_at_full_resolution(Pipeline& pipeline, const CameraPath& 
                           .pixel_spacing = 1e-6});
     how.wait = true;
     how.frames_folder.reset();
+    how.take_frame = nullptr;
     how.soak = 0;
     LUCARNE_ASSIGN(Flight flight, fly(pipeline, path, how));
     pipeline.set_budgets(budgets);
@@ -124,7 +129,15 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     how.soak = options.soak;
     how.frame_time = options.frame_time_ms * 1e-3;
     if (!plan.frames_folder.empty()) how.frames_folder = plan.frames_folder;
+    const std::atomic<bool> stop{false};
+    std::unique_ptr<VideoWriter> video;
+    if (!options.video.empty()) {
+        LUCARNE_ASSIGN(video, VideoWriter::start(options.video, how.size, path.frames_per_second,
+                                                 options.overwrite, stop));
+        how.take_frame = [&](const io::Image8& picture, size_t) { return video->add(picture); };
+    }
     LUCARNE_ASSIGN(Flight flight, fly(*pipeline, path, how));
+    if (video) LUCARNE_TRY(video->finish());
     if (options.popping) {
         LUCARNE_ASSIGN(conditions.full, fly_at_full_resolution(*pipeline, path, how));
     }
@@ -228,6 +241,10 @@ void add_fly(CLI::App& app, Command& chosen) {
         ->type_name("SECONDS");
     command->add_option("--frames-dir", options->frames_folder,
                         "Write every frame there, frame_00001.png and so on (for a video: README.md)");
+    command
+        ->add_option("--video", options->video,
+                     "Make a video of all frames by ffmpeg, where that is installed: FILE.mp4, .mkv, .webm")
+        ->type_name("FILE");
     command->add_flag("--flicker", options->flicker,
                       "Also report every frame's mean luminance and how much surfaces' light changes");
     command->add_flag("--popping", options->popping,

@@ -9,7 +9,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "gi/compare/edges.h"
@@ -24,8 +23,7 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
 #include "viewer/inputs.h"
-#include "viewer/overlay/draw_marks.h"
-#include "viewer/overlay/figure_scale.h"
+#include "viewer/show/finished_picture.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -36,7 +34,8 @@ struct RenderOptions {
     DrawingOptions drawing;
     uint32_t frames = 1;
     double seconds = 0;
-    bool first = false, layers = false, overwrite = false;
+    PictureFinish finish;
+    bool first = false, layers = false, no_overlay = false, overwrite = false;
 };
 
 enum class PictureKind { png, exr };
@@ -114,28 +113,13 @@ nlohmann::json report(const Rendered& rendered, const Pipeline& pipeline, const 
             {"statistics", engine}};
 }
 
-/// What the look wants over the picture; texts grow with it.
-void draw_overlay(const Pipeline& pipeline, const gi::SceneCamera& camera, io::Image8& picture) {
-    const int scale = std::max(static_cast<int>(picture.height / 540), 1);
-    OverlayView view;
-    view.camera = camera;
-    view.distance = glm::distance(camera.position, camera.target);
-    view.metres_per_unit = pipeline.source().header().metres_per_unit;
-    view.size = {picture.width, picture.height};
-    view.font = 13.0 * scale;
-    draw_marks(overlay(pipeline.scene().look, pipeline.values(), view), scale, picture);
-    draw_marks(figure_scale(pipeline.scene(), pipeline.exposure_ev(), view), scale, picture);
-}
-
 Result<void> write_picture(const RenderOptions& options, PictureKind kind, const Pipeline& pipeline,
                            const gi::SceneCamera& camera, io::Image radiance) {
-    if (kind == PictureKind::exr) return io::write_exr(options.output, radiance, options.overwrite);
-    io::Image8 picture{radiance.width, radiance.height, {}};
-    picture.bytes.reserve(radiance.pixels.size() * 3);
-    for (const uint32_t rgba : pipeline.picture().download_all<uint32_t>(radiance.pixels.size()))
-        for (const int shift : {0, 8, 16}) picture.bytes.push_back(static_cast<uint8_t>(rgba >> shift));
-    draw_overlay(pipeline, camera, picture);
-    return io::write_png(options.output, picture, options.overwrite);
+    if (kind == PictureKind::png)
+        return io::write_png(options.output, finished_picture(pipeline, camera, options.finish),
+                             options.overwrite);
+    if (options.finish.transparent) clear_where_nothing_is(pipeline, radiance);
+    return io::write_exr(options.output, radiance, options.overwrite, options.finish.transparent);
 }
 
 /// The files of the engine's further pictures: OUT.exr has OUT.stderr.exr beside it.
@@ -253,8 +237,15 @@ void add_render(CLI::App& app, Command& chosen) {
                       "Also write what else the engine knows, beside the picture (reference: "
                       "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
                       "OUT.b.exr by half the paths each)");
+    command->add_flag("--transparent", options->finish.transparent,
+                      "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
+    command->add_flag("--no-overlay", options->no_overlay,
+                      "Without the legend, axes and scale bar that the scene asks for");
     command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
-    command->callback([options, &chosen] { chosen = [options] { return render(*options); }; });
+    command->callback([options, &chosen] {
+        options->finish.overlays = !options->no_overlay;
+        chosen = [options] { return render(*options); };
+    });
 }
 
 }  // namespace lucarne::viewer

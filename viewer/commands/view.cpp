@@ -14,6 +14,7 @@
 #include "octree/bulk.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/flythrough/path.h"
 #include "viewer/input.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/view_session.h"
@@ -23,7 +24,7 @@ namespace {
 
 struct ViewOptions {
     InputOptions input;
-    std::string camera, screenshot, measurements;
+    std::string camera, screenshot, measurements, path;
     DrawingOptions drawing;
     uint32_t frames = 1;
     double frame_time_ms = 100;
@@ -63,6 +64,10 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
         model.measure.file = options.measurements;
         model.measure.wish = MeasureModel::FileWish::load;
     }
+    if (!options.path.empty()) {
+        model.show.path_file = options.path;
+        model.show.wish = ShowModel::Wish::load_path;
+    }
     return model;
 }
 
@@ -82,10 +87,9 @@ Result<void> view(ViewOptions options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     LUCARNE_TRY(check_scene(options));
     if (!options.measurements.empty()) LUCARNE_TRY(load_measurements(options.measurements, std::nullopt));
+    if (!options.path.empty()) LUCARNE_TRY(load_path(options.path));
     std::optional<ScriptedShot> shot;
     if (!options.screenshot.empty()) {
-        if (options.input.paths.empty())
-            return bad_arguments("--screenshot", "there is nothing to look at", "name an INPUT");
         LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
@@ -104,7 +108,7 @@ Result<void> view(ViewOptions options) {
     LUCARNE_ASSIGN(const auto window, Window::open(size, "Lucarne"));
     awake = true;
     LUCARNE_ASSIGN(const auto worker,
-                   PictureWorker::start(window->worker_device(), nullptr, drawing.caps, &Window::wake));
+                   PictureWorker::start(window->worker_device(Window::Hidden::view), nullptr, drawing.caps, &Window::wake));
     ViewModel model = first_model(options, drawing);
     model.device = worker->device();
     model.shell.scans = &scans;
@@ -138,9 +142,10 @@ void add_view(CLI::App& app, Command& chosen) {
         ->type_name("MS");
     command->add_option("--measurements", options->measurements, "Show these measurements, as the window saves them")
         ->type_name("FILE.json");
+    command->add_option("--path", options->path, "Show and edit this flythrough")->type_name("P.json");
     command->add_option("--screenshot", options->screenshot,
-                        "Save the window as this PNG once it is whole, and close");
-    command->add_option("--frames", options->frames, "Whole pictures to wait for with --screenshot")
+                        "Save the window as this PNG once its picture is whole, and close");
+    command->add_option("--frames", options->frames, "Whole pictures to average with --screenshot")
         ->check(CLI::Range(1u, 256u))
         ->capture_default_str();
     command->add_flag("--overwrite", options->overwrite, "Replace the screenshot's file");

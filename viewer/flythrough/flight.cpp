@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/compare/metrics.h"
+#include "io/core/file.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
 #include "viewer/cost_model.h"
@@ -36,9 +37,15 @@ std::vector<std::byte> shown(const Pipeline& pipeline, ImageSize size) {
     return pipeline.picture().download_all<std::byte>(size_t{size.width} * size.height * 4);
 }
 
-Result<void> write_frame(const Pipeline& pipeline, const FlightOptions& options, size_t number) {
-    return io::write_png(*options.frames_folder / fmt::format("frame_{:05}.png", number),
-                         without_alpha(shown(pipeline, options.size), options.size), options.overwrite);
+std::filesystem::path frame_file(const std::filesystem::path& folder, size_t number) {
+    return folder / fmt::format("frame_{:05}.png", number);
+}
+
+Result<void> hand_over(const Pipeline& pipeline, const FlightOptions& options, size_t number) {
+    const io::Image8 picture = without_alpha(shown(pipeline, options.size), options.size);
+    if (options.frames_folder)
+        LUCARNE_TRY(io::write_png(frame_file(*options.frames_folder, number), picture, options.overwrite));
+    return options.take_frame ? options.take_frame(picture, number) : Result<void>();
 }
 
 /// What is measured of a frame against the one before, which it becomes.
@@ -161,8 +168,8 @@ struct Flying {
         budgets.observe(frame.stats);
         record.add(std::move(frame));
         progress.add(1);
-        if (!options.frames_folder) return {};
-        return clock.while_stopped([&] { return write_frame(pipeline, options, record.flown()); });
+        if (!options.frames_folder && !options.take_frame) return {};
+        return clock.while_stopped([&] { return hand_over(pipeline, options, record.flown()); });
     }
 };
 
@@ -173,6 +180,13 @@ MemoryUse memory_now(const Record& record) {
 }
 
 }  // namespace
+
+Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool overwrite) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return failed(folder.string(), error.message(), "name a folder that can be written");
+    return check_output(frame_file(folder, 1), overwrite);
+}
 
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
     const bool known_length = options.wait && options.soak == 0;

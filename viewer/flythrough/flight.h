@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/image/image.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/flythrough/report.h"
 
@@ -17,6 +18,8 @@ struct FlightOptions {
     bool wait = true;
     std::optional<std::filesystem::path> frames_folder;  ///< frame_00001.png and so on
     bool overwrite = false;
+    /// Takes the picture of every frame, too; the first has the number 1. An error ends the flight.
+    std::function<Result<void>(const io::Image8& picture, size_t number)> take_frame{};
     bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance, while the clock stands still
     bool changes = false;  ///< measure FlownFrame::change, likewise
     double soak = 0;       ///< s; the path is flown again and again for at least so long
@@ -31,6 +34,10 @@ struct Flight {
 };
 
 inline constexpr size_t kLongestRecord = 8192;
+
+/// Makes the folder for frames where it is missing. Errors: it cannot be made; there are frames in it
+/// already.
+Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool overwrite);
 
 /// Flies a pipeline that is set up along a path. Frames are written and measured while the clock stands
 /// still, so that this slows nothing down that is measured. Errors: the pipeline's, a frame that cannot be

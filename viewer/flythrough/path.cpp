@@ -21,6 +21,22 @@ double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
 
+/// Those that radians() makes the same angle of again, the roundest of them; degrees that no file could have
+/// said are as near as doubles are.
+double degrees(double angle) {
+    const double exact = angle * 180 / std::numbers::pi;
+    const double round = std::round(exact * 1e9) / 1e9;
+    if (radians(round) == angle) return round;
+    double below = exact, above = exact;
+    for (int step = 0; step < 4; ++step) {  // rounding is off by less
+        if (radians(below) == angle) return below;
+        if (radians(above) == angle) return above;
+        below = std::nextafter(below, 0.0);
+        above = std::nextafter(above, 360.0);
+    }
+    return exact;
+}
+
 /// The curve of one quantity around `time`, which lies in [keys[i].time, keys[i + 1].time].
 template <class Get>
 auto interpolate(const std::vector<KeyFrame>& keys, size_t i, double time, const Get& get) {
@@ -95,6 +111,19 @@ Result<CameraPath> parse_path(std::string_view text, const std::string& name) {
     if (path.duration() * path.frames_per_second > kMostFrames)
         return root.wrong("gives more than a million frames with these times", "frames_per_second");
     return path;
+}
+
+std::string path_text(const CameraPath& path) {
+    using Json = nlohmann::ordered_json;
+    const auto vector = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
+    Json keys = Json::array();
+    for (const KeyFrame& key : path.keys)
+        keys.push_back({{"time", key.time},
+                        {"position", vector(key.camera.position)},
+                        {"target", vector(key.camera.target)},
+                        {"up", vector(key.camera.up)},
+                        {"fov", degrees(key.camera.vertical_fov)}});
+    return Json{{"frames_per_second", path.frames_per_second}, {"keys", keys}}.dump(2) + "\n";
 }
 
 Result<CameraPath> load_path(const std::filesystem::path& path) {

@@ -34,5 +34,8 @@ struct CameraPath {
 /// Errors name the file and the place: the line for syntax, the JSON pointer for everything else.
 Result<CameraPath> load_path(const std::filesystem::path& path);
 Result<CameraPath> parse_path(std::string_view text, const std::string& name);
+/// The text of a path's file. Of a path that was parsed: parse_path() gives the same numbers again, to the
+/// last bit.
+std::string path_text(const CameraPath& path);
 
 }  // namespace lucarne::viewer

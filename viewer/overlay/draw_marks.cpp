@@ -10,17 +10,30 @@
 namespace lucarne::viewer {
 namespace {
 
+uint8_t byte_of(float value) {
+    return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 255.0f)));
+}
+
 class Canvas {
  public:
     explicit Canvas(io::Image8& picture) : picture_(picture) {}
 
     void blend(int64_t x, int64_t y, const glm::vec3& colour, float opacity) {
         if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height) return;
-        const size_t at = 3 * (static_cast<size_t>(y) * picture_.width + static_cast<size_t>(x));
+        const size_t pixel = static_cast<size_t>(y) * picture_.width + static_cast<size_t>(x);
+        float share = opacity;  // of the mark's colour in the mixture
+        if (!picture_.alpha.empty()) {
+            // Porter & Duff ("Compositing digital images", 1984), "over", for colours that opacity is not
+            // multiplied into.
+            uint8_t& alpha = picture_.alpha[pixel];
+            const float both = opacity + static_cast<float>(alpha) / 255.0f * (1 - opacity);
+            if (both <= 0) return;
+            share = opacity / both;
+            alpha = byte_of(255.0f * both);
+        }
         for (int i = 0; i < 3; ++i) {
-            uint8_t& channel = picture_.bytes[at + static_cast<size_t>(i)];
-            const float mixed = glm::mix(static_cast<float>(channel), 255.0f * colour[i], opacity);
-            channel = static_cast<uint8_t>(std::lround(std::clamp(mixed, 0.0f, 255.0f)));
+            uint8_t& channel = picture_.bytes[3 * pixel + static_cast<size_t>(i)];
+            channel = byte_of(glm::mix(static_cast<float>(channel), 255.0f * colour[i], share));
         }
     }
     void area(const Mark& mark) {

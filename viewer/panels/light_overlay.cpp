@@ -151,8 +151,7 @@ void draw_convergence(const ViewModel& model) {
         model.picture->moving ? 0 : static_cast<float>(model.picture->stats.accumulated) / kMostAccumulated;
     const float font = ImGui::GetFontSize(), radius = 0.7f * font;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const auto left = static_cast<float>(model.side_bar().pixels(font, size.x));
-    const ImVec2 centre((left + size.x) / 2, size.y - 1.2f * font);
+    const ImVec2 centre(size.x - 7 * font, size.y - 1.2f * font);  // the line of messages is in the middle
     constexpr float kTop = -std::numbers::pi_v<float> / 2;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     list.AddCircleFilled(centre, radius + scaled(4), kPaper);

@@ -24,12 +24,15 @@ void draw_sky(ViewModel& model);
 void draw_emitters(ViewModel& model);
 void draw_measure_panel(ViewModel& model);     ///< tools, measurements, points
 void draw_bookmarks_panel(ViewModel& model);
+void draw_flythrough_panel(ViewModel& model);  ///< key frames, preview, rendering
+void draw_picture_panel(ViewModel& model);     ///< a picture of any size
 void draw_statistics_panel(ViewModel& model);  ///< the last picture's figures
 void draw_controller_panel(ViewModel& model);  ///< its mapping
 /// A part of a section under a line of its own; whether it is open.
 bool fold(const char* label);
 
-void draw_measurements(ViewModel& model);  ///< over the picture
+void draw_measurements(ViewModel& model);      ///< over the picture
+void draw_flythrough(const ViewModel& model);  ///< the path over it
 void draw_help(ViewModel& model);          ///< every action and gesture
 void draw_overlay(const ViewModel& model);    ///< legend, axes, scale bar
 /// Draws clip boxes and their handles, and lets the mouse drag those; true while it does.

@@ -23,6 +23,8 @@ constexpr std::array<SectionEntry, kSections> kEntries = {{
     {"Light", draw_light_panel, true},
     {"Measure", draw_measure_panel, true},
     {"Bookmarks", draw_bookmarks_panel, true},
+    {"Flythrough", draw_flythrough_panel, true},
+    {"Save a picture", draw_picture_panel, true},
     {"Statistics", draw_statistics_panel, true},
     {"6-DoF controller", draw_controller_panel, false},
 }};

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/core/process.h"
 #include "viewer/scan_list.h"
 
 extern char** environ;
@@ -21,15 +22,6 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostOutput = size_t{1} << 20;  ///< bytes
-
-bool installed(const std::string& program) {
-    const char* path = std::getenv("PATH");
-    std::istringstream folders(path ? path : "");
-    for (std::string folder; std::getline(folders, folder, ':');)
-        if (!folder.empty() && access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0)
-            return true;
-    return false;
-}
 
 std::string patterns() {
     std::string all = "*.luc";
@@ -48,7 +40,7 @@ std::vector<std::string> NativeDialog::programs() {
     const char* desktop = std::getenv("XDG_CURRENT_DESKTOP");
     std::vector<std::string> names = {"zenity", "kdialog"};
     if (desktop && std::string(desktop).find("KDE") != std::string::npos) std::swap(names[0], names[1]);
-    std::erase_if(names, [](const std::string& name) { return !installed(name); });
+    std::erase_if(names, [](const std::string& name) { return !program_installed(name); });
     return names;
 }
 

@@ -1,65 +1,14 @@
 #include "viewer/tools/overlay.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "viewer/tools/pick.h"
+#include "viewer/tools/overlay_layout.h"
 
 namespace lucarne::viewer {
 namespace {
-
-constexpr int kPieces = 48;  ///< of a line, each seen or hidden
-
-class Layout {
- public:
-    Layout(const Picture& picture, const glm::dvec2& window, Overlay& overlay)
-        : picture_(picture), overlay_(overlay) {
-        const glm::dvec2 size(picture.size.width, picture.size.height);
-        scale_ = std::max(window.x / size.x, window.y / size.y);
-        corner_ = window / 2.0 - size * scale_ / 2.0;
-    }
-
-    void mark(const glm::dvec3& world, size_t measurement) {
-        if (const auto at = place(world)) overlay_.marks.push_back({at->first, at->second, measurement});
-    }
-    void label(const glm::dvec3& world, std::string text, size_t measurement) {
-        if (const auto at = place(world))
-            overlay_.labels.push_back({at->first, std::move(text), at->second, measurement});
-    }
-    /// Neighbouring pieces that are seen alike are one line.
-    void line(const glm::dvec3& from, const glm::dvec3& to, size_t measurement) {
-        auto before = place(from);
-        bool open = false;
-        for (int i = 1; i <= kPieces; ++i) {
-            const auto at = place(from + (to - from) * (static_cast<double>(i) / kPieces));
-            if (at && before) {
-                const bool hidden_piece = at->second && before->second;
-                if (open && overlay_.lines.back().hidden == hidden_piece)
-                    overlay_.lines.back().to = at->first;
-                else
-                    overlay_.lines.push_back({before->first, at->first, hidden_piece, measurement});
-            }
-            open = at && before;
-            before = at;
-        }
-    }
-
- private:
-    std::optional<std::pair<glm::dvec2, bool>> place(const glm::dvec3& world) const {
-        const auto projected = project(picture_, world);
-        if (!projected || glm::length(projected->pixel) > 1e6) return std::nullopt;
-        return std::pair(corner_ + projected->pixel * scale_, hidden(picture_, *projected));
-    }
-
-    const Picture& picture_;
-    Overlay& overlay_;
-    double scale_ = 1;
-    glm::dvec2 corner_{0.0};
-};
 
 std::vector<glm::dvec3> positions(const Measurement& m) {
     std::vector<glm::dvec3> all;
@@ -68,7 +17,7 @@ std::vector<glm::dvec3> positions(const Measurement& m) {
 }
 
 /// The edges of a slice on the map, at the height of its ends.
-void slice_lines(Layout& layout, const Measurement& m, const std::vector<glm::dvec3>& at, size_t index) {
+void slice_lines(OverlayLayout& layout, const Measurement& m, const std::vector<glm::dvec3>& at, size_t index) {
     const glm::dvec2 along(at[1].x - at[0].x, at[1].y - at[0].y);
     const double length = glm::length(along);
     if (!(length > 0)) return;
@@ -80,7 +29,7 @@ void slice_lines(Layout& layout, const Measurement& m, const std::vector<glm::dv
     }
 }
 
-void add(Layout& layout, const Measurement& m, size_t index, const UnitChoice& units) {
+void add(OverlayLayout& layout, const Measurement& m, size_t index, const UnitChoice& units) {
     const std::vector<glm::dvec3> at = positions(m);
     if (at.empty()) return;
     for (const glm::dvec3& point : at) layout.mark(point, index);
@@ -122,7 +71,7 @@ std::string label_text(const Measurement& measurement, const UnitChoice& units) 
 Overlay overlay_of(std::span<const Measurement> all, const Picture& picture, const glm::dvec2& window,
                    const UnitChoice& units) {
     Overlay overlay;
-    Layout layout(picture, window, overlay);
+    OverlayLayout layout(picture, window, overlay);
     for (size_t i = 0; i < all.size(); ++i) add(layout, all[i], i, units);
     return overlay;
 }

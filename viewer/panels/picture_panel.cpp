@@ -1,0 +1,28 @@
+// Pictures of any size, saved under a chosen name.
+#include <algorithm>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "viewer/panels/panels.h"
+#include "viewer/panels/render_progress.h"
+
+namespace lucarne::viewer {
+
+void draw_picture_panel(ViewModel& model) {
+    ShowModel& show = model.show;
+    size_fields("size", show.width, show.height);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    if (ImGui::Button("the window's size")) {
+        show.width = static_cast<int>(display.x);
+        show.height = static_cast<int>(display.y);
+    }
+    ImGui::InputInt("averaged", &show.frames);
+    show.frames = std::clamp(show.frames, 1, kMostAveraged);
+    ImGui::Checkbox("transparent where no point is", &show.finish.transparent);
+    ImGui::Checkbox("legend, axes and scale bar", &show.finish.overlays);
+    ImGui::InputText("file", &show.picture_file);
+    if (render_progress(show) && ImGui::Button("Save")) show.wish = ShowModel::Wish::picture;
+}
+
+}  // namespace lucarne::viewer

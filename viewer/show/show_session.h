@@ -1,0 +1,28 @@
+#pragma once
+
+#include "viewer/show/render_worker.h"
+#include "viewer/view_model.h"
+
+namespace lucarne::viewer {
+
+/// Pictures and flights in the window: wishes are fulfilled, the preview moves the camera.
+class ShowSession {
+ public:
+    /// `device`: a new one, for each thing that is rendered; `changed` is called by any thread.
+    ShowSession(std::function<Result<WorkerDevice>()> device, std::function<void()> changed)
+        : device_(std::move(device)), worker_(std::move(changed)) {}
+
+    /// Between the window's begin_frame and draw. True where the preview has moved the camera.
+    bool follow(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source);
+
+ private:
+    void fulfil(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source);
+    void path_files(ViewModel& model, bool save);
+    Result<void> render(RenderOrder order);
+
+    std::function<Result<WorkerDevice>()> device_;
+    RenderWorker worker_;
+    std::filesystem::path own_path_;  ///< saved or loaded before: may be written over
+};
+
+}  // namespace lucarne::viewer
