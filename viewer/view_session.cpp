@@ -233,9 +233,11 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
+    // Not WantCaptureKeyboard, which holds as long as the mouse holds anything, and a frame longer: keys would be
+    // lost.
     if (model_.shell.ask_to_close)
         desk_.answer(keys);
-    else if (!io.WantCaptureKeyboard)
+    else if (!io.WantTextInput)
         run_actions(model_, keys);
     if (legend_.take(model_) || take_clip_handles(model_) || take_light_handles(model_)) return;
     measure_.take_input(model_);

@@ -106,8 +106,8 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     const std::string path = folder_ / "flythrough.json";
     xdo("key alt+s");
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(path); })) << "flythrough";
-    const Outcome flown = lucarne("fly " + cache_ + " --path " + path +
-                                  " --engine direct --size 16x12 -o " + (folder_ / "report.json"));
+    const Outcome flown = lucarne("fly " + cache_ + " --path " + path + " --engine direct --size 16x12 -o " +
+                                  (folder_ / "report.json"));
     EXPECT_EQ(flown.code, 0) << flown.output;
 
     const std::string shot = folder_ / "picture.png";
