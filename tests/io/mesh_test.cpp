@@ -209,6 +209,21 @@ TEST_F(MeshScan, NormalsAreTheFacesOrInterpolated) {
         ASSERT_LT(glm::length(triple(i, "normal") - glm::normalize(position(i))), 0.01);
 }
 
+TEST_F(MeshScan, NormalsAndCoordinatesThatNoFaceNamesAreNotThoseOfOtherVertices) {
+    // One for four vertices: fuzz_obj read behind its end.
+    read("vn 1 0 0\n" + kSquare, every(0.05));
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
+    // As many as vertices, though, are theirs.
+    read("vn 1 0 0\nvn 1 0 0\nvn 1 0 0\nvn 1 0 0\n" + kSquare, every(0.05));
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(1, 0, 0));
+
+    put_picture("p.png");
+    put("m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd p.png\n");
+    put("a.obj", "mtllib m.mtl\nvt 0 0\nusemtl painted\n" + kSquare);
+    read_folder("a.obj", every(0.05));
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "color"), glm::dvec3(0)) << "of the material";
+}
+
 TEST_F(MeshScan, TexturesStandUpright) {
     put_picture("a b.png");
     put("m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd -blendu on a b.png\n");

@@ -48,6 +48,9 @@ void Mesh::add(std::span<const Corner> polygon, uint32_t material, std::optional
 }
 
 void Mesh::finish() {
+    // Where no corner names them they are those of the positions, if there is one for each.
+    if (normal_corners.empty() && normals.size() != positions.size()) normals.clear();
+    if (coordinate_corners.empty() && coordinates.size() != positions.size()) coordinates.clear();
     const auto each_list = [&](const auto& call) {
         for (auto* list : {&coordinate_corners, &normal_corners}) call(*list, Corners{kNone, kNone, kNone});
         call(face_colors, Color8{});
