@@ -91,7 +91,7 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     LUCARNE_ASSIGN(viewer::CameraPath path, viewer::load_path(kPath));
     path.frames_per_second = way.frames_per_second;
     while (path.keys.size() > 2 && path.keys.back().time > way.seconds) path.keys.pop_back();
-    viewer::FlightOptions how{way.size, way.wait, {}, false, true};
+    const viewer::FlightOptions how{.size = way.size, .wait = way.wait, .flicker = true};
     LUCARNE_ASSIGN(viewer::Flight flight, viewer::fly(*pipeline, path, how));
     return Flown{std::move(flight.frames)};
 }
