@@ -59,7 +59,10 @@ namespace {
 Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& request, uint64_t number,
                   Told& told) {
     if (told.request == number) return {};
-    if (told.shader_version != request.shader_version) device.reload_shaders();
+    if (told.shader_version != request.shader_version) {
+        device.reload_shaders();
+        told.engine.clear();  // set anew, which begins the average again
+    }
     told.shader_version = request.shader_version;
     if (told.scene_version != request.scene_version) LUCARNE_TRY(pipeline.set_scene(request.scene));
     told.scene_version = request.scene_version;

@@ -80,6 +80,7 @@ double ViewSession::seconds_at_rest() const {
 }
 
 void ViewSession::take_picture() {
+    if (!scans_.source()) return;  // the worker may not know yet that the last scan was closed
     const auto latest = worker_.latest();
     if (!latest || (model_.picture && latest->number == model_.picture->number)) return;
     model_.picture = latest;

@@ -144,17 +144,17 @@ Window::~Window() {
     if (initialised_) glfwTerminate();
 }
 
-Result<std::unique_ptr<gi::Device>> Window::own_device(Hidden which) {
-    if (software_)
+Result<std::unique_ptr<gi::Device>> Window::own_device(Hidden which, bool software) {
+    if (software)
         if (auto device = gi::Device::headless()) return device;
     glfwMakeContextCurrent(hidden_[static_cast<size_t>(which)]);
     return gi::Device::current();
 }
 
 WorkerDevice Window::worker_device(Hidden which) {
-    return {[this, which] {
+    return {[this, which, software = software_] {
                 give_way();
-                auto device = own_device(which);
+                auto device = own_device(which, software);
                 if (which != Hidden::view) return device;
                 if (const auto checks = worker_losses_.next(); checks && device)
                     (*device)->lose_after(*checks);

@@ -95,7 +95,7 @@ class Window {
     };
 
     Window() = default;
-    Result<std::unique_ptr<gi::Device>> own_device(Hidden which);
+    Result<std::unique_ptr<gi::Device>> own_device(Hidden which, bool software);
     void draw_picture(ImageSize size);
     double screen_scale() const;  ///< 1: of about 96 dots an inch
     void fit_text();

@@ -38,6 +38,13 @@ TEST(Fly, WaitingGivesTheSamePicturesOnEveryRunAndAReport) {
     EXPECT_NE(bytes_of(folder.path() / "a/frame_00001.png"), bytes_of(folder.path() / "a/frame_00003.png"));
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "a/frame_00004.png"));
 
+    std::filesystem::create_directory(folder.path() / "other");
+    write(folder / "other/frame_00120.png", "of another flight");
+    const Outcome mixed = test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48" +
+                                        " --frames-dir " + (folder / "other") + " -o " + (folder / "c.json"));
+    EXPECT_EQ(mixed.code, 1) << mixed.output;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "other/frame_00001.png")) << "two flights are mixed";
+
     const auto report = nlohmann::json::parse(bytes_of(folder / "a.json"));
     EXPECT_EQ(report["frames"], 3);
     EXPECT_EQ(report["mode"], "wait");

@@ -104,7 +104,7 @@ TEST_F(Video, OverwritesNothing) {
     std::ofstream(folder_ / "late.mp4") << "precious";
     EXPECT_FALSE((*video)->finish());
     EXPECT_EQ(test::bytes_of(folder_ / "late.mp4"), "precious");
-    EXPECT_FALSE(start("ending"));
+    for (const char* name : {"ending", "list.m3u8", "frames.png"}) EXPECT_FALSE(start(name)) << name;
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Result<std::vector<double>> parse_numbers(std::string_view option, std::string_v
 Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
     const bool turned = std::ranges::count(text, ',') == 6;
     LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', turned ? 7 : 6));
-    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, turned ? glm::radians(n[6]) : 0, inverted};
+    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, turned ? glm::radians(std::remainder(n[6], 360.0)) : 0, inverted};
     if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
         return bad_arguments(std::string(option),
                              fmt::format("'{}' has its second corner below its first", text),

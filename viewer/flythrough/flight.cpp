@@ -37,8 +37,10 @@ std::vector<std::byte> shown(const Pipeline& pipeline, ImageSize size) {
     return pipeline.picture().download_all<std::byte>(size_t{size.width} * size.height * 4);
 }
 
+constexpr std::string_view kFramePrefix = "frame_";
+
 std::filesystem::path frame_file(const std::filesystem::path& folder, size_t number) {
-    return folder / fmt::format("frame_{:05}.png", number);
+    return folder / fmt::format("{}{:05}.png", kFramePrefix, number);
 }
 
 Result<void> hand_over(const Pipeline& pipeline, const FlightOptions& options, size_t number) {
@@ -185,7 +187,14 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return failed(folder.string(), error.message(), "name a folder that can be written");
-    return check_output(frame_file(folder, 1), overwrite);
+    if (overwrite) return {};
+    // Any frame of another flight would be mixed with this one's.
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(kFramePrefix) && name.ends_with(".png")) return check_output(entry->path(), false);
+    }
+    if (error) return failed(folder.string(), error.message());
+    return {};
 }
 
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {

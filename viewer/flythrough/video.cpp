@@ -1,5 +1,6 @@
 #include "viewer/flythrough/video.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -37,9 +38,11 @@ Result<void> VideoWriter::check(const std::filesystem::path& file, bool overwrit
     if (!program_installed(kProgram))
         return failed(file.string(), "ffmpeg, which makes videos, is not installed",
                       "install it, or write numbered PNG frames instead");
-    if (file.extension().empty())
+    // Others may be lists of more files, which would stay where a flight is given up.
+    constexpr std::array<std::string_view, 5> kEndings = {".mp4", ".mkv", ".webm", ".mov", ".avi"};
+    if (std::ranges::find(kEndings, file.extension().string()) == kEndings.end())
         return bad_arguments(file.string(), "has no ending that says what kind of video it is",
-                             "name it .mp4, .mkv or .webm");
+                             "name it .mp4, .mkv, .webm, .mov or .avi");
     return check_output(file, overwrite);
 }
 
@@ -48,6 +51,7 @@ std::vector<std::string> VideoWriter::command(const std::filesystem::path& outpu
     // Players want 4:2:0, and that an even number of pixels: odd sides get one row or column of black.
     return {kProgram,      "-hide_banner",
             "-loglevel",   "error",
+            "-xerror",  // a full disk at the very end would pass for success
             "-f",          "rawvideo",
             "-pix_fmt",    "rgb24",
             "-video_size", fmt::format("{}x{}", size.width, size.height),
@@ -170,6 +174,9 @@ Result<void> VideoWriter::finish() {
         words_ >= 0 ? read_words(kLook) : static_cast<void>(poll(nullptr, 0, kLook));
         ended = waitpid(pid_, &status, WNOHANG);
         if (ended < 0 && errno == EINTR) ended = 0;
+        if (ended >= 0) continue;
+        pid_ = -1;  // who ignores SIGCHLD is not told how it ended
+        return failed(file_.string(), "how ffmpeg ended is not known: " + std::generic_category().message(errno));
     }
     pid_ = -1;
     for (size_t before = said_.size() + 1; words_ >= 0 && said_.size() != before;) {

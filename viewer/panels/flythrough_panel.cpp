@@ -59,10 +59,14 @@ void key_buttons(ViewModel& model) {
     ImGui::Checkbox("draw the path", &show.draw_path);
 }
 
-/// Taken once the user is done with the field, so that half a number is no error.
+/// Taken once the user is done with the field, so that half a number is no error. ImGui says "changed" in each frame
+/// in which the text is another number than `value`: the last of them counts, unless it was taken back.
 template <class Take>
 void number_field(ShowModel& show, const char* label, double value, const Take& take) {
-    if (ImGui::InputDouble(label, &value, 0, 0, "%.6g")) show.typed = value;
+    if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))
+        show.typed = value;
+    else if (ImGui::IsItemActive() || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+        show.typed.reset();
     if (!ImGui::IsItemDeactivatedAfterEdit() || !show.typed) return;
     take(*show.typed);
     show.typed.reset();

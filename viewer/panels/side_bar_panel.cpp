@@ -1,6 +1,8 @@
 // The one bar that all panels stand in, so that none covers another and each can be reached in a small
 // window.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <imgui.h>
 
@@ -70,8 +72,9 @@ void draw_side_bar(ViewModel& model, bool has_view) {
     ImGui::SetNextWindowPos(ImVec2(0, top));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     // Its right edge can be dragged, its height cannot.
-    ImGui::SetNextWindowSizeConstraints(ImVec2(static_cast<float>(SideBar::kLeast) * font, height),
-                                        ImVec2(0.6f * window.x, height));
+    const auto widest = static_cast<float>(SideBar{.width = SideBar::kMost}.pixels(font, window.x));
+    const float narrowest = std::min(static_cast<float>(SideBar::kLeast) * font, widest);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(narrowest, height), ImVec2(widest, height));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
     ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
@@ -80,7 +83,9 @@ void draw_side_bar(ViewModel& model, bool has_view) {
     if (!ImGui::IsAnyItemActive()) flags |= ImGuiWindowFlags_NoNavInputs;
     if (ImGui::Begin("##side bar", nullptr, flags)) {
         const float dragged = ImGui::GetWindowWidth();
-        if (dragged != width) bar.width = static_cast<double>(dragged / font);
+        // ImGui floors sizes: only a whole pixel more or less, and only by the mouse, is the user's will.
+        if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && std::abs(dragged - width) >= 1)
+            bar.width = std::clamp(static_cast<double>(dragged / font), SideBar::kLeast, SideBar::kMost);
         ImGui::PushItemWidth(-9 * font);  // leaves room for labels
         for (size_t i = 0; i < kSections; ++i)
             if (is_there(model, static_cast<BarSection>(i), has_view))

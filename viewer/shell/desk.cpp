@@ -121,11 +121,13 @@ void Desk::draw() {
 
 bool Desk::closing(bool at_once) {
     if (!model_.close && !window_.closing()) return model_.shell.close_now;
-    if (at_once || !scans_.converting()) return true;
+    const bool rendering = model_.show.rendering.running;
+    if (at_once || !(scans_.converting() || rendering)) return true;
     model_.close = false;
     window_.stay();
     if (!std::exchange(model_.shell.ask_to_close, true))
-        log::info("a scan is being converted: asked whether to close all the same");
+        log::info("{}: asked whether to close all the same",
+                  rendering ? "a picture or flight is being rendered" : "a scan is being converted");
     return false;
 }
 

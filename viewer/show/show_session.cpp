@@ -70,10 +70,10 @@ bool ShowSession::follow(ViewModel& model, const std::shared_ptr<const octree::N
     ShowModel& show = model.show;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     show.set_sizes(static_cast<int>(window.x), static_cast<int>(window.y));
+    if (auto outcome = worker_.take_outcome())  // before the next order forgets it
+        show.message = *outcome ? std::move(**outcome) : outcome->error().line();
     fulfil(model, source);
     show.rendering = worker_.state();
-    if (auto outcome = worker_.take_outcome())
-        show.message = *outcome ? std::move(**outcome) : outcome->error().line();
     if (!show.message.empty()) model.message = std::exchange(show.message, {});
     show.advance(ImGui::GetIO().DeltaTime);
     if (!std::exchange(show.sought, false) || show.editor.empty()) return false;
