@@ -65,8 +65,14 @@ Result<Scans> open_scans(const InputOptions& options) {
     return scans;
 }
 
-bool has_octree(const std::vector<std::string>& paths) {
-    return std::ranges::any_of(paths, [](const auto& path) { return octree::is_octree(path); });
+/// Whether octrees are among them, which are opened as they are.
+bool has_octree(const InputOptions& options) {
+    const auto found =
+        std::ranges::find_if(options.paths, [](const auto& path) { return octree::is_octree(path); });
+    if (found == options.paths.end()) return false;
+    if (options.read.metres_per_unit)
+        log::warn("{}: is an octree and keeps its unit; --unit is for scans that are converted", *found);
+    return true;
 }
 
 }  // namespace
@@ -137,7 +143,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
 
 Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening) {
     OpenInput open;
-    if (has_octree(options.paths)) {
+    if (has_octree(options)) {
         LUCARNE_ASSIGN(open.source, open_inputs(options.paths));
         return open;
     }
@@ -158,7 +164,7 @@ Result<OpenInput> open_growing(const InputOptions& options, const Opening& openi
 }
 
 Result<Source> open_input(const InputOptions& options) {
-    if (has_octree(options.paths)) return open_inputs(options.paths);
+    if (has_octree(options)) return open_inputs(options.paths);
     LUCARNE_ASSIGN(Scans scans, open_scans(options));
     if (scans.cache) return scans.cache;
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());

@@ -133,9 +133,12 @@ class ViewerWindow : public testing::Test {
             const std::string file = folder_ / "lucarne-0001.png";
             std::error_code ignored;
             std::filesystem::remove(file, ignored);
+            // Said once it is written; what was said of an earlier one does not count.
+            const size_t before = times_saved();
             xdo("key F12");
-            for (int i = 0; i < 20 && !std::filesystem::exists(file); ++i)
+            for (int i = 0; i < 40 && times_saved() == before; ++i)
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            if (times_saved() == before) return false;
             const auto saved = io::read_png(file);
             if (!saved || saved->width != kWidth * scale_ * resolution_ ||
                 saved->height != kHeight * scale_ * resolution_ || !wanted(*saved)) return false;
@@ -143,6 +146,13 @@ class ViewerWindow : public testing::Test {
             return true;
         });
         return result;
+    }
+    size_t times_saved() const {
+        const std::string said = log();
+        constexpr std::string_view kName = "lucarne-0001.png";
+        size_t times = 0;
+        for (size_t at = said.find(kName); at != said.npos; at = said.find(kName, at + 1)) ++times;
+        return times;
     }
     /// Whether the picture saved last had all its points, and nothing moved.
     bool whole() const {
