@@ -9,6 +9,7 @@
 
 #include "io/core/log.h"
 #include "io/formats/format.h"
+#include "io/formats/las_crs.h"
 #include "io/formats/stations.h"
 
 namespace lucarne::io::las {
@@ -159,6 +160,26 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
     if (record.extended) header.minor = 4;
 }
 
+/// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
+/// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
+void state_unit(const std::string& path, Header& header, double metres) {
+    const double stated = metres_per_unit(path, header);
+    if (std::abs(stated / metres - 1) < 1e-9) return;
+    if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
+        log::warn("{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open it",
+                  path, stated, metres, metres);
+        return;
+    }
+    const std::string wkt = fmt::format(
+        R"(LOCAL_CS["local",LOCAL_DATUM["local",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres);
+    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // with its final zero
+    Vlr& record = record_of(header, kProjectionUser, kWktRecord);
+    record.description = "coordinate system";
+    record.data.assign(bytes.begin(), bytes.end());
+    header.global_encoding |= kWktBit;
+    header.minor = 4;
+}
+
 Converter make_converter(const Schema& from, const Schema& to, const std::vector<Attribute>& extra,
                          uint32_t color_bits) {
     Converter converter(from, to);
@@ -235,6 +256,7 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     }
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
+    state_unit(path, header, info.metres_per_unit);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));

@@ -236,8 +236,29 @@ TEST_F(Writers, StationsUnitsAndColourBitsSurviveInBothFormats) {
         }
         EXPECT_EQ(source->info().color_bits, 16u);
     }
-    info.metres_per_unit = 0.3048;
-    EXPECT_EQ(written("b.ply", points, info)->info().metres_per_unit, 0.3048);
+    for (const double unit : {0.3048, 1200.0 / 3937.0, 0.001, 1000.0}) {
+        info.metres_per_unit = unit;
+        for (const char* name : {"b.ply", "b.las", "b.laz"})
+            EXPECT_EQ(written(name, points, info, {.overwrite = true})->info().metres_per_unit, unit) << name;
+    }
+}
+
+TEST_F(Writers, ACoordinateSystemOfItsOwnIsKeptWhateverUnitAScanWasReadIn) {
+    testing::LasFile las;
+    las.minor = 4;
+    las.encoding = 16;
+    las.format = 6;
+    las.records = {record6(1, 2, 3, 0, 0x11, 0, 0, 0, 0, 0, 0)};
+    las.add_vlr("LASF_Projection", 2112, R"(PROJCS["here",UNIT["metre",1]])");
+    write_bytes(folder_ / "in.las", las.bytes());
+    const auto in = open_scan(folder_ / "in.las", {.metres_per_unit = 0.3048});
+    ASSERT_TRUE(in) << in.error().line();
+    EXPECT_EQ((*in)->info().metres_per_unit, 0.3048);
+    Points points(PositionType::i32_scaled);
+    points.add();
+    const auto out = written("out.las", points, (*in)->info());
+    EXPECT_EQ(out->info().coordinate_system, "here");
+    EXPECT_EQ(out->info().metres_per_unit, 1.0);
 }
 
 TEST_F(Writers, ManyStationsTakeALargerLasVersion) {
