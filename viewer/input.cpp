@@ -14,7 +14,7 @@
 #include "io/formats/scan.h"
 #include "octree/cache.h"
 #include "octree/open.h"
-#include "viewer/inputs.h"
+#include "octree/stream/joined_source.h"
 #include "viewer/kept_cache.h"
 #include "viewer/tools/units.h"
 
@@ -24,6 +24,7 @@ namespace {
 using octree::GrowingBuild;
 
 constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< of a build beside which pictures are drawn
+constexpr size_t kMostOpenCaches = 64;                 ///< handles that several share; more are opened again in turn
 using Source = std::shared_ptr<const octree::NodeSource>;
 
 /// The scans, and where their cache goes; or the cache, if it is there.
@@ -63,6 +64,35 @@ Result<Scans> open_scans(const InputOptions& options) {
         scans.build.output = scans.folder->path() / "scan.luc";
     }
     return scans;
+}
+
+/// Scans as one cache, the one kept or a new one.
+Result<Source> convert_scans(const InputOptions& options) {
+    LUCARNE_ASSIGN(Scans scans, open_scans(options));
+    if (scans.cache) return scans.cache;
+    for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
+    if (auto built = octree::build_cache(scans.build); !built)
+        return tl::unexpected(
+            io::with_salvage_advice(built.error(), built.error().what, options.read));
+    // The open file lives on after its name is gone with the folder.
+    LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
+    return Source(std::move(cache));
+}
+
+/// Every input by itself, octrees as they are.
+Result<Source> open_parts(const InputOptions& options) {
+    const auto handles = std::make_shared<HandlePool>(kMostOpenCaches);
+    std::vector<Source> sources;
+    for (const std::string& path : options.paths) {
+        if (octree::is_octree(path)) {
+            LUCARNE_ASSIGN(auto octree, octree::open_octree(path, handles));
+            sources.push_back(std::move(octree));
+        } else {
+            LUCARNE_ASSIGN(sources.emplace_back(), convert_scans({{path}, options.no_cache, options.read}));
+        }
+    }
+    if (sources.size() == 1) return std::move(sources.front());
+    return octree::join_sources(std::move(sources));
 }
 
 /// Whether octrees are among them, which are opened as they are.
@@ -133,7 +163,7 @@ void add_read_options(CLI::App& command, io::ReadOptions& options) {
 }
 
 void add_input_options(CLI::App& command, InputOptions& options) {
-    command.add_option("INPUT", options.paths, "Caches or scan files, drawn together")->required(options.required);
+    command.add_option("INPUT", options.paths, "Caches or scan files, taken together")->required(options.required);
     command.add_flag(
         "--no-cache", options.no_cache,
         "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
@@ -144,7 +174,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
 Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening) {
     OpenInput open;
     if (has_octree(options)) {
-        LUCARNE_ASSIGN(open.source, open_inputs(options.paths));
+        LUCARNE_ASSIGN(open.source, open_parts(options));
         return open;
     }
     LUCARNE_ASSIGN(Scans scans, open_scans(options));
@@ -164,24 +194,16 @@ Result<OpenInput> open_growing(const InputOptions& options, const Opening& openi
 }
 
 Result<Source> open_input(const InputOptions& options) {
-    if (has_octree(options)) return open_inputs(options.paths);
-    LUCARNE_ASSIGN(Scans scans, open_scans(options));
-    if (scans.cache) return scans.cache;
-    for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
-    if (auto built = octree::build_cache(scans.build); !built)
-        return tl::unexpected(
-            io::with_salvage_advice(built.error(), built.error().what, options.read));
-    // The open file lives on after its name is gone with the folder.
-    LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
-    return Source(std::move(cache));
+    return has_octree(options) ? open_parts(options) : convert_scans(options);
 }
 
 Result<Source> open_input(const std::filesystem::path& path) {
-    if (octree::is_octree(path)) {
-        LUCARNE_ASSIGN(auto octree, octree::open_octree(path));
-        return Source(std::move(octree));
-    }
     return open_input(InputOptions{{path.string()}, false, {}});
+}
+
+std::string inputs_text(const std::vector<std::string>& paths) {
+    if (paths.empty()) return {};
+    return paths.size() == 1 ? paths.front() : fmt::format("{} and {} more", paths.front(), paths.size() - 1);
 }
 
 }  // namespace lucarne::viewer

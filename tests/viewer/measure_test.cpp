@@ -234,7 +234,7 @@ TEST_F(MeasuredCloud, TheCommandMeasuresWhatTheWindowSaved) {
              {MeasuredScan::kCorner + dvec3(1, -1, 0), MeasuredScan::kCorner + dvec3(1, 3, 0)}, 0.12)};
     ASSERT_TRUE(save_measurements(json, all, {true, MeasuredScan::kFoot}, false));
     const auto out = test::lucarne("measure " + cache + " --measurements " + json +
-                                   " --snap --unit file --sections " + scan_->folder.path().string());
+                                   " --snap --results file --sections " + scan_->folder.path().string());
     EXPECT_EQ(out.code, 0) << out.output;
     EXPECT_THAT(out.output, HasSubstr("length: 4.0000 US ft"));
     EXPECT_THAT(out.output, HasSubstr("1567890.123 245678.457 812.006"));

@@ -125,6 +125,21 @@ TEST_F(RawScan, SeveralAreOnePicture) {
     EXPECT_NE(bytes_of(picture_), together);
 }
 
+TEST_F(RawScan, IsReadAsItsColumnsAndUnitAreSaid) {
+    const std::string text = folder_ / "a.txt", at = " --no-cache --at 10,20,5";
+    std::ofstream(text) << "20 10 5\n21 10 5\n21 11 5\n20 11 5\n";
+    EXPECT_THAT(lucarne("measure " + text + at).output, HasSubstr("20 11 5"));
+    EXPECT_THAT(lucarne("measure " + text + at + " --columns y,x,z").output, HasSubstr("10 20 5"));
+    // Also beside a cache, which stays what it is.
+    ASSERT_EQ(render("-o " + picture_).code, 0);
+    EXPECT_THAT(lucarne("measure " + scan_ + ".luc " + text + at + " --columns y,x,z").output,
+                HasSubstr("10 20 5"));
+    const Outcome flown = lucarne("fly " + text + " --no-cache --columns x,y --path " LUCARNE_SOURCE_DIR
+                                  "/data/flythroughs/cornell.json -o " + (folder_ / "r.json"));
+    EXPECT_NE(flown.code, 0);
+    EXPECT_THAT(flown.output, HasSubstr("columns"));
+}
+
 /// Draws every source of a growing build; the last picture, and how many there were.
 TEST_F(RawScan, ThePicturesOfABuildEndWithThatOfItsCache) {
     const auto device = gi::Device::headless();

@@ -19,7 +19,7 @@
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/html_report.h"
 #include "viewer/flythrough/video.h"
-#include "viewer/inputs.h"
+#include "viewer/input.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -28,7 +28,8 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 struct FlyOptions {
-    std::vector<std::string> inputs, compare;
+    InputOptions input{.required = false};  // not to compare
+    std::vector<std::string> compare;
     std::string path, report, html, frames_folder, video;
     DrawingOptions drawing;
     double soak = 0, frame_time_ms = 0, margin = 3;
@@ -63,7 +64,7 @@ std::vector<Plan> plans_of(const FlyOptions& options) {
 
 /// Everything that can be wrong with arguments and outputs, before long work starts.
 Result<void> check(const FlyOptions& options) {
-    if (options.inputs.empty()) return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
+    if (options.input.paths.empty()) return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
     if (options.path.empty()) return bad_arguments("--path", "is missing", "name a camera path");
     if (options.report.empty()) return bad_arguments("--output", "is missing", "name the report's file");
     if (options.frame_time_ms > 0 && !options.realtime)
@@ -112,12 +113,12 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     FlightConditions conditions;
     conditions.start.cold = plan.cold;
     if (plan.cold)
-        for (const std::string& input : options.inputs) {
+        for (const std::string& input : options.input.paths) {
             LUCARNE_ASSIGN(const double held, drop_page_cache(input));
             conditions.start.still_cached = std::max(conditions.start.still_cached, held);
         }
     const auto begin = Clock::now();
-    LUCARNE_ASSIGN(const auto source, open_inputs(options.inputs));
+    LUCARNE_ASSIGN(const auto source, open_input(options.input));
     LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, drawing_options, drawing, std::move(scene)));
@@ -141,7 +142,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     if (options.popping) {
         LUCARNE_ASSIGN(conditions.full, fly_at_full_resolution(*pipeline, path, how));
     }
-    conditions.inputs = options.inputs;
+    conditions.inputs = options.input.paths;
     conditions.path = options.path;
     conditions.engine = plan.engine;
     conditions.preset = options.drawing.render.preset;
@@ -217,7 +218,7 @@ void add_fly(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<FlyOptions>();
     auto* command =
         app.add_subcommand("fly", "Fly along a camera path and measure it, or compare two reports");
-    command->add_option("INPUT", options->inputs, "Caches or scan files, flown through together");
+    add_input_options(*command, options->input);
     command->add_option("--path", options->path, "The camera path (data/README.md, Flythroughs)");
     command->add_option("-o,--output", options->report, "The report, JSON");
     command->add_option("--html", options->html, "The report as a page with plots, too")->type_name("FILE");

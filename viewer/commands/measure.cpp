@@ -11,7 +11,7 @@
 #include "io/core/file.h"
 #include "io/core/log.h"
 #include "viewer/commands/commands.h"
-#include "viewer/inputs.h"
+#include "viewer/input.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/nearest.h"
 #include "viewer/tools/section.h"
@@ -20,8 +20,8 @@ namespace lucarne::viewer {
 namespace {
 
 struct Options {
-    std::vector<std::string> inputs;
-    std::string measurements, output, sections, unit = "m";
+    InputOptions input;
+    std::string measurements, output, sections, results = "m";
     std::vector<std::vector<double>> at;
     std::string json_file;
     uint64_t section_points = kMostSectionPoints;
@@ -80,10 +80,10 @@ Result<void> measure(const Options& options) {
     if (options.measurements.empty() && options.at.empty())
         return bad_arguments("measure", "there is nothing to measure",
                              "give a file of measurements or --at X,Y,Z");
-    LUCARNE_ASSIGN(auto source, open_inputs(options.inputs));
+    LUCARNE_ASSIGN(auto source, open_input(options.input));
     const double metres_per_unit = source->header().metres_per_unit;
     NodeCache cache(std::move(source));
-    const UnitChoice units{options.unit == "m", metres_per_unit};
+    const UnitChoice units{options.results == "m", metres_per_unit};
     LUCARNE_ASSIGN(std::vector<Measurement> all, points_at(options, cache));
     if (!options.measurements.empty()) {
         LUCARNE_ASSIGN(auto loaded, load_measurements(options.measurements, metres_per_unit));
@@ -106,9 +106,7 @@ void add_measure(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
     auto* command =
         app.add_subcommand("measure", "Measure as the window does: points, distances, areas, sections");
-    command->add_option("INPUT", options->inputs, "Caches or scan files, as one cloud")
-        ->required()
-        ->expected(1, -1);
+    add_input_options(*command, options->input);
     command
         ->add_option("--measurements", options->measurements,
                      "What to measure, as the window saves it (data/README.md)")
@@ -126,7 +124,7 @@ void add_measure(CLI::App& app, Command& chosen) {
         ->type_name("FILE");
     command->add_option("--json", options->json_file, "Write the results there as well, for machines")
         ->type_name("FILE");
-    command->add_option("--unit", options->unit, "Results in metres or in the scan file's own unit")
+    command->add_option("--results", options->results, "In metres or in the scan file's own unit")
         ->check(CLI::IsMember({"m", "file"}))
         ->capture_default_str();
     command

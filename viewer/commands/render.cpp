@@ -22,7 +22,6 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
-#include "viewer/inputs.h"
 #include "viewer/show/finished_picture.h"
 
 namespace lucarne::viewer {
