@@ -10,6 +10,7 @@
 #include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
 #include "io/core/file.h"
+#include "io/core/json.h"
 
 namespace lucarne::gi {
 namespace {
@@ -168,13 +169,11 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     if (scene.comparison) written["comparison"] = write_comparison(*scene.comparison);
     for (const SceneCamera& camera : scene.cameras) written["cameras"].push_back(write_camera(camera));
     // Names that are no UTF-8, which only other programs' files bring, are mended.
-    return written.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(written);
 }
 
 Result<void> save_scene(const Scene& scene, const std::filesystem::path& path, bool overwrite) {
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(write_scene(scene, path.parent_path().empty() ? "." : path.parent_path())));
-    return file.commit();
+    return write_file(path, write_scene(scene, path.parent_path().empty() ? "." : path.parent_path()), overwrite);
 }
 
 }  // namespace lucarne::gi

@@ -190,6 +190,15 @@ Result<void> OutputFile::commit() {
     return {};
 }
 
+Result<void> write_file(const std::filesystem::path& path, std::span<const std::byte> data, bool overwrite) {
+    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
+    LUCARNE_TRY(file.append(data));
+    return file.commit();
+}
+Result<void> write_file(const std::filesystem::path& path, std::string_view text, bool overwrite) {
+    return write_file(path, std::as_bytes(std::span(text)), overwrite);
+}
+
 Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
     int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (fd < 0) {

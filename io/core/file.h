@@ -74,6 +74,10 @@ class OutputFile {
     uint64_t position_ = 0;
 };
 
+/// A whole file at once, as OutputFile writes it.
+Result<void> write_file(const std::filesystem::path& path, std::string_view text, bool overwrite);
+Result<void> write_file(const std::filesystem::path& path, std::span<const std::byte> data, bool overwrite);
+
 /// A scratch file. Nameless in `folder`: gone with the process however it ends; or under a name, to be found
 /// again by who resumes the work.
 class ScratchFile {

@@ -144,9 +144,7 @@ Result<void> write_exr(const std::filesystem::path& path, const Image& image, bo
     } catch (const std::exception& error) {
         return failed(name, fmt::format("cannot be encoded as EXR ({})", error.what()));
     }
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(encoded.data()));
-    return file.commit();
+    return write_file(path, encoded.data(), overwrite);
 }
 
 Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels) {

@@ -50,9 +50,7 @@ Result<void> write_png(const std::filesystem::path& path, const Image8& image, b
     std::vector<std::byte> encoded(bytes);
     if (!png_image_write_to_memory(&png, encoded.data(), &bytes, 0, pixels, 0, nullptr))
         return failed(name, fmt::format("cannot be encoded as PNG ({})", png.message));
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(std::span<const std::byte>(encoded).first(bytes)));
-    return file.commit();
+    return write_file(path, std::span<const std::byte>(encoded).first(bytes), overwrite);
 }
 
 Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels) {

@@ -58,6 +58,24 @@ TEST(Fly, WaitingGivesTheSamePicturesOnEveryRunAndAReport) {
     EXPECT_FALSE(report["device"]["renderer"].get<std::string>().empty());
 }
 
+TEST(Fly, NamesOfAnyBytesAreReported) {
+    const TemporaryFolder folder;
+    const std::string cache = folder / "\xff.luc";
+    std::filesystem::rename(make_cornell(folder), cache);
+    write(folder / "path.json", kPath);
+    const Outcome flown =
+        test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48 --engine direct" +
+                      " -o " + (folder / "report.json") + " --html " + (folder / "report.html"));
+    EXPECT_EQ(flown.code, 0) << flown.output;
+    EXPECT_THAT(bytes_of(folder / "report.json"), HasSubstr("\xef\xbf\xbd.luc"));
+    const Outcome rendered = test::lucarne("render " + cache + " --size 64x48 --engine direct -o " +
+                                           (folder / "\xff.exr") + " --json " + (folder / "render.json"));
+    EXPECT_EQ(rendered.code, 0) << rendered.output;
+    const Outcome compared = test::lucarne("compare " + (folder / "\xff.exr") + " " + (folder / "\xff.exr") +
+                                           " --json " + (folder / "compare.json"));
+    EXPECT_EQ(compared.code, 0) << compared.output;
+}
+
 TEST(Fly, ByTheClockEndsWithThePathAndNeverWaits) {
     const TemporaryFolder folder;
     const std::string cache = make_cornell(folder);

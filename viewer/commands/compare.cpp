@@ -15,6 +15,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/post/tone_map.h"
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 
@@ -171,9 +172,7 @@ Result<void> compare(const CompareOptions& options) {
     }
     if (!options.error_picture.empty()) LUCARNE_TRY(write_error_picture(options, pictures, flip));
     if (options.json.empty()) return {};
-    LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
-    LUCARNE_TRY(file.append(report.dump(2) + "\n"));
-    return file.commit();
+    return write_file(options.json, json_text(report), options.overwrite);
 }
 
 }  // namespace

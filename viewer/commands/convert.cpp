@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
@@ -104,9 +105,7 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
                               {"bytes", report.bytes},   {"stages", std::move(stages)},
                               {"left_out", losses_json(summary.losses)},
                               {"inputs", summary.inputs}};
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(root.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
-    return file.commit();
+    return write_file(path, json_text(root), overwrite);
 }
 
 using Scans = std::vector<std::unique_ptr<io::PointSource>>;

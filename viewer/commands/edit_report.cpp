@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/file.h"
+#include "io/core/json.h"
 
 namespace lucarne::viewer {
 
@@ -12,9 +13,7 @@ Result<void> write_edit_report(const std::string& path, bool overwrite, const oc
         {"points", report.points},         {"dropped", report.dropped},
         {"kept_nodes", report.kept_nodes}, {"rewritten_points", report.rewritten_points},
         {"nodes", report.nodes},           {"bytes", report.bytes}};
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(root.dump(2) + "\n"));
-    return file.commit();
+    return write_file(path, json_text(root), overwrite);
 }
 
 }  // namespace lucarne::viewer

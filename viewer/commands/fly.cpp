@@ -11,6 +11,7 @@
 
 #include "gi/registry.h"
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/core/log.h"
 #include "io/core/page_cache.h"
 #include "viewer/commands/commands.h"
@@ -165,12 +166,6 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     return report;
 }
 
-Result<void> write_text(const std::string& path, const std::string& text, bool overwrite) {
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(text));
-    return file.commit();
-}
-
 Result<void> fly_all(FlyOptions options) {
     LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_TRY(check(options));
@@ -181,8 +176,8 @@ Result<void> fly_all(FlyOptions options) {
     }
     // One flight is the report itself.
     const Json report = flights.size() == 1 ? flights.front() : Json{{"flights", flights}};
-    LUCARNE_TRY(write_text(options.report, report.dump(2) + "\n", options.overwrite));
-    if (!options.html.empty()) LUCARNE_TRY(write_text(options.html, html_report(flights), options.overwrite));
+    LUCARNE_TRY(write_file(options.report, json_text(report), options.overwrite));
+    if (!options.html.empty()) LUCARNE_TRY(write_file(options.html, html_report(flights), options.overwrite));
     log::info("{}{}", options.report, options.html.empty() ? "" : ", " + options.html);
     return {};
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
 #include "io/core/progress.h"
@@ -34,8 +35,8 @@ struct Options {
 };
 
 /// File names need not be UTF-8: what is not becomes U+FFFD.
-std::string text_of(const json& value, int indent = -1) {
-    return value.dump(indent, ' ', false, json::error_handler_t::replace);
+std::string text_of(const json& value) {
+    return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 json describe_octree(const octree::NodeSource& cache, const char* kind) {
@@ -116,9 +117,7 @@ Result<void> info(const Options& options) {
         }
     }
     if (!options.json_file.empty()) {
-        LUCARNE_ASSIGN(auto file, OutputFile::create(options.json_file, options.overwrite));
-        LUCARNE_TRY(file.append(text_of(several ? all : all[0], 2) + "\n"));
-        LUCARNE_TRY(file.commit());
+        LUCARNE_TRY(write_file(options.json_file, json_text(several ? all : all[0]), options.overwrite));
     }
     return aside.result("info", "cannot be read");
 }

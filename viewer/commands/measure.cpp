@@ -52,12 +52,6 @@ Result<void> snap(std::vector<Measurement>& all, NodeCache& cache) {
     return {};
 }
 
-Result<void> write_text(const std::filesystem::path& path, std::string_view text, bool overwrite) {
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(text));
-    return file.commit();
-}
-
 /// section-1.csv and section-1.svg, and so on, in the order of the measurements.
 Result<void> write_sections(const Options& options, const std::vector<Measurement>& all,
                             const UnitChoice& units, NodeCache& cache) {
@@ -96,7 +90,7 @@ Result<void> measure(const Options& options) {
         LUCARNE_TRY(save_measurements(options.output, all, units, options.overwrite));
     if (!options.json_file.empty())
         LUCARNE_TRY(
-            write_text(options.json_file, measurements_json(all, metres_per_unit), options.overwrite));
+            write_file(options.json_file, measurements_json(all, metres_per_unit), options.overwrite));
     return options.sections.empty() ? Result<void>{} : write_sections(options, all, units, cache);
 }
 

@@ -15,6 +15,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/registry.h"
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
@@ -193,9 +194,7 @@ Result<void> render(RenderOptions options) {
             io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));
     if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing.size));
     if (!options.json.empty()) {
-        LUCARNE_ASSIGN(auto file, OutputFile::create(options.json, options.overwrite));
-        LUCARNE_TRY(file.append(report(rendered, *pipeline, drawing, mean).dump(2) + "\n"));
-        LUCARNE_TRY(file.commit());
+        LUCARNE_TRY(write_file(options.json, json_text(report(rendered, *pipeline, drawing, mean)), options.overwrite));
     }
     log::info("{}: {}x{}, {}, preset {}, {} frame{} in {:.2f} s; {}{}", options.output, drawing.size.width,
               drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,

@@ -120,9 +120,7 @@ Result<void> PathEditor::load(const std::filesystem::path& file) {
 
 Result<void> PathEditor::save(const std::filesystem::path& file, bool overwrite) const {
     if (empty()) return failed(file.string(), "the flythrough has no key frame yet", "add one first");
-    LUCARNE_ASSIGN(auto output, OutputFile::create(file, overwrite));
-    LUCARNE_TRY(output.append(path_text(path_)));
-    return output.commit();
+    return write_file(file, path_text(path_), overwrite);
 }
 
 }  // namespace lucarne::viewer

@@ -28,7 +28,7 @@ std::string text_of(const Json& value) {
     if (value.is_string()) return escaped(value.get<std::string>());
     if (value.is_null()) return "&ndash;";
     if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
-    return escaped(value.dump());
+    return escaped(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string number(double value, const char* unit = "") {

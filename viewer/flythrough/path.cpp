@@ -123,7 +123,7 @@ std::string path_text(const CameraPath& path) {
                         {"target", vector(key.camera.target)},
                         {"up", vector(key.camera.up)},
                         {"fov", degrees(key.camera.vertical_fov)}});
-    return Json{{"frames_per_second", path.frames_per_second}, {"keys", keys}}.dump(2) + "\n";
+    return json_text(Json{{"frames_per_second", path.frames_per_second}, {"keys", keys}});
 }
 
 Result<CameraPath> load_path(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/file.h"
+#include "io/core/json.h"
 #include "io/core/random.h"
 #include "viewer/picture_worker.h"
 #include "viewer/shell/settings.h"
@@ -79,10 +80,7 @@ Result<void> save_bookmarks(const std::vector<Bookmark>& bookmarks, const fs::pa
         else
             fs::remove(thumbnail_file(folder, i), error);  // of a bookmark that was there before
     }
-    const std::string text = nlohmann::json{{"cameras", cameras}}.dump(2) + "\n";
-    LUCARNE_ASSIGN(auto file, OutputFile::create(folder / "bookmarks.json", true));
-    LUCARNE_TRY(file.append(text));
-    return file.commit();
+    return write_file(folder / "bookmarks.json", json_text(nlohmann::json{{"cameras", cameras}}), true);
 }
 
 io::Image8 thumbnail_of(const Picture& picture) {

@@ -159,11 +159,7 @@ Result<void> save_settings(const Settings& settings, const fs::path& folder) {
     json["side_bar"] = side_bar_json(settings.side_bar);
     if (!(settings.controller == io::SixDofMapping{})) json["controller"] = mapping_json(settings.controller);
     json["recent"] = settings.recent;
-    // Names of files may hold any bytes.
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    LUCARNE_ASSIGN(auto file, OutputFile::create(folder / kFile, true));
-    LUCARNE_TRY(file.append(text));
-    return file.commit();
+    return write_file(folder / kFile, json_text(json), true);
 }
 
 }  // namespace lucarne::viewer

@@ -135,7 +135,7 @@ std::string measurements_json(std::span<const Measurement> all, double metres_pe
     const Json document = {{"metres_per_unit", metres_per_unit},
                            {"unit", unit_name(metres_per_unit)},
                            {"measurements", std::move(list)}};
-    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(document);
 }
 
 Result<std::vector<Measurement>> parse_measurements(std::string_view text, const std::string& name,
@@ -169,10 +169,9 @@ Result<void> save_measurements(const std::filesystem::path& path, std::span<cons
     const auto extension = path.extension();
     if (extension != ".csv" && extension != ".json")
         return bad_arguments(path.string(), "measurements are written as .csv or .json", "name it so");
-    LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
-    LUCARNE_TRY(file.append(std::string_view(
-        extension == ".csv" ? measurements_csv(all, units) : measurements_json(all, units.metres_per_unit))));
-    return file.commit();
+    return write_file(
+        path, extension == ".csv" ? measurements_csv(all, units) : measurements_json(all, units.metres_per_unit),
+        overwrite);
 }
 
 }  // namespace lucarne::viewer
