@@ -41,7 +41,9 @@ inline Outcome lucarne_with_fault(const std::string& fault, const std::string& a
 }
 
 inline std::string quoted(const std::filesystem::path& path) {
-    return std::string(1, '\'') + path.string() + '\'';
+    std::string name = "'";  // added to piece by piece: g++ 12 warns of the sum of two temporaries
+    name += path.string();
+    return name += '\'';
 }
 
 }  // namespace lucarne::test
