@@ -159,6 +159,15 @@ TEST_F(Text, PointsWithoutACoordinateAreDroppedAndCounted) {
     EXPECT_TRUE(std::isnan(value(1, "w")));
 }
 
+TEST_F(Text, EmptyCellsTakeNoRoomButOfTheirSeparator) {
+    // More rows than there were if every cell held a digit.
+    std::string text = "x,y,z,a,b,c,d,e,f,g\n1,2,3,4,5,6,7,8,9,10\n";
+    for (int i = 0; i < 5000; ++i) text += "1,2,3,,,,,,,\n";
+    read(text);
+    ASSERT_EQ(points(), 5001u);
+    EXPECT_EQ(position(5000), glm::dvec3(1, 2, 3));
+}
+
 TEST_F(Text, RowsThatDoNotFitAreRejectedWithLineAndReason) {
     EXPECT_THAT(error_of("1 2 3\n1 2\n").line(), HasSubstr("line 2 on: it has 2 values, 3 belong"));
     EXPECT_THAT(error_of("1 2 3\n\n1 2 3 4\n").line(), HasSubstr("line 3 on: it has more than the 3"));

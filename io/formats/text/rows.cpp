@@ -73,9 +73,10 @@ class RowParser {
 
     void parse() {
         const size_t stride = layout_.schema.stride;
-        // A row takes two bytes a column; more room than its text could fill is never asked for.
-        const size_t most =
-            static_cast<size_t>(end_ - at_) / (2 * std::max<size_t>(1, layout_.fields.size())) + 1;
+        // More room than the text could fill is never asked for.
+        const size_t row_bytes =
+            least_cell_bytes(layout_.separator) * std::max<size_t>(1, layout_.fields.size());
+        const size_t most = static_cast<size_t>(end_ - at_) / row_bytes + 1;
         if (piece_.records.size() < most * stride) piece_.records.resize(most * stride);
         std::byte* record = piece_.records.data();
         while (at_ < end_) {

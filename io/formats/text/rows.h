@@ -46,6 +46,11 @@ struct RowLayout {
     std::vector<std::byte> blank;  ///< the record before a row is parsed; empty: zeros
 };
 
+/// The least bytes of a cell with what ends it: between commas there may be nothing.
+inline size_t least_cell_bytes(char separator) {
+    return separator == ' ' ? 2 : 1;
+}
+
 /// Rows from `begin` to `end` in the file.
 struct Section {
     uint64_t begin = 0, end = 0;

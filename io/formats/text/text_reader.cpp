@@ -68,8 +68,9 @@ class TextSource final : public PointSource {
         info_.stations = remarks.stations;
         info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
         fill_info(pts ? "PTS" : "XYZ", columns, sampled, remarks);
-        // A row takes at least two bytes a column, the last may lack its line end.
-        const uint64_t most = (file_->size() - head_.begin + 1) / (2 * head_.columns);
+        // The last row may lack its line end.
+        const uint64_t most = (file_->size() - head_.begin + 1) /
+                              (least_cell_bytes(head_.layout.separator) * head_.columns);
         if (head_.count && *head_.count > most && !options.salvage)
             return refuse(
                 fmt::format("is truncated: it promises {} points, at most {} are there", *head_.count, most));

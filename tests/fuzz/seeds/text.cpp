@@ -17,6 +17,7 @@ void text_seeds(const Seeds& seeds) {
     seeds.add_scan("plain.xyz", "1 2 3\n4.5 -5e-1 +6\n7 8 9\n");
     seeds.add_scan("named.csv",
                    "x,y,z,intensity,r,g,b,class\n1,2,3,10,255,0,0,2\n4,5,6,,0,255,0,3\n7,8,9,12,0,0,255,6\n");
+    seeds.add_scan("empty.csv", "x,y,z,a,b,c,d\n1,2,3,4,5,6,7\n1,2,3,,,,\n,,,,,,\n4,5,6,,,,\n7,8,9,,,,\n");
     seeds.add_scan("commented.txt",
                    "//X Y Z Nx Ny Nz\n500000.125\t4000000.5\t12.25\t0\t0\t1\n500001\t4000001\t12\t0\t1\t0\n");
     seeds.add_scan("semicolons.asc", "1;2;3;a word;0.5\n4;5;6;another;0.25\n\n7;8;nan;third;1\n");
