@@ -9,13 +9,14 @@
 
 namespace lucarne::io::laz {
 
-/// Models and last values of an item for each scanner channel. Version 3 of the items goes on from the values
-/// of the channel before when it comes back to a channel; version 4 mended that.
+/// Models and last values of an item for each scanner channel. Two slips of LASzip's are part of version 3, and mended
+/// in 4: an item takes the models of channel 0 for every point whose channel is not another than the point's before, and
+/// coming back to a channel it goes on from the values of the models before.
 template <class Models, class Last>
 class Channels {
  public:
     Channels(uint16_t version, const Models& fresh, Last first, uint32_t channel)
-        : fresh_(fresh), keeps_last_(version < 4), current_(channel) {
+        : fresh_(fresh), slips_(version < 4), current_(channel) {
         channels_[channel].emplace(fresh_, std::move(first));
     }
     struct Channel {
@@ -23,19 +24,20 @@ class Channels {
         Models models;
         Last last;
     };
-    /// The models of a channel and the last values to go on from.
-    std::pair<Models&, Last&> at(uint32_t channel) {
+    /// The models for a point and the last values to go on from. `changed`: its channel is not that of the point before.
+    std::pair<Models&, Last&> at(uint32_t channel, bool changed) {
+        if (slips_ && !changed) channel = 0;
         Channel& before = *channels_[current_];
         current_ = channel;
         auto& now = channels_[channel];
         const bool fresh = !now;
         if (fresh) now.emplace(fresh_, before.last);
-        return {now->models, keeps_last_ && !fresh ? before.last : now->last};
+        return {now->models, slips_ && !fresh ? before.last : now->last};
     }
 
  private:
     Models fresh_;
-    bool keeps_last_;
+    bool slips_;
     uint32_t current_;
     std::array<std::optional<Channel>, kChannels> channels_;
 };
@@ -98,19 +100,19 @@ class Layered {
 
     /// The next record, read or written.
     void code(std::byte* to) {
-        const uint32_t channel = point_.code(to);
+        point_.code(to);
         to += Point14Coder<Coder>::kBytes;
         if (color_) {
-            code_color(channel, to);
+            code_color(to);
             to += color_bytes_;
         }
-        if (extra_) code_extra(channel, to);
+        if (extra_) code_extra(to);
     }
     std::span<Layer<Coder>> layers() { return layers_; }
 
  private:
-    void code_color(uint32_t channel, std::byte* to) {
-        auto [models, last] = color_->at(channel);
+    void code_color(std::byte* to) {
+        auto [models, last] = color_->at(point_.channel(), point_.channel_changed());
         ColorNir next;
         if constexpr (Coder::kEncodes) std::memcpy(&next, to, color_bytes_);
         if (auto* layer = used(color_layer_, next.color != last.color))
@@ -121,8 +123,8 @@ class Layered {
         if constexpr (!Coder::kEncodes) std::memcpy(to, &last, color_bytes_);
     }
 
-    void code_extra(uint32_t channel, std::byte* to) {
-        auto [models, last] = extra_->at(channel);
+    void code_extra(std::byte* to) {
+        auto [models, last] = extra_->at(point_.channel(), point_.channel_changed());
         for (size_t i = 0; i < last.size(); ++i) {
             const auto before = static_cast<uint32_t>(last[i]), next = static_cast<uint32_t>(to[i]);
             if (auto* layer = used(extra_layer_ + i, next != before))

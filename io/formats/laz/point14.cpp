@@ -100,7 +100,7 @@ uint32_t Point14Coder<Coder>::changes(const Point& next) const {
 }
 
 template <class Coder>
-uint32_t Point14Coder<Coder>::code(std::byte* record) {
+void Point14Coder<Coder>::code(std::byte* record) {
     Point next{};
     uint32_t changed = 0;
     if constexpr (Coder::kEncodes) {
@@ -112,7 +112,8 @@ uint32_t Point14Coder<Coder>::code(std::byte* record) {
     Channel* channel = channels_[current_].get();
     const uint32_t before = first_or_last(channel->last.number(), channel->last.count());
     changed = layer.coder.symbol(channel->changed[before + (channel->time_changed ? 4 : 0)], changed);
-    if (changed & kChannelChanges) {
+    switched_ = changed & kChannelChanges;
+    if (switched_) {
         const uint32_t ahead = (next.channel() - current_ - 1) % kChannels;
         const uint32_t other = (current_ + layer.coder.symbol(channel->other_channel, ahead) + 1) % kChannels;
         if (!channels_[other]) channels_[other] = std::make_unique<Channel>(channel->last);
@@ -126,7 +127,6 @@ uint32_t Point14Coder<Coder>::code(std::byte* record) {
     code_rest(*channel, next, changed, time_changes);
     channel->time_changed = time_changes;
     if constexpr (!Coder::kEncodes) std::memcpy(record, &channel->last, kBytes);
-    return current_;
 }
 
 template <class Coder>

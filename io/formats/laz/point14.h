@@ -27,9 +27,10 @@ class Point14Coder {
     static constexpr size_t kLayers = 9;
 
     Point14Coder(const std::byte* first, std::span<Layer<Coder>, kLayers> layers);
-    /// The next record, read or written. Returns the scanner channel of the point: the other items' models
-    /// follow it.
-    uint32_t code(std::byte* record);
+    /// The next record, read or written.
+    void code(std::byte* record);
+    uint32_t channel() const { return current_; }       ///< of the point coded last
+    bool channel_changed() const { return switched_; }  ///< with the point coded last
 
  private:
 #pragma pack(push, 1)
@@ -78,6 +79,7 @@ class Point14Coder {
     std::span<Layer<Coder>, kLayers> layers_;
     std::array<std::unique_ptr<Channel>, kChannels> channels_;
     uint32_t current_;
+    bool switched_ = false;
 };
 
 extern template class Point14Coder<Decoder>;
