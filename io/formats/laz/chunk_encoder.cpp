@@ -22,10 +22,10 @@ std::vector<std::byte> encode_chunk(const Compression& compression, std::span<co
     };
     put(count);
     std::vector<std::byte> layers;
-    for (size_t i = 0; auto& layer : layered.layers()) {
-        // The first layer is always there: a decoder would miss it in a chunk of points that are all the
-        // same.
-        const auto bytes = layer.changes || i++ == 0 ? layer.coder.finish() : std::vector<std::byte>();
+    // The first layer is always there, also in a chunk of one point.
+    layered.layers()[0].changes = true;
+    for (auto& layer : layered.layers()) {
+        const auto bytes = layer.changes ? layer.coder.finish() : std::vector<std::byte>();
         put(static_cast<uint32_t>(bytes.size()));
         layers.insert(layers.end(), bytes.begin(), bytes.end());
     }
