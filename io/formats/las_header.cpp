@@ -12,6 +12,10 @@ namespace lucarne::io::las {
 namespace {
 
 constexpr size_t kVlrHeader = 54, kEvlrHeader = 60;
+/// Compressed scans of over so many bytes as records do not shrink to less than 1 / kMostRatio; one flat raster repeated
+/// may, but it is small.
+constexpr uint64_t kLargeScan = uint64_t{256} << 20, kMostRatio = 4096;
+constexpr uint64_t kRoomOfNoPoints = 1024;  ///< bytes that an empty chunk table does not need
 
 /// A fixed-width text field: up to its first NUL, in printable ASCII.
 std::string text_field(const std::byte* at, size_t width) {
@@ -110,6 +114,8 @@ Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
     for (int axis = 0; axis < 3; ++axis) {
         h.scale[axis] = load<double>(b + 131 + 8 * axis);
         h.offset[axis] = load<double>(b + 155 + 8 * axis);
+        h.high[axis] = load<double>(b + 179 + 16 * axis);
+        h.low[axis] = load<double>(b + 187 + 16 * axis);
     }
     if (h.minor >= 4) {
         raw.evlr_offset = load<uint64_t>(b + 235);
@@ -158,10 +164,14 @@ Result<void> check_points(const InputFile& file, Header& h, bool salvage) {
         }
     }
     if (h.compressed) {
-        if (h.points / kMostPointsAByte > bytes)
+        const bool bomb =
+            h.points > kLargeScan / h.record_length && h.points / kMostRatio > bytes / h.record_length;
+        if (h.points / kMostPointsAByte > bytes || bomb)
             return rejected(
                 file.path().string(),
                 fmt::format("promises {} points, more than its {} bytes can hold", h.points, file.size()));
+        if (h.points == 0 && bytes > kRoomOfNoPoints)
+            log::warn("{}: its header promises no points, but there are {} bytes for them", file.path().string(), bytes);
         return {};
     }
     const uint64_t there = bytes / h.record_length;

@@ -43,6 +43,7 @@ struct Header {
     bool compressed = false;     ///< LAZ: io/formats/laz; of no use for writing
     uint16_t wave_bytes = 0;     ///< of the file's records behind their fields: skipped; 0 for writing
     glm::dvec3 scale{1.0}, offset{0.0};
+    glm::dvec3 low{0.0}, high{0.0};  ///< the box it states, true or not; of no use for writing
     std::vector<Vlr> vlrs;
     Losses losses;  ///< found while reading; of no use for writing
 

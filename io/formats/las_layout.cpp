@@ -76,18 +76,32 @@ bool pack_all(const std::byte* in, size_t in_stride, size_t count, std::byte* ou
     return lost == 0;
 }
 
+void unpack_records(uint8_t point_format, size_t stride, const std::byte* in, size_t count, std::byte* out,
+                    size_t out_stride) {
+    if (extended_format(point_format)) {
+        const size_t tail = stride - Extended::tail;
+        if (tail == 8) return unpack_all<Extended>(in, stride, count, out, out_stride, 8);
+        if (tail == 14) return unpack_all<Extended>(in, stride, count, out, out_stride, 14);
+        return unpack_all<Extended>(in, stride, count, out, out_stride, tail);
+    }
+    const size_t tail = stride - Legacy::tail;
+    if (tail == 0) return unpack_all<Legacy>(in, stride, count, out, out_stride, 0);
+    if (tail == 6) return unpack_all<Legacy>(in, stride, count, out, out_stride, 6);
+    if (tail == 8) return unpack_all<Legacy>(in, stride, count, out, out_stride, 8);
+    if (tail == 14) return unpack_all<Legacy>(in, stride, count, out, out_stride, 14);
+    return unpack_all<Legacy>(in, stride, count, out, out_stride, tail);
+}
+
 /// One by one, without the wave packet between fields and extra bytes.
-void decode_around_waves(Header header, const std::byte* in, size_t count, std::byte* out,
+void decode_around_waves(const Header& header, const std::byte* in, size_t count, std::byte* out,
                          size_t out_stride) {
     const size_t fields = record_bytes(header.point_format), wave = header.wave_bytes;
     const size_t stride = header.record_length, extra = stride - fields - wave;
-    header.record_length = static_cast<uint16_t>(fields + extra);
-    header.wave_bytes = 0;
-    std::vector<std::byte> record(header.record_length);
+    std::vector<std::byte> record(fields + extra);
     for (; count-- > 0; in += stride, out += out_stride) {
         std::memcpy(record.data(), in, fields);
         std::memcpy(record.data() + fields, in + fields + wave, extra);
-        decode(header, record.data(), 1, out, out_stride);
+        unpack_records(header.point_format, record.size(), record.data(), 1, out, out_stride);
     }
 }
 
@@ -119,6 +133,7 @@ void add_extra(Schema& schema, const Header& header) {
     if (const Vlr* vlr = header.find(kSpecUser, kExtraBytesRecord)) {
         for (size_t at = 0; left > 0 && vlr->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
             const auto descriptor = std::span(vlr->data).subspan(at, kDescriptorBytes);
+            if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // of no bytes
             const auto type = extra_type(descriptor);
             if (!type || type->components * scalar_bytes(type->type) > left) break;
             schema.add(unique_name(schema, extra_name(descriptor)), type->type, type->components);
@@ -162,20 +177,8 @@ Schema make_schema(const Header& header) {
 }
 
 void decode(const Header& header, const std::byte* in, size_t count, std::byte* out, size_t out_stride) {
-    const size_t stride = header.record_length;
     if (header.wave_bytes) return decode_around_waves(header, in, count, out, out_stride);
-    if (extended_format(header.point_format)) {
-        const size_t tail = stride - Extended::tail;
-        if (tail == 8) return unpack_all<Extended>(in, stride, count, out, out_stride, 8);
-        if (tail == 14) return unpack_all<Extended>(in, stride, count, out, out_stride, 14);
-        return unpack_all<Extended>(in, stride, count, out, out_stride, tail);
-    }
-    const size_t tail = stride - Legacy::tail;
-    if (tail == 0) return unpack_all<Legacy>(in, stride, count, out, out_stride, 0);
-    if (tail == 6) return unpack_all<Legacy>(in, stride, count, out, out_stride, 6);
-    if (tail == 8) return unpack_all<Legacy>(in, stride, count, out, out_stride, 8);
-    if (tail == 14) return unpack_all<Legacy>(in, stride, count, out, out_stride, 14);
-    return unpack_all<Legacy>(in, stride, count, out, out_stride, tail);
+    unpack_records(header.point_format, header.record_length, in, count, out, out_stride);
 }
 
 bool encode(const Header& header, const std::byte* in, size_t in_stride, size_t count, std::byte* out) {

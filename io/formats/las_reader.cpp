@@ -1,5 +1,6 @@
 // LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see las_header.h.
 #include <algorithm>
+#include <atomic>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 #include "io/core/log.h"
 #include "io/formats/buffered_input.h"
 #include "io/formats/format.h"
+#include "io/formats/las_bounds.h"
 #include "io/formats/las_crs.h"
 #include "io/formats/las_layout.h"
 #include "io/formats/las_writer.h"
@@ -52,10 +54,40 @@ class LasReader final : public PointReader {
     uint64_t left_;
 };
 
+/// Hands on what a reader gives and warns, once a source, of points that are far outside what the header states. It
+/// looks at every eighth point: what is damaged comes in longer runs.
+class WatchedReader final : public PointReader {
+ public:
+    WatchedReader(std::unique_ptr<PointReader> reader, const std::string& name, const las::StatedBounds& bounds,
+                  const Schema& schema, std::atomic<bool>& warned)
+        : reader_(std::move(reader)), name_(name), bounds_(bounds), schema_(schema), warned_(warned) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        LUCARNE_ASSIGN(const size_t got, reader_->read(batch, most));
+        if (warned_) return got;
+        const auto found = bounds_.outside(batch.bytes.data(), got, schema_.stride, 8);
+        if (!found || warned_.exchange(true)) return got;
+        const glm::dvec3 at = position_of(schema_, &batch.bytes[*found * schema_.stride]);
+        log::warn("{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it may be "
+                  "damaged",
+                  name_, at.x, at.y, at.z);
+        return got;
+    }
+    uint64_t dropped() const override { return reader_->dropped(); }
+    Losses losses() const override { return reader_->losses(); }
+
+ private:
+    std::unique_ptr<PointReader> reader_;
+    const std::string& name_;
+    const las::StatedBounds& bounds_;
+    const Schema& schema_;
+    std::atomic<bool>& warned_;
+};
+
 class LasSource final : public PointSource {
  public:
     LasSource(std::shared_ptr<const InputFile> file, las::Header header)
-        : file_(std::move(file)), header_(std::move(header)), schema_(las::make_schema(header_)) {}
+        : file_(std::move(file)), header_(std::move(header)), bounds_(header_), schema_(las::make_schema(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
         const std::string name = file_->path().string();
@@ -77,7 +109,8 @@ class LasSource final : public PointSource {
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
-        if (const Attribute* color = schema_.find(names::color)) {
+        const Attribute* color = schema_.find(names::color);
+        if (color && color->type == ScalarType::u16 && color->components == 3) {  // extra bytes may have that name
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
         las::Header kept = header_;
@@ -91,8 +124,12 @@ class LasSource final : public PointSource {
     const Schema& schema() const override { return schema_; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override {
-        if (compressed_) return laz::open_points(*compressed_, schema_);
-        return std::make_unique<LasReader>(file_, header_, schema_);
+        std::unique_ptr<PointReader> reader;
+        if (compressed_)
+            reader = laz::open_points(*compressed_, schema_);
+        else
+            reader = std::make_unique<LasReader>(file_, header_, schema_);
+        return std::make_unique<WatchedReader>(std::move(reader), info_.path, bounds_, schema_, warned_);
     }
     bool seekable() const override { return !compressed_; }
     Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
@@ -133,28 +170,32 @@ class LasSource final : public PointSource {
         return {};
     }
 
-    /// `count` records from point `first` on, or of the chunk where that is, fewer at its end.
-    Result<std::vector<std::byte>> raw_records(uint64_t first, uint64_t count) const {
+    /// Number `block` of `blocks` that are spread evenly over the file; of compressed points, which only come one after
+    /// the other, the front of a chunk.
+    Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
         if (compressed_) {
-            size_t chunk = 0;
-            for (uint64_t seen = compressed_->chunks[0].points; seen <= first;)
-                seen += compressed_->chunks[++chunk].points;
-            return laz::decode_chunk(*compressed_, chunk, count);
+            constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; of one
+            const size_t chunk = block * compressed_->chunks.size() / blocks;
+            const uint64_t most = std::min(kDecoded / blocks, kDecodedBytes / header_.record_length);
+            return laz::decode_chunk(*compressed_, chunk, std::max<uint64_t>(most, 1));
         }
-        std::vector<std::byte> raw(static_cast<size_t>(count * header_.record_length));
+        constexpr uint64_t kBlockPoints = 256;
+        const uint64_t first = block * header_.points / blocks;
+        std::vector<std::byte> raw(static_cast<size_t>(std::min(kBlockPoints, header_.points - first) *
+                                                       header_.record_length));
         LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
         return raw;
     }
 
-    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by blocks of points
-    /// spread evenly over the file. Nothing is converted, so a wrong guess loses nothing.
+    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by a sample from all over the
+    /// file. Nothing is converted, so a wrong guess loses nothing.
     Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
-        constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
-        const uint64_t step = std::max<uint64_t>(kBlockPoints, header_.points / kBlocks);
+        constexpr uint64_t kBlocks = 64, kChunks = 16;
+        const uint64_t blocks =
+            compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size()) : std::min(kBlocks, header_.points);
         std::vector<std::byte> record(schema_.stride);
-        for (uint64_t first = 0; first < header_.points; first += step) {
-            const uint64_t count = std::min(kBlockPoints, header_.points - first);
-            auto records = raw_records(first, count);
+        for (uint64_t block = 0; block < blocks; ++block) {
+            auto records = sample_block(block, blocks);
             if (!records && salvage) continue;
             LUCARNE_ASSIGN(const auto raw, std::move(records));
             for (size_t at = 0; at < raw.size(); at += header_.record_length) {
@@ -168,9 +209,11 @@ class LasSource final : public PointSource {
 
     std::shared_ptr<const InputFile> file_;
     las::Header header_;
+    las::StatedBounds bounds_;
     std::optional<laz::Points> compressed_;
     Schema schema_;
     ScanInfo info_;
+    mutable std::atomic<bool> warned_ = false;
 };
 
 Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions& options) {

@@ -8,7 +8,7 @@
 namespace lucarne::io {
 namespace {
 
-constexpr size_t kMostDepth = 32, kLongestName = 256;
+constexpr size_t kMostDepth = 32, kLongestName = 256, kLongestText = size_t{64} << 10;
 
 std::string_view word_before(std::string_view text, size_t bracket) {
     size_t first = bracket;
@@ -37,10 +37,11 @@ void walk(std::string_view text, const Visit& visit) {
     }
 }
 
-/// What stands between the next two quotes behind `at`, which is moved behind the second.
+/// The quoted text that follows the bracket at `at`, which is moved behind it.
 std::optional<std::string_view> quoted(std::string_view text, size_t& at) {
-    const size_t open = text.find('"', at);
-    const size_t close = open == text.npos ? open : text.find('"', open + 1);
+    const size_t open = text.find_first_not_of(" \t\r\n", at + 1);
+    if (open == text.npos || text[open] != '"') return std::nullopt;
+    const size_t close = text.find('"', open + 1);
     if (close == text.npos) return std::nullopt;
     at = close + 1;
     return text.substr(open + 1, close - open - 1);
@@ -68,6 +69,7 @@ bool is_horizontal(std::string_view word) {
 }  // namespace
 
 std::optional<double> wkt_metres_per_unit(std::string_view wkt) {
+    wkt = wkt.substr(0, kLongestText);
     std::optional<double> found;
     walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
         // UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
@@ -86,6 +88,7 @@ std::optional<double> wkt_metres_per_unit(std::string_view wkt) {
 }
 
 CoordinateSystem wkt_system(std::string_view wkt) {
+    wkt = wkt.substr(0, kLongestText);
     CoordinateSystem system;
     uint32_t horizontal = 0;
     walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {

@@ -35,6 +35,10 @@ TEST(CoordinateSystem, OfAnyBytesIsNoHarm) {
         wkt_metres_per_unit(text);
     }
     EXPECT_EQ(wkt_system(std::string(100000, '[')).name, "");
+    std::string brackets;  // of a size that nothing but time in proportion gets through
+    for (int i = 0; i < 4'000'000; ++i) brackets += "UNIT[]";
+    EXPECT_FALSE(wkt_metres_per_unit("PROJCS[" + brackets));
+    EXPECT_EQ(wkt_system("PROJCS[" + brackets).name, "");
     EXPECT_EQ(wkt_system("PROJCS[\"a\n\x01\xff\"]").name, "a???");
     EXPECT_EQ(wkt_system(R"(PROJCS["a",AUTHORITY["EPSG","99999999999"]])").epsg, 0u);
 }

@@ -8,7 +8,7 @@
 
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
-#include "io/formats/las_header.h"
+#include "io/formats/las_bounds.h"
 #include "tests/io/las_builder.h"
 
 namespace lucarne::io {
@@ -149,6 +149,41 @@ TEST_F(Las, ExtraBytesBecomeTypedAttributesByName) {
     EXPECT_EQ(value(*source, "intensity_2"), 7);  // the extra byte of the same name
     EXPECT_EQ(source->schema().find("extra_bytes")->components, 2u);
     EXPECT_EQ(value(*source, "extra_bytes", 1), 'z');
+}
+
+TEST_F(Las, ExtraBytesNamedAsWhatTheyAreNotAreNothingButExtraBytes) {
+    LasFile file;
+    file.add_vlr("LASF_Spec", 4, extra_descriptor(0, "nothing") + extra_descriptor(1, "color"));
+    file.records = {record0(1, 2, 3) + "\x07", record0(1, 2, 3) + "\x08"};
+    const auto source = open(file);
+    EXPECT_EQ(value(*source, "color", 0, 1), 8);
+    EXPECT_EQ(source->info().color_bits, 8u) << "as nothing was read for it";
+}
+
+TEST_F(Las, PointsFarOutsideTheStatedBoxAreTold) {
+    const auto header = [&](double low, double high) {
+        las::Header h;
+        h.scale = glm::dvec3(0.5);
+        h.offset = glm::dvec3(10);
+        h.low = glm::dvec3(low);
+        h.high = glm::dvec3(high);
+        return h;
+    };
+    const auto outside = [](const las::Header& h, int32_t x, int32_t z) {
+        const std::string records = raw(0) + raw(0) + raw(0) + raw(x) + raw(0) + raw(z);
+        return las::StatedBounds(h).outside(reinterpret_cast<const std::byte*>(records.data()), 2, 12).has_value();
+    };
+    // 0 to 20 units, and as far again on each side, are the integers -60 to 60.
+    EXPECT_FALSE(outside(header(0, 20), -60, 60));
+    EXPECT_TRUE(outside(header(0, 20), -61, 0));
+    EXPECT_TRUE(outside(header(0, 20), 0, 61));
+    EXPECT_FALSE(outside(header(0, 0), 0, 1 << 30)) << "a box that was never filled in";
+    EXPECT_FALSE(outside(header(20, 0), 0, 1 << 30)) << "no box";
+    EXPECT_FALSE(outside(header(0, std::nan("")), 0, 1 << 30)) << "no box";
+    las::Header mirrored = header(0, 20);
+    mirrored.scale.x = -0.5;
+    EXPECT_FALSE(outside(mirrored, 60, 0));
+    EXPECT_TRUE(outside(mirrored, 61, 0));
 }
 
 TEST_F(Las, ExtraBytesThatDoNotFitTheRecordStayBytes) {

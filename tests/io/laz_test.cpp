@@ -10,6 +10,7 @@
 #include "io/formats/laz/encoder.h"
 #include "io/formats/laz/integers.h"
 #include "tests/io/io_testing.h"
+#include "tests/io/las_builder.h"
 
 namespace lucarne::io {
 namespace {
@@ -187,6 +188,21 @@ TEST(LazWriter, WhatItWritesIsReadBackInItsOrderBitByBit) {
         }
 }
 
+TEST(LazReader, ColoursAreSoughtInAllOfAChunk) {
+    const testing::TemporaryFolder folder;
+    Schema schema;
+    schema.position = PositionType::i32_scaled;
+    schema.stride = static_cast<uint32_t>(position_bytes(schema.position));
+    schema.add(std::string(names::color), ScalarType::u16, 3);
+    std::vector<std::byte> records(40'000 * schema.stride);
+    for (const uint16_t brightest : {uint16_t{200}, uint16_t{40'000}}) {
+        for (size_t i = 300; i < 40'000; ++i) store(&records[i * schema.stride + 12], brightest);
+        auto writer = create_scan(folder / "dark.laz", schema, {}, {.overwrite = true});
+        ASSERT_TRUE(writer && (*writer)->write(records) && (*writer)->finish());
+        EXPECT_EQ((*open_scan(folder / "dark.laz"))->info().color_bits, brightest > 255 ? 16u : 8u);
+    }
+}
+
 TEST(LazWriter, AScanWithoutPointsIsAFileWithoutPoints) {
     const testing::TemporaryFolder folder;
     const RestlessSource source(7, 0, 1);
@@ -297,6 +313,20 @@ TEST_P(LazFile, ReadsTheSameWhereTheChunkTableIsMissingOrZero) {
         ASSERT_TRUE(again) << again.error().line();  // layered chunks of any size say how long they are
         EXPECT_EQ(again->bytes, whole->bytes);
     }
+}
+
+TEST_P(LazFile, WhereTheLastBytesWereNeverWrittenItIsRejected) {
+    std::string bytes = bytes_;
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.end(), '\0');
+    EXPECT_FALSE(read(bytes));
+}
+
+TEST_P(LazFile, MorePointsThanItsBytesCanHoldAreRejectedUnread) {
+    std::string bytes = bytes_;
+    for (const size_t at : {size_t{107}, size_t{247}}) testing::put(bytes, at, uint32_t{40'000'000});
+    const auto got = read(bytes);
+    ASSERT_FALSE(got);
+    EXPECT_THAT(got.error().line(), ::testing::HasSubstr("more than its"));
 }
 
 TEST_P(LazFile, TruncatedAnywhereItIsRejected) {

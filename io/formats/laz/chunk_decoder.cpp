@@ -104,6 +104,12 @@ Result<Layers> read_layers(const std::string& file, const Compression& compressi
 
 }  // namespace
 
+uint64_t model_bytes(const Compression& compression) {
+    // A model of a byte's values: how often each was seen, where each begins, and a table to find it.
+    constexpr uint64_t kOfByte = 1536, kOfFields = uint64_t{64} << 10;
+    return (kOfFields + kOfByte * record_bytes(compression)) * (compression.layered ? kChannels : 1);
+}
+
 size_t layered_head_bytes(const Compression& compression) {
     return record_bytes(compression) + sizeof(uint32_t) * (1 + Layered<Decoder>::layer_count(compression));
 }

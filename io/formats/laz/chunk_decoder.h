@@ -30,6 +30,9 @@ class ChunkDecoder {
     std::unique_ptr<State> state_;
 };
 
+/// About the memory of a chunk's models while it is decoded, at most.
+uint64_t model_bytes(const Compression& compression);
+
 /// What a layered chunk says of itself, in its first layered_head_bytes.
 struct LayeredSize {
     uint64_t points = 0, bytes = 0;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/formats/las_bounds.h"
 #include "io/formats/laz/chunk_decoder.h"
 #include "io/formats/laz/decoder.h"
 #include "io/formats/laz/integers.h"
@@ -77,7 +78,7 @@ Result<std::vector<ChunkPlace>> parse_table(const InputFile& file, const las::He
 class Walk {
  public:
     Walk(const InputFile& file, const las::Header& header, const Compression& compression)
-        : file_(file), header_(header), compression_(compression), name_(file.path().string()) {}
+        : file_(file), header_(header), compression_(compression), bounds_(header), name_(file.path().string()) {}
 
     Result<std::vector<ChunkPlace>> go(bool salvage) {
         if (compression_.chunk_points == kVariableChunks && !compression_.layered)
@@ -113,16 +114,30 @@ class Walk {
         if (chunk.bytes > kMostChunkBytes)
             return rejected(name_,
                             fmt::format("has a chunk of {} points, too large to be read", chunk.points));
-        LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, chunk.bytes));
+        // Usual chunks shrink to less than half: the longest that could be is not read for each.
+        for (uint64_t some = chunk.points * header_.record_length / 2 + 4096;; some *= 4) {
+            const uint64_t bytes = std::min(some, chunk.bytes);
+            auto used = decode_all(chunk, bytes);
+            if (!used && bytes < chunk.bytes && used.error().kind == ErrorKind::input_rejected) continue;
+            LUCARNE_ASSIGN(chunk.bytes, std::move(used));
+            return {};
+        }
+    }
+
+    /// How many of so many bytes the chunk takes. Bytes that are none of a chunk decode to something, too: to places far
+    /// outside the scan, by which it is rejected.
+    Result<uint64_t> decode_all(const ChunkPlace& chunk, uint64_t most_bytes) const {
+        LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, most_bytes));
         LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name_, compression_, chunk.points, bytes));
         std::vector<std::byte> records(std::min<uint64_t>(chunk.points, 1000) * header_.record_length);
         for (uint64_t to_go = chunk.points; to_go > 0;) {
             const uint64_t part = std::min<uint64_t>(to_go, 1000);
             LUCARNE_TRY(decoder.decode(part, records.data()));
+            if (bounds_.outside(records.data(), part, header_.record_length))
+                return rejected(name_, "has compressed points that are damaged");
             to_go -= part;
         }
-        chunk.bytes = decoder.consumed();
-        return {};
+        return decoder.consumed();
     }
 
     Result<void> measure_layers(ChunkPlace& chunk) const {
@@ -141,6 +156,7 @@ class Walk {
     const InputFile& file_;
     const las::Header& header_;
     const Compression& compression_;
+    las::StatedBounds bounds_;
     std::string name_;
 };
 

@@ -55,6 +55,7 @@ class Decoder {
         return found & ((1u << count) - 1);
     }
     bool failed() const { return failed_; }
+    void fail() { failed_ = true; }  ///< what was decoded cannot be
     bool at_end() const { return next_ == end_; }
     /// How far it has read. After the last symbol that is the whole code.
     const std::byte* position() const { return next_; }

@@ -28,8 +28,8 @@ int32_t times(int32_t step, int32_t count) {  // wraps, as the format does
 }  // namespace
 
 uint64_t GpsTimeModel::decode(Decoder& decoder) {
-    for (;;) {
-        uint32_t skipped = 0;  // trains
+    for (size_t i = 0; i <= trains_.size(); ++i) {  // an encoder goes to another train once
+        uint32_t skipped = 0;                       // trains
         if (trains_[current_].step == 0) {
             const uint32_t symbol = decoder.symbol(first_) + 1 - unchanged_;
             if (symbol == 1)
@@ -51,6 +51,8 @@ uint64_t GpsTimeModel::decode(Decoder& decoder) {
         if (skipped == 0 || decoder.failed()) return trains_[current_].time;
         current_ = (current_ + skipped) & 3;
     }
+    decoder.fail();
+    return trains_[current_].time;
 }
 
 void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {

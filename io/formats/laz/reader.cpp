@@ -6,6 +6,7 @@
 
 #include "io/core/parallel.h"
 #include "io/formats/format.h"
+#include "io/formats/las_bounds.h"
 #include "io/formats/las_layout.h"
 #include "io/formats/laz/chunk_decoder.h"
 
@@ -64,8 +65,11 @@ Result<uint64_t> sound_points(const Points& points, size_t index) {
     if (!chunk && chunk.error().kind == ErrorKind::input_rejected) return 0u;
     if (!chunk) return tl::unexpected(std::move(chunk).error());
     std::vector<std::byte> record(points.header.record_length);
+    const las::StatedBounds bounds(points.header);
     uint64_t sound = 0;
-    while (sound < place.points && chunk->decoder->decode(1, record.data())) ++sound;
+    while (sound < place.points && chunk->decoder->decode(1, record.data()) &&
+           !bounds.outside(record.data(), 1, record.size()))
+        ++sound;
     return sound;
 }
 
@@ -145,7 +149,7 @@ class Reader final : public PointReader {
         const size_t first = next_;
         std::vector<uint64_t> begins;
         uint64_t count = 0;
-        for (; next_ < points_.chunks.size() && begins.size() < 4 * size_t{side_by_side_}; ++next_) {
+        for (; next_ < points_.chunks.size() && begins.size() < most_chunks(); ++next_) {
             const uint64_t more = points_.chunks[next_].points;
             if (count + more > most_ready()) break;
             begins.push_back(count);
@@ -193,6 +197,13 @@ class Reader final : public PointReader {
             lose(first + i, points_.chunks[first + i].points - kept[i]);
         }
         ready_.resize(end);
+    }
+
+    /// Chunks whose models are held at once: those of wide records take many times the room of the records.
+    size_t most_chunks() const {
+        constexpr uint64_t kModels = uint64_t{256} << 20;
+        const uint64_t each = model_bytes(points_.compression);
+        return static_cast<size_t>(std::clamp<uint64_t>(kModels / each, 1, 4 * side_by_side_));
     }
 
     const Points& points_;
