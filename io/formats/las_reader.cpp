@@ -97,6 +97,10 @@ class LasSource final : public PointSource {
             fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
                         header_.wave_bytes ? las::with_waves(header_.point_format) : header_.point_format);
         if (header_.wave_bytes) skip_waves();
+        if (header_.find("lascompatible", 22204))
+            log::warn("{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns and "
+                      "angles that do not fit that stand in extra bytes only",
+                      name);
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();

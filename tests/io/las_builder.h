@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 // LAS files by hand, after the specification and not after our own writer: fields at their offsets.
@@ -27,6 +28,7 @@ struct LasFile {
     uint8_t major = 1, minor = 2, format = 0;
     uint16_t encoding = 0, record_length = 0;
     double scale[3] = {0.01, 0.01, 0.01}, offset[3] = {0, 0, 0};
+    std::pair<double, double> box{0, 0};  ///< least and largest of each axis
     std::vector<std::string> vlrs, evlrs, records;
     // What the header says, where that is not the truth.
     int64_t said_points = -1, said_old_points = -1, said_vlrs = -1, said_points_offset = -1,
@@ -70,6 +72,8 @@ struct LasFile {
         for (size_t axis = 0; axis < 3; ++axis) {
             put(b, 131 + 8 * axis, scale[axis]);
             put(b, 155 + 8 * axis, offset[axis]);
+            put(b, 179 + 16 * axis, box.second);
+            put(b, 187 + 16 * axis, box.first);
         }
         for (const auto& r : records) b += r;
         if (minor >= 4) {

@@ -374,6 +374,26 @@ TEST_F(Las, RecordsThatAreNotThereHarmNoPoint) {
     EXPECT_EQ(read_all(*open(file))->count, 1u);
 }
 
+TEST_F(Las, WarningsAreOfTheFileTheyAreAbout) {
+    LasFile file;
+    file.records.assign(16, record0(1, 2, 3));
+    const auto said = [&] {
+        ::testing::internal::CaptureStderr();
+        const auto source = open(file);
+        for (int pass = 0; pass < 3; ++pass) EXPECT_TRUE(read_all(*source));
+        return ::testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said(), "");
+    file.add_vlr("lascompatible", 22204, "");
+    EXPECT_THAT(said(), HasSubstr("compatibility mode"));
+    file.vlrs.clear();
+    file.records[8] = record0(2'000'000'000, 2, 3);
+    file.box = {0, 1};
+    const std::string outside = said();
+    EXPECT_THAT(outside, HasSubstr("far outside"));
+    EXPECT_EQ(outside.find("far outside"), outside.rfind("far outside")) << "once, however often it is read";
+}
+
 TEST_F(Las, AnyTruncationIsRejected) {
     LasFile file;
     file.format = 3;
