@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/formats/format.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -17,16 +18,18 @@ constexpr std::array<std::string_view, 9> kExtensions = {".las", ".laz", ".e57",
                                                          ".ptx", ".pts", ".xyz", ".asc"};
 
 bool is_scan(const fs::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+    return std::ranges::find(kExtensions, io::lower_extension(path)) != kExtensions.end();
 }
 
 }  // namespace
 
 std::span<const std::string_view> scan_extensions() {
     return kExtensions;
+}
+
+bool names_scan(const fs::path& path) {
+    const std::string extension = io::lower_extension(path);
+    return is_scan(path) || extension == ".csv" || extension == ".txt" || extension == ".obj";
 }
 
 Result<std::vector<std::string>> expand_folders(const std::vector<std::string>& inputs) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,8 @@ namespace lucarne::viewer {
 
 /// Of the files that may be scans: ".las", in lower case.
 std::span<const std::string_view> scan_extensions();
+/// Whether the name ends like that of a scan, text and meshes among them.
+bool names_scan(const std::filesystem::path& path);
 
 /// The files that are meant: a folder stands for the scans in it and below (by their extension: .las .laz
 /// .e57 .ply .pcd .ptx .pts .xyz .asc), sorted by name; anything else for itself. Errors: folders that cannot

@@ -18,6 +18,7 @@
 #include "io/core/json.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/outputs.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -141,8 +142,9 @@ Result<void> compare(const CompareOptions& options) {
     if (options.reference.empty() && options.halves.empty())
         return bad_arguments("compare", "there is nothing to compare with",
                              "name a second picture or --halves");
-    for (const std::string& output : {options.json, options.error_picture})
-        if (!output.empty()) LUCARNE_TRY(check_output(output, options.overwrite));
+    auto inputs = options.halves;
+    inputs.insert(inputs.end(), {options.picture, options.reference, options.gbuffer});
+    LUCARNE_TRY(check_outputs({options.json, options.error_picture}, options.overwrite, inputs));
     LUCARNE_ASSIGN(const Pictures pictures, read_pictures(options));
 
     // Both are exposed alike, or FLIP could not tell a dark picture from a bright one.

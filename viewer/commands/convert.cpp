@@ -19,6 +19,7 @@
 #include "octree/normals/normals.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/describe.h"
 #include "viewer/input.h"
 #include "viewer/scan_list.h"
@@ -159,9 +160,12 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
     LUCARNE_ASSIGN(build.memory, parse_bytes("--memory", options.memory));
-    if (!options.append) LUCARNE_TRY(check_output(build.output, build.overwrite));
-    if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, build.overwrite));
+    const std::string output = build.output.string();
+    if (names_scan(output))
+        return bad_arguments(output, "has the name of a scan",
+                             "a cache is named .luc; lucarne export writes scans");
     LUCARNE_ASSIGN(options.inputs, expand_folders(options.inputs));
+    LUCARNE_TRY(check_outputs({options.append ? "" : output, options.json}, build.overwrite, options.inputs));
     SetAside aside(options.inputs.size(), options.read);
     build.read_options = io::options_text(options.read);
     if (options.append) return append(std::move(options), aside);

@@ -11,6 +11,7 @@
 #include "io/formats/scan.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/outputs.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -22,6 +23,7 @@ struct Options {
 };
 
 Result<void> export_cache(const Options& options) {
+    LUCARNE_TRY(check_outputs({options.output.string()}, options.overwrite, {options.cache.string()}));
     LUCARNE_ASSIGN(const auto source, octree::open_octree(options.cache));
     const octree::Exporter exporter(*source, options.content);
     const uint64_t points = source->header().points;

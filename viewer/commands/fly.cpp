@@ -16,6 +16,7 @@
 #include "io/core/page_cache.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/flythrough/compare_flights.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/html_report.h"
@@ -71,8 +72,9 @@ Result<void> check(const FlyOptions& options) {
     if (options.frame_time_ms > 0 && !options.realtime)
         return bad_arguments("--frame-time",
                              "needs --realtime: flights that wait draw the same on every run");
-    LUCARNE_TRY(check_output(options.report, options.overwrite));
-    if (!options.html.empty()) LUCARNE_TRY(check_output(options.html, options.overwrite));
+    auto inputs = options.input.paths;
+    inputs.insert(inputs.end(), {options.path, options.drawing.scene});
+    LUCARNE_TRY(check_outputs({options.report, options.html, options.video}, options.overwrite, inputs));
     if (!options.video.empty()) {
         if (options.realtime || options.soak > 0 || plans_of(options).size() > 1)
             return bad_arguments("--video", "is of one flight that waits for its frames",

@@ -16,6 +16,7 @@
 #include "octree/cache.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/describe.h"
 #include "viewer/input.h"
 #include "viewer/scan_list.h"
@@ -102,6 +103,7 @@ void print(const json& described) {
 
 Result<void> info(const Options& options) {
     LUCARNE_ASSIGN(const auto inputs, expand_folders(options.inputs));
+    LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, inputs));
     const bool several = inputs.size() > 1;
     SetAside aside(inputs.size(), options.read);
     json all = json::array();

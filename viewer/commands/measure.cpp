@@ -11,6 +11,7 @@
 #include "io/core/file.h"
 #include "io/core/log.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/input.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/nearest.h"
@@ -62,6 +63,8 @@ Result<void> write_sections(const Options& options, const std::vector<Measuremen
                        read_section(*cache.source(), Slice::of(measurement), options.section_points,
                                     [](const Section&, bool) { return true; }));
         const auto path = std::filesystem::path(options.sections) / fmt::format("section-{}", ++number);
+        LUCARNE_TRY(check_outputs({path.string() + ".csv", path.string() + ".svg"}, options.overwrite,
+                                  options.input.paths));
         LUCARNE_TRY(write_section(path, section, measurement.name, units, cache, options.overwrite));
         log::info("{}.csv and .svg: {} points of {}{}", path.string(), section.points.size(),
                   measurement.name,
@@ -74,6 +77,10 @@ Result<void> measure(const Options& options) {
     if (options.measurements.empty() && options.at.empty())
         return bad_arguments("measure", "there is nothing to measure",
                              "give a file of measurements or --at X,Y,Z");
+    // Measurements may be saved back to where they came from, but nothing else may take their place.
+    LUCARNE_TRY(check_outputs({options.output, options.json_file}, options.overwrite, options.input.paths));
+    if (!options.measurements.empty())
+        LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, {options.measurements}));
     LUCARNE_ASSIGN(auto source, open_input(options.input));
     const double metres_per_unit = source->header().metres_per_unit;
     NodeCache cache(std::move(source));

@@ -22,6 +22,7 @@
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/input.h"
 #include "viewer/show/finished_picture.h"
 
@@ -131,14 +132,19 @@ std::vector<std::string> layer_paths(const std::string& output, const gi::Engine
     return paths;
 }
 
+/// The files that it reads.
+std::vector<std::string> inputs_of(const RenderOptions& options) {
+    auto inputs = options.input.paths;
+    inputs.push_back(options.drawing.scene);
+    return inputs;
+}
+
 /// Before any long work: whether the layers can be written.
 Result<void> check_layers(const RenderOptions& options) {
     LUCARNE_ASSIGN(const auto engine, gi::make_engine(options.drawing.render.engine));
     if (engine->info().layers.empty())
         return bad_arguments("--layers", fmt::format("engine {} has none", options.drawing.render.engine));
-    for (const auto& path : layer_paths(options.output, engine->info()))
-        LUCARNE_TRY(check_output(path, options.overwrite));
-    return {};
+    return check_outputs(layer_paths(options.output, engine->info()), options.overwrite, inputs_of(options));
 }
 
 Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline, ImageSize size) {
@@ -165,9 +171,7 @@ Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOption
 Result<void> render(RenderOptions options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
-    LUCARNE_TRY(check_output(options.output, options.overwrite));
-    for (const std::string& also : {options.json, options.gbuffer})
-        if (!also.empty()) LUCARNE_TRY(check_output(also, options.overwrite));
+    LUCARNE_TRY(check_outputs({options.output, options.json, options.gbuffer}, options.overwrite, inputs_of(options)));
     LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));

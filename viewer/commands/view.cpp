@@ -9,11 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
 
-#include "io/core/file.h"
 #include "io/core/log.h"
 #include "octree/bulk.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/outputs.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/input.h"
 #include "viewer/tools/measure_file.h"
@@ -90,7 +90,9 @@ Result<void> view(ViewOptions options) {
     if (!options.path.empty()) LUCARNE_TRY(load_path(options.path));
     std::optional<ScriptedShot> shot;
     if (!options.screenshot.empty()) {
-        LUCARNE_TRY(check_output(options.screenshot, options.overwrite));
+        auto inputs = options.input.paths;
+        inputs.insert(inputs.end(), {options.measurements, options.path, options.drawing.scene});
+        LUCARNE_TRY(check_outputs({options.screenshot}, options.overwrite, inputs));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
     std::atomic<bool> awake{false};

@@ -1,0 +1,99 @@
+// No command replaces what it reads.
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/viewer/program.h"
+
+namespace lucarne::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Outputs : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        ASSERT_EQ(test::lucarne("generate cornell --points 2000 -o " + scan_).code, 0);
+        before_ = test::bytes_of(scan_);
+    }
+    /// That `arguments` are refused at once and the scan stays as it is.
+    void refused(const std::string& arguments) const {
+        const auto done = test::lucarne(arguments);
+        EXPECT_EQ(done.code, 2) << arguments << "\n" << done.output;
+        EXPECT_NE(done.output.find("is an input of this command"), std::string::npos) << done.output;
+        EXPECT_EQ(test::bytes_of(scan_), before_) << arguments;
+    }
+
+    const test::TemporaryFolder folder_;
+    const std::string scan_ = folder_ / "scan.las";
+    std::string before_;
+};
+
+TEST_F(Outputs, AnInputIsNeverReplacedByConvert) {
+    const std::string named = folder_ / "scan";  // a scan whose name does not say so
+    fs::copy_file(scan_, named);
+    const std::string link = folder_ / "link.luc", twin = folder_ / "twin.luc";
+    fs::create_symlink(named, link);
+    fs::create_hard_link(named, twin);
+    const std::string dotted = folder_ / "./scan";
+    for (const auto& output : {named, link, twin, dotted}) {
+        refused(fmt::format("convert {} -o {} --overwrite", named, output));
+        EXPECT_EQ(test::bytes_of(named), before_) << output;
+    }
+    refused(fmt::format("convert {} -o {} --json {} --overwrite", scan_, folder_ / "x.luc", scan_));
+    EXPECT_FALSE(fs::exists(folder_ / "x.luc"));
+    // One of a folder's.
+    refused(fmt::format("convert {} -o {} --json {} --overwrite", folder_.path().string(), folder_ / "x.luc",
+                        scan_));
+}
+
+TEST_F(Outputs, ACacheIsNotCalledLikeAScan) {
+    for (const char* name :
+         {"scan.las", "new.las", "new.XYZ", "new.copc.laz", "new.txt", "new.csv", "new.obj"}) {
+        const auto done = test::lucarne(fmt::format("convert {} -o {} --overwrite", scan_, folder_ / name));
+        EXPECT_EQ(done.code, 2) << name << done.output;
+        EXPECT_NE(done.output.find("a cache is named .luc; lucarne export writes scans"), std::string::npos)
+            << done.output;
+    }
+    EXPECT_EQ(test::bytes_of(scan_), before_);
+    EXPECT_FALSE(fs::exists(folder_ / "new.las"));
+}
+
+TEST_F(Outputs, NoOtherCommandReplacesItsInputEither) {
+    refused(fmt::format("info {} --json {} --overwrite", scan_, scan_));
+    refused(fmt::format("render {} --no-cache -o {} --json {} --overwrite", scan_, folder_ / "x.png", scan_));
+    refused(fmt::format("measure {} --no-cache --at 0,0,0 --json {} --overwrite", scan_, scan_));
+    const std::string picture = folder_ / "scan.png";
+    fs::create_symlink(scan_, picture);
+    refused(fmt::format("render {} --no-cache -o {} --overwrite", scan_, picture));
+    refused(fmt::format("fly {} --no-cache --path none.json -o {} --overwrite", scan_, picture));
+    refused(fmt::format("view {} --no-cache --screenshot {} --overwrite", scan_, picture));
+    const std::string reference = folder_ / "scan.json";
+    fs::create_hard_link(scan_, reference);
+    refused(fmt::format("compare {} {} --json {} --overwrite", scan_, scan_, reference));
+}
+
+TEST_F(Outputs, ACacheIsNotReplacedByItsExport) {
+    const std::string cache = folder_ / "scan.luc", named = folder_ / "cache.las";
+    ASSERT_EQ(test::lucarne(fmt::format("convert {} -o {} --normals none", scan_, cache)).code, 0);
+    fs::rename(cache, named);
+    const std::string bytes = test::bytes_of(named);
+    refused(fmt::format("export {} -o {} --overwrite", named, named));
+    EXPECT_EQ(test::bytes_of(named), bytes);
+}
+
+TEST_F(Outputs, ASectionDoesNotReplaceTheScanItIsOf) {
+    const std::string scan = folder_ / "section-1.csv";
+    std::ofstream(scan) << "x,y,z\n0,0,0\n1,1,0\n1,0,1\n0,1,1\n";
+    const std::string bytes = test::bytes_of(scan), what = folder_ / "m.json";
+    std::ofstream(what) << R"({"measurements": [{"kind": "section", "name": "a", "thickness": 5,
+        "points": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}]}]})";
+    refused(fmt::format("measure {} --no-cache --measurements {} --sections {} --overwrite", scan, what,
+                        folder_.path().string()));
+    EXPECT_EQ(test::bytes_of(scan), bytes);
+}
+
+}  // namespace
+}  // namespace lucarne::viewer
