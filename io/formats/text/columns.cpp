@@ -162,7 +162,14 @@ bool looks_like_color(const Sample& sample, size_t column) {
     return whole || most <= 1;
 }
 
-ScalarType guessed_type(std::string_view name, const Look& look) {
+/// Three columns of whole numbers from 0 to 255.
+bool looks_like_bytes(const Sample& sample, size_t column) {
+    for (size_t c = column; c < column + 3; ++c)
+        if (const Look look = look_at(sample, c); !look.whole || look.least < 0 || look.most > 255) return false;
+    return true;
+}
+
+ScalarType guessed_type(std::string_view name, const Look& look, bool whole_file) {
     const auto fits = [&](ScalarType type) {
         if (type == ScalarType::f64 || !look.numbers) return true;
         const double range = std::ldexp(1.0, static_cast<int>(8 * scalar_bytes(type)));
@@ -172,7 +179,7 @@ ScalarType guessed_type(std::string_view name, const Look& look) {
     };
     for (const Known& known : kKnown)
         if (name == known.name && fits(known.type)) return known.type;
-    return look.numbers && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
+    return look.numbers && whole_file && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
 }
 
 /// Lays out fields and attributes.
@@ -238,7 +245,7 @@ class LayoutMaker {
         for (const auto member : kColor)
             if (const Look look = look_at(sample_, index_of(columns_, member)); look.numbers && !look.whole)
                 return ScalarType::f32;
-        return color_bits(columns_, sample_) == 8 ? ScalarType::u8 : ScalarType::u16;
+        return sample_.whole && color_bits(columns_, sample_) == 8 ? ScalarType::u8 : ScalarType::u16;
     }
 
     void scalar(size_t column) {
@@ -247,7 +254,7 @@ class LayoutMaker {
         // These names promise a shape that a single column does not have.
         for (const auto reserved : {names::color, names::normal, names::normal_oct, names::area})
             if (name == reserved) name.insert(0, "text_");
-        const auto type = c.type.value_or(guessed_type(name, look_at(sample_, column)));
+        const auto type = c.type.value_or(guessed_type(name, look_at(sample_, column), sample_.whole));
         layout_.schema.add(unique_name(layout_.schema, name), type);
         put(column, type, layout_.schema.attributes.back().offset);
     }
@@ -324,7 +331,7 @@ std::optional<std::vector<Column>> named_columns(const std::vector<std::string_v
     return columns;
 }
 
-std::vector<Column> guess_columns(const Sample& sample) {
+std::vector<Column> guess_columns(const Sample& sample, bool pts) {
     std::vector<Column> columns;
     const auto add = [&](const Triple& triple) {
         for (const auto name : triple) columns.push_back({std::string(name), std::nullopt});
@@ -333,9 +340,12 @@ std::vector<Column> guess_columns(const Sample& sample) {
     add(kAxes);
     while (columns.size() < sample.columns) {
         const size_t at = columns.size(), left = sample.columns - at;
-        // x y z i r g b: the first of four is the intensity.
         const bool four = left % 3 == 1 && !intensity && !sample.words[at];
-        const bool color_next = four && !color && looks_like_color(sample, at + 1);
+        bool color_next = four && !color && looks_like_color(sample, at + 1);
+        if (color_next && looks_like_color(sample, at)) {
+            const bool here = looks_like_bytes(sample, at), next = looks_like_bytes(sample, at + 1);
+            color_next = next == here ? pts : next;
+        }
         if (sample.words[at]) {
             columns.push_back({"-", std::nullopt});
         } else if (!normal && looks_like_normals(sample, at)) {

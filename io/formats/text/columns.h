@@ -21,6 +21,7 @@ struct Sample {
     size_t columns = 0;
     std::vector<double> values;  ///< row by row; NaN where there is none
     std::vector<bool> words;     ///< of each column: holds something that is no number
+    bool whole = true;           ///< every row is there
     size_t rows() const { return columns ? values.size() / columns : 0; }
     double at(size_t row, size_t column) const { return values[row * columns + column]; }
 };
@@ -37,12 +38,14 @@ std::vector<std::string_view> split(std::string_view line, char separator);
 /// them, each once.
 std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words);
 
-/// x, y, z; then what looks like unit normals, colours, an intensity.
-std::vector<Column> guess_columns(const Sample& sample);
+/// x, y, z; then what looks like unit normals, colours, an intensity. Of four columns that may be an intensity and
+/// colours either way round, those of 0 to 255 are the colours; else the colours stand first, but last in PTS.
+std::vector<Column> guess_columns(const Sample& sample, bool pts);
 
 /// The records that these columns make: positions double, or float where all three are said to be. Types that
 /// are not stated follow from the sample: whole numbers and
-/// colours as small as they are, normals float, anything else double.
+/// colours as small as they are, normals float, anything else double. Rows that the sample has not seen fit as well:
+/// then colours take 16 bits and numbers of no agreed type are double.
 RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample);
 
 /// "x y z intensity:i32 red green blue".

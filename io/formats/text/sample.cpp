@@ -13,6 +13,7 @@ constexpr uint64_t kRowsKept = 16384;
 
 class Sampler {
  public:
+    /// Of the rows at least `step` bytes lie between the beginnings of two that are kept.
     Sampler(const RowLayout& layout, size_t columns, uint64_t step) : layout_(layout), step_(step) {
         sample_.columns = columns;
         sample_.words.assign(columns, false);
@@ -65,7 +66,7 @@ Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end,
     const uint64_t bytes = end - begin;
     const bool whole = bytes <= kPlaces * kPlaceBytes;
     const uint64_t places = whole ? 1 : kPlaces, place_bytes = whole ? bytes : kPlaceBytes;
-    Sampler sampler(layout, columns, places * place_bytes / kRowsKept + 1);
+    Sampler sampler(layout, columns, whole ? 0 : places * place_bytes / kRowsKept + 1);
     std::string text;
     uint64_t looked_at = 0;
     for (uint64_t place = 0; place < places; ++place) {
@@ -83,6 +84,7 @@ Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end,
     sampled.rows =
         whole ? sampler.rows() : static_cast<uint64_t>(static_cast<double>(sampler.rows()) * share);
     sampled.sample = sampler.take();
+    sampled.sample.whole = whole;
     return sampled;
 }
 

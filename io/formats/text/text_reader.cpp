@@ -162,7 +162,7 @@ class TextSource final : public PointSource {
                                 printable(text), sample.columns),
                     "say what they are with --columns");
         }
-        auto columns = guess_columns(sample);
+        auto columns = guess_columns(sample, head_.layout.has_counts);
         if (!options.quiet)
             log::info("{}: its columns are taken as {}; --columns can say otherwise", file_->path().string(),
                       columns_text(columns));
