@@ -50,6 +50,7 @@ Result<std::optional<std::string_view>> BufferedInput::line(char terminator) {
         if (!end && bytes.size() >= wanted) continue;  // nothing says yet that the range ends here
         const size_t length = end ? static_cast<size_t>(end - text) : bytes.size();
         skip(length + (end ? 1 : 0));
+        open_line_ = !end;
         return std::string_view(text, length);
     }
     return rejected(path(), "has a line of more than 1 MiB");

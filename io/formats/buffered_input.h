@@ -29,6 +29,10 @@ class BufferedInput {
     /// The next line without its terminator; empty at the end of the range. A line over 1 MiB is rejected.
     Result<std::optional<std::string_view>> line(char terminator);
 
+    /// Whether the line read last has no terminator: the range ends with it.
+    bool open_line() const { return open_line_; }
+    bool at_end() const { return first_ == last_ && next_ >= end_; }
+
     uint64_t position() const { return next_ - (last_ - first_); }  ///< in the file
     std::string path() const { return file_->path().string(); }
 
@@ -37,6 +41,7 @@ class BufferedInput {
     uint64_t next_, end_;  ///< where the next system call reads; the end of the range
     std::vector<std::byte> buffer_;
     size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed
+    bool open_line_ = false;
 };
 
 }  // namespace lucarne::io

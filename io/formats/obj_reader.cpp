@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,8 +23,11 @@ using namespace mesh;
 
 class ObjParser {
  public:
-    explicit ObjParser(const std::shared_ptr<const InputFile>& file)
-        : name_(file->path().string()), input_(file, 0, file->size()), companions_(mesh_, file->path()) {}
+    ObjParser(const std::shared_ptr<const InputFile>& file, bool salvage)
+        : name_(file->path().string()),
+          salvage_(salvage),
+          input_(file, 0, file->size()),
+          companions_(mesh_, file->path()) {}
 
     Result<void> parse() {
         std::string joined;  // of a line that goes on behind a backslash
@@ -42,10 +46,10 @@ class ObjParser {
                 if (goes_on) continue;
                 line = joined;
             }
-            LUCARNE_TRY(statement(line));
+            LUCARNE_TRY(take(line));
             joined.clear();
         }
-        if (!joined.empty()) LUCARNE_TRY(statement(joined));
+        if (!joined.empty()) LUCARNE_TRY(take(joined));
         finish_colors();
         return {};
     }
@@ -54,10 +58,31 @@ class ObjParser {
     uint64_t state() const { return companions_.state(); }
     uint64_t other() const { return other_; }
     uint64_t faces() const { return faces_; }
+    const Losses& losses() const { return losses_; }
 
  private:
     tl::unexpected<Error> wrong(std::string why) const {
         return rejected(name_, fmt::format("line {} {}", line_, why));
+    }
+
+    /// One statement. Where it makes no sense and the file ends with it, the file is cut off.
+    Result<void> take(std::string_view line) {
+        auto done = statement(line);
+        if (done || done.error().kind != ErrorKind::input_rejected) return done;
+        const bool cut = input_.open_line();
+        if (!salvage_)
+            return cut ? rejected(name_, fmt::format("ends early: {}, and no line end", done.error().why))
+                       : done;
+        add_loss(losses_, cut ? kCutLine : kDamagedLines, 1);
+        if (!cut) stand_in(next_word(line));
+        return {};
+    }
+
+    /// What is lost keeps its number: indices behind it count it.
+    void stand_in(std::string_view word) {
+        if (word == "v") mesh_.positions.emplace_back(std::numeric_limits<double>::quiet_NaN());
+        if (word == "vn") mesh_.normals.emplace_back(0.0f);
+        if (word == "vt") mesh_.coordinates.emplace_back(0.0f);
     }
 
     Result<void> statement(std::string_view rest) {
@@ -161,9 +186,18 @@ class ObjParser {
             }
             polygon_.push_back(corner);
         }
+        if (input_.open_line() && !whole()) return wrong("is half a face");
         ++faces_;
         mesh_.add(polygon_, material_, std::nullopt);
         return {};
+    }
+
+    /// Whether the last corner is there and names what the first does.
+    bool whole() const {
+        if (polygon_.size() < 3) return false;
+        const Corner &first = polygon_.front(), &last = polygon_.back();
+        return (first.coordinate == kNone) == (last.coordinate == kNone) &&
+               (first.normal == kNone) == (last.normal == kNone);
     }
 
     /// The rest of the line is one name, which may hold blanks, or several.
@@ -179,19 +213,21 @@ class ObjParser {
     }
 
     std::string name_;
+    bool salvage_;
     BufferedInput input_;
     Mesh mesh_;
     Companions companions_;
     std::map<std::string, uint32_t, std::less<>> materials_;
     std::vector<glm::vec3> raw_colors_;
     std::vector<Corner> polygon_;
+    Losses losses_;
     uint32_t material_ = kNone;
     uint64_t line_ = 0, other_ = 0, faces_ = 0;
 };
 
 Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> file,
                                               const ReadOptions& options) {
-    ObjParser parser(file);
+    ObjParser parser(file, options.salvage);
     LUCARNE_TRY(parser.parse());
     Mesh& mesh = parser.mesh();
     ScanInfo info;
@@ -199,14 +235,15 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     info.file_bytes = file->size();
     info.modified = file->modified();
     info.metres_per_unit = options.metres_per_unit.value_or(1.0);
+    info.losses = parser.losses();
     nlohmann::json details;
     if (parser.other() > 0) {
         details["mesh"]["left_out_lines_points_curves"] = parser.other();
         log::warn("{}: {} lines, points, curves and calls are left out", info.path, parser.other());
     }
     mesh.finish();
-    if (parser.faces() > 0 && mesh.triangles.empty())
-        log::warn("{}: none of its faces has an area; its vertices are read", info.path);
+    if (parser.faces() > 0 && mesh.triangles.empty() && !options.quiet)
+        log::warn("{}: has no whole face with an area; its vertices are read", info.path);
     const bool vertices = options.mesh.vertices || mesh.triangles.empty();
     info.format = fmt::format("OBJ, {}", vertices ? "vertices" : "mesh");
     if (vertices) return vertices_only(std::move(mesh), std::move(info), std::move(details));

@@ -20,17 +20,11 @@ namespace {
 
 using namespace ply;
 
-struct Salvage {
-    bool wanted = false;
-    bool open_end = false;  ///< the file's last line lacks its end
-};
-
 class PlyReader final : public PointReader {
  public:
     PlyReader(std::shared_ptr<const InputFile> file, const ply::Header& header, const ply::Layout& layout,
-              uint64_t offset, Salvage salvage)
-        : end_(file->size()),
-          input_(std::move(file), offset, end_),
+              uint64_t offset, bool salvage)
+        : input_(file, offset, file->size()),
           header_(header),
           layout_(layout),
           salvage_(salvage),
@@ -52,13 +46,15 @@ class PlyReader final : public PointReader {
             auto done =
                 text ? parse_line()
                      : walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data());
-            if (salvage_.wanted) {
-                LUCARNE_ASSIGN(const bool good, salvaged(std::move(done), text, before));
-                if (!good) continue;
-            } else if (!done) {
-                return tl::unexpected(std::move(done).error());
+            LUCARNE_ASSIGN(const auto fate,
+                           fate_of(std::move(done), input_, header_, header_.vertices(), before, left_, salvage_));
+            if (fate == Fate::kept) {
+                take_point(packed_.data(), batch);
+                continue;
             }
-            take_point(packed_.data(), batch);
+            const uint64_t lost = fate == Fate::lost ? 1 : left_;
+            add_loss(lost_, fate == Fate::lost ? lost::damaged : lost::cut_off, lost);
+            left_ -= lost;
         }
         batch.bytes.resize(batch.count * stride);
         return batch.count;
@@ -71,20 +67,6 @@ class PlyReader final : public PointReader {
     }
 
  private:
-    /// Whether the vertex was read; else it, or where nothing more can be read all that are left, are lost.
-    Result<bool> salvaged(Result<void> done, bool text, uint64_t before) {
-        if (!done && done.error().kind != ErrorKind::input_rejected)
-            return tl::unexpected(std::move(done).error());
-        const bool at_end = input_.position() >= end_;
-        // Nobody knows how the last line went on where others are missing behind it.
-        const bool cut = text && at_end && left_ > 1 && salvage_.open_end;
-        if (done && !cut) return true;
-        const bool only_this = text && !at_end && input_.position() > before;
-        add_loss(lost_, only_this ? lost::damaged : lost::cut_off, only_this ? 1 : left_);
-        left_ -= only_this ? 1 : left_;
-        return false;
-    }
-
     void take_point(const std::byte* packed, PointBatch& batch) {
         const bool good = layout_.unpack(packed, batch.bytes.data() + batch.count * layout_.schema.stride);
         batch.count += good;
@@ -97,29 +79,26 @@ class PlyReader final : public PointReader {
         const auto count = static_cast<size_t>(
             std::min<uint64_t>({bytes.size() / layout_.packed_bytes, wanted - batch.count, left_}));
         if (count == 0)
-            return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+            return ends_early(input_, header_.vertices(), header_.vertices().count - left_ + 1);
         for (size_t i = 0; i < count; ++i) take_point(bytes.data() + i * layout_.packed_bytes, batch);
         input_.skip(count * layout_.packed_bytes);
         return {};
     }
 
     Result<void> parse_line() {
-        auto got = text_line(input_, header_);
         const auto& vertices = header_.vertices();
         const uint64_t number = vertices.count - left_ + 1;
-        if (!got && input_.position() >= end_)
-            return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
-        LUCARNE_ASSIGN(std::string_view line, std::move(got));
+        LUCARNE_ASSIGN(std::string_view line, text_line(input_, header_, vertices, number));
         std::byte* at = packed_.data();
         for (const auto& p : vertices.properties) {
             const auto word = next_word(line);
             if (p.count) {
                 const auto length = parse_number<uint32_t>(word);
-                if (!length) return bad_value(number, p.name, word);
+                if (!length) return bad_word(input_, vertices, number, p.name, word);
                 for (uint32_t i = 0; i < *length && !line.empty(); ++i) next_word(line);
                 continue;
             }
-            if (!parse_scalar(p.type, word, at)) return bad_value(number, p.name, word);
+            if (!parse_scalar(p.type, word, at)) return bad_word(input_, vertices, number, p.name, word);
             at += scalar_bytes(p.type);
         }
         if (!next_word(line).empty())
@@ -127,16 +106,11 @@ class PlyReader final : public PointReader {
                             fmt::format("vertex {} has more values than the header names", number));
         return {};
     }
-    Result<void> bad_value(uint64_t number, const std::string& property, std::string_view word) const {
-        return rejected(input_.path(), fmt::format("vertex {} has '{}' for its property {}", number,
-                                                   word.substr(0, 40), property));
-    }
 
-    uint64_t end_;
     BufferedInput input_;
     const ply::Header& header_;
     const ply::Layout& layout_;
-    Salvage salvage_;
+    bool salvage_;
     uint64_t left_, dropped_ = 0;
     Losses lost_;
     std::vector<std::byte> packed_;  ///< a vertex put together from words or around lists
@@ -144,11 +118,11 @@ class PlyReader final : public PointReader {
 
 class PlySource final : public PointSource {
  public:
-    PlySource(std::shared_ptr<const InputFile> file, ply::Header header, bool salvage, bool mesh)
+    PlySource(std::shared_ptr<const InputFile> file, ply::Header header, bool salvage, bool faces_known)
         : file_(std::move(file)),
           header_(std::move(header)),
-          salvage_{salvage, false},
-          mesh_(mesh),
+          salvage_(salvage),
+          faces_known_(faces_known),
           layout_(ply::make_layout(header_.vertices().properties, header_.encoding)) {}
 
     Result<void> describe(const ReadOptions& options) {
@@ -174,6 +148,11 @@ class PlySource final : public PointSource {
 
     const Schema& schema() const override { return layout_.schema; }
     const ScanInfo& info() const override { return info_; }
+    /// It stands for a mesh of which no face is left.
+    void stand_in(const Losses& faces) {
+        add_losses(info_.losses, faces);
+        add_loss(info_.losses, lost::cut_off, cut_off_);
+    }
     Result<std::unique_ptr<PointReader>> open() const override {
         return std::make_unique<PlyReader>(file_, header_, layout_, vertices_offset_, salvage_);
     }
@@ -203,7 +182,11 @@ class PlySource final : public PointSource {
             header_.encoding == ply::Encoding::ascii ? 2 * vertices.properties.size() : layout_.packed_bytes;
         const uint64_t there =
             (file_->size() - vertices_offset_ + (header_.encoding == ply::Encoding::ascii)) / least;
-        if (salvage_.wanted) return clamp_vertices(there);
+        if (salvage_) {
+            // In text one more, so that others are known to be missing behind the last line.
+            clamp_vertices(there + (header_.encoding == ply::Encoding::ascii));
+            return {};
+        }
         if (vertices.count > there)
             return rejected(file_->path().string(),
                             fmt::format("is truncated: its header promises {} points, at most {} are there",
@@ -211,22 +194,18 @@ class PlySource final : public PointSource {
         return {};
     }
 
-    Result<void> clamp_vertices(uint64_t there) {
+    void clamp_vertices(uint64_t there) {
         uint64_t& count = header_.elements[header_.vertex].count;
-        if (count > there) {
-            add_loss(info_.losses, lost::cut_off, count - there);
-            count = there;
-        }
-        std::array<std::byte, 1> last{};
-        LUCARNE_TRY(file_->read_at(file_->size() - 1, last));
-        salvage_.open_end = static_cast<char>(last[0]) != header_.line_end;
-        return {};
+        if (count <= there) return;
+        cut_off_ = count - there;
+        if (!faces_known_) add_loss(info_.losses, lost::cut_off, cut_off_);
+        count = there;
     }
 
     void note_what_is_not_read() {
         for (size_t e = 0; e < header_.elements.size(); ++e) {
             const auto& element = header_.elements[e];
-            if (mesh_ && element.name == "face") continue;
+            if (faces_known_ && element.name == "face") continue;
             if (e != header_.vertex) {
                 add_loss(info_.losses, fmt::format("entries of '{}', which are not read", printable(element.name)),
                          element.count);
@@ -271,32 +250,24 @@ class PlySource final : public PointSource {
 
     std::shared_ptr<const InputFile> file_;
     ply::Header header_;
-    Salvage salvage_;
-    bool mesh_;  ///< faces are read as well
+    bool salvage_;
+    bool faces_known_;  ///< another reads the mesh, and says what of it is lost
     ply::Layout layout_;
-    uint64_t vertices_offset_ = 0;
+    uint64_t vertices_offset_ = 0, cut_off_ = 0;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_mesh(const std::shared_ptr<const InputFile>& file,
-                                               const ply::Header& header, const ReadOptions& options) {
-    auto vertices = std::make_unique<PlySource>(file, header, false, true);
-    LUCARNE_TRY(vertices->describe(options));
-    return ply::open_mesh(file, header, std::move(vertices), options);
-}
-
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
-    auto header = ply::read_header(file);
-    if (header && ply::has_faces(*header) && !options.mesh.vertices) {
-        auto mesh = open_mesh(file, *header, options);
-        if (mesh || !options.salvage || mesh.error().kind != ErrorKind::input_rejected) return mesh;
+    LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
+    const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
+    auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);
+    LUCARNE_TRY(vertices->describe(options));
+    if (mesh) {
+        LUCARNE_ASSIGN(auto faces, ply::open_mesh(file, header, vertices->info(), options));
+        if (faces.mesh) return std::move(faces.mesh);
+        vertices->stand_in(faces.losses);
     }
-    // Of a damaged mesh the vertices.
-    if (options.salvage) header = ply::read_header(file, true);
-    if (!header) return tl::unexpected(std::move(header).error());
-    auto source = std::make_unique<PlySource>(std::move(file), std::move(*header), options.salvage, false);
-    LUCARNE_TRY(source->describe(options));
-    return source;
+    return vertices;
 }
 
 bool is_ply(std::string_view head) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/counted.h"
 #include "io/formats/format.h"
 #include "io/formats/text.h"
 
@@ -27,16 +28,21 @@ Result<uint64_t> list_length(BufferedInput& input, ScalarType type, bool big_end
     return static_cast<uint64_t>(length);
 }
 
-Result<void> read_binary(BufferedInput& input, const Element& element, bool big_endian, Entry& entry) {
+Result<void> read_binary(BufferedInput& input, const Element& element, bool big_endian, uint64_t number,
+                         Entry& entry) {
     for (const auto& p : element.properties) {
         uint64_t count = 1;
         if (p.count) {
-            LUCARNE_ASSIGN(count, list_length(input, *p.count, big_endian));
+            auto length = list_length(input, *p.count, big_endian);
+            if (!length && input.at_end()) return ends_early(input, element, number);
+            LUCARNE_ASSIGN(count, std::move(length));
             if (count > kMostListed)
                 return rejected(input.path(), fmt::format("has a list of {} values", count));
         }
         for (uint64_t i = 0; i < count; ++i) {
-            LUCARNE_ASSIGN(const std::byte* at, take(input, scalar_bytes(p.type)));
+            auto got = take(input, scalar_bytes(p.type));
+            if (!got && input.at_end()) return ends_early(input, element, number);
+            LUCARNE_ASSIGN(const std::byte* at, std::move(got));
             entry.values.push_back(native_value(p.type, at, big_endian));
         }
         entry.begin.push_back(entry.values.size());
@@ -46,14 +52,11 @@ Result<void> read_binary(BufferedInput& input, const Element& element, bool big_
 
 Result<void> read_words(BufferedInput& input, const Header& header, const Element& element, uint64_t number,
                         Entry& entry) {
-    LUCARNE_ASSIGN(std::string_view line, text_line(input, header));
+    LUCARNE_ASSIGN(std::string_view line, text_line(input, header, element, number));
     const auto value = [&](ScalarType type, const Property& p) -> Result<double> {
         const auto word = next_word(line);
         std::array<std::byte, 8> native{};
-        if (!parse_scalar(type, word, native.data()))
-            return rejected(input.path(),
-                            fmt::format("{} {} has '{}' for its property {}", printable(element.name), number,
-                                        printable(word), printable(p.name)));
+        if (!parse_scalar(type, word, native.data())) return bad_word(input, element, number, p.name, word);
         return scalar_at(type, native.data());
     };
     for (const auto& p : element.properties) {
@@ -74,13 +77,19 @@ Result<void> read_words(BufferedInput& input, const Header& header, const Elemen
     return {};
 }
 
+bool promises_behind(const Header& header, const Element& element) {
+    const auto& all = header.elements;
+    return std::any_of(all.begin() + (&element - all.data()) + 1, all.end(),
+                       [](const Element& e) { return e.count > 0 && !e.properties.empty(); });
+}
+
 }  // namespace
 
 Result<const std::byte*> take(BufferedInput& input, size_t bytes) {
     LUCARNE_ASSIGN(const auto got, input.peek(bytes));
+    input.skip(std::min(bytes, got.size()));
     if (got.size() < bytes)
-        return rejected(input.path(), fmt::format("ends early, at {} bytes", input.position() + got.size()));
-    input.skip(bytes);
+        return rejected(input.path(), fmt::format("ends early, at {} bytes", input.position()));
     return got.data();
 }
 
@@ -99,10 +108,11 @@ Result<void> walk_entry(BufferedInput& input, const Element& element, bool big_e
     return {};
 }
 
-Result<std::string_view> text_line(BufferedInput& input, const Header& header) {
+Result<std::string_view> text_line(BufferedInput& input, const Header& header, const Element& element,
+                                   uint64_t number) {
     for (;;) {
         LUCARNE_ASSIGN(const auto line, input.line(header.line_end));
-        if (!line) return rejected(input.path(), "ends early: its header promises more lines");
+        if (!line) return ends_early(input, element, number);
         if (!std::all_of(line->begin(), line->end(), is_blank)) return *line;
     }
 }
@@ -117,7 +127,7 @@ Result<void> skip_element(BufferedInput& input, const Header& header, const Elem
     }
     for (uint64_t i = 0; i < element.count; ++i) {
         if (header.encoding == Encoding::ascii)
-            LUCARNE_TRY(text_line(input, header));
+            LUCARNE_TRY(text_line(input, header, element, i + 1));
         else
             LUCARNE_TRY(walk_entry(input, element, header.encoding == Encoding::big_endian, nullptr));
     }
@@ -155,7 +165,37 @@ Result<void> read_entry(BufferedInput& input, const Header& header, const Elemen
     entry.values.clear();
     entry.begin.assign(1, 0);
     if (header.encoding == Encoding::ascii) return read_words(input, header, element, number, entry);
-    return read_binary(input, element, header.encoding == Encoding::big_endian, entry);
+    return read_binary(input, element, header.encoding == Encoding::big_endian, number, entry);
+}
+
+tl::unexpected<Error> ends_early(const BufferedInput& input, const Element& element, uint64_t number) {
+    const std::string name = printable(element.name);
+    const std::string promised = name == "vertex" ? counted(element.count, "point")
+                                 : name == "face" ? counted(element.count, "face")
+                                                  : counted(element.count, fmt::format("entry of '{}'", name),
+                                                            fmt::format("entries of '{}'", name));
+    return rejected(input.path(), fmt::format("ends early: its header promises {}, {} {} there", promised,
+                                              number - 1, number == 2 ? "is" : "are"));
+}
+
+tl::unexpected<Error> bad_word(const BufferedInput& input, const Element& element, uint64_t number,
+                               std::string_view property, std::string_view word) {
+    if (input.open_line()) return ends_early(input, element, number);
+    const std::string entry = fmt::format("{} {}", printable(element.name), number), of = printable(property);
+    if (word.empty())
+        return rejected(input.path(), fmt::format("{} has no value for its property {}", entry, of));
+    return rejected(input.path(), fmt::format("{} has '{}' for its property {}", entry, printable(word), of));
+}
+
+Result<Fate> fate_of(Result<void> done, const BufferedInput& input, const Header& header,
+                     const Element& element, uint64_t begin, uint64_t left, bool salvage) {
+    if (!done && (!salvage || done.error().kind != ErrorKind::input_rejected))
+        return tl::unexpected(std::move(done).error());
+    const bool text = header.encoding == Encoding::ascii;
+    // Nobody knows how the last line went on where others are missing behind it.
+    const bool cut = salvage && text && input.open_line() && (left > 1 || promises_behind(header, element));
+    if (done && !cut) return Fate::kept;
+    return text && !input.at_end() && input.position() > begin ? Fate::lost : Fate::rest_lost;
 }
 
 }  // namespace lucarne::io::ply

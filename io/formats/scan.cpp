@@ -1,10 +1,15 @@
 #include "io/formats/scan.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/core/counted.h"
+#include "io/formats/mesh/source.h"
 
 namespace lucarne::io {
 
@@ -43,21 +48,44 @@ Result<Contents> survey(const PointSource& scan, const std::function<void(uint64
     return contents;
 }
 
+namespace {
+
+/// What of a damaged scan that is open with `salvage` can be saved; none where it turns out to be sound: it
+/// may have been rejected for what it is among others.
+std::optional<std::string> savable(const PointSource& scan) {
+    const ScanInfo& info = scan.info();
+    const auto damaged = [](const Losses& losses) {
+        constexpr std::array kDamage = {lost::cut_off,       lost::damaged,  lost::cut_scan,     mesh::kCutFaces,
+                                        mesh::kDamagedFaces, mesh::kCutLine, mesh::kDamagedLines};
+        return std::ranges::any_of(
+            losses, [&](const Loss& loss) { return std::ranges::find(kDamage, loss.what) != kDamage.end(); });
+    };
+    // Nobody wants to wait for the samples of a mesh only to have them counted.
+    const auto details = nlohmann::json::parse(info.details, nullptr, false);
+    if (const auto mesh = details.find("mesh"); mesh != details.end() && mesh->contains("spacing_m")) {
+        if (!damaged(info.losses)) return std::nullopt;
+        return fmt::format("{}, about {}, can be saved with --salvage",
+                           counted(mesh->at("triangles").get<uint64_t>(), "whole triangle"),
+                           counted(info.declared_points, "point"));
+    }
+    const auto contents = survey(scan);
+    if (!contents || !damaged(contents->losses)) return std::nullopt;
+    if (contents->points == 0) return "none of its points can be saved";
+    return counted(contents->points, "point") + " can be saved with --salvage";
+}
+
+}  // namespace
+
 Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options) {
     if (error.kind != ErrorKind::input_rejected || options.salvage || error.what != path.string()) return error;
     ReadOptions salvaging = options;
     salvaging.salvage = salvaging.quiet = true;
     const auto scan = open_scan(path, salvaging);
     if (!scan) return error;
-    const auto contents = survey(**scan);
-    if (!contents || contents->points == 0) return error;
-    // A sound file may have been rejected for what it is among others.
-    const bool damaged = std::ranges::any_of(contents->losses, [](const Loss& loss) {
-        return loss.what == lost::cut_off || loss.what == lost::damaged || loss.what == lost::cut_scan;
-    });
-    if (!damaged) return error;
+    const auto found = savable(**scan);
+    if (!found) return error;
     if (!error.todo.empty()) error.todo += ", or ";
-    error.todo += fmt::format("{} points can be saved with --salvage", contents->points);
+    error.todo += *found;
     return error;
 }
 

@@ -332,9 +332,9 @@ TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
         "0\n0 1 0\n";
     for (const char* face : {"3 0 1 3\n", "3 0 1 -1\n"})
         EXPECT_THAT(error_of(ply + face).line(), HasSubstr("face 1 names vertex"));
-    EXPECT_THAT(error_of(ply).line(), HasSubstr("ends early"));
+    EXPECT_THAT(error_of(ply).line(), HasSubstr("ends early: its header promises 1 face, 0 are there"));
     EXPECT_THAT(error_of(ply + "4 0 1 2\n").line(),
-                HasSubstr("face 1 has 'unnamed' for its property vertex_indices"));
+                HasSubstr("face 1 has no value for its property vertex_indices"));
 }
 
 TEST_F(MeshScan, VerticesAloneAreAPointCloud) {
@@ -447,6 +447,26 @@ TEST_F(MeshScan, BinaryPlyOfEitherEndGivesTheSameAsText) {
                       .kind,
                   ErrorKind::input_rejected)
             << cut;
+}
+
+TEST_F(MeshScan, FacesOfAPlyMayStandBeforeTheirVertices) {
+    const std::string vertex = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+                      face = "element face 1\nproperty list uchar char vertex_indices\n";
+    const auto head = [](const std::string& format, const std::string& elements) {
+        return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n";
+    };
+    const std::string xyz = "0 0 0\n1 0 0\n0 1 0\n", corners = "3 0 1 2\n";
+    read(head("ascii", vertex + face) + xyz + corners, every(0.05));
+    const auto usual = records_.bytes;
+    EXPECT_NEAR(static_cast<double>(points()), 200, 30);
+    read(head("ascii", face + vertex) + corners + xyz, every(0.05));
+    EXPECT_TRUE(records_.bytes == usual);
+    const std::array<float, 9> values = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::string packed(reinterpret_cast<const char*>(values.data()), sizeof values);
+    read(head("binary_little_endian", face + vertex) + std::string("\3\0\1\2", 4) + packed, every(0.05));
+    EXPECT_TRUE(records_.bytes == usual);
+    EXPECT_THAT(error_of(head("ascii", face + vertex) + "3 0 1 3\n" + xyz).line(),
+                HasSubstr("face 1 names vertex 3, of 3"));
 }
 
 TEST_F(MeshScan, ChangedBytesNeverCrash) {

@@ -318,10 +318,11 @@ TEST_F(Ply, CountsThatLieAreRejected) {
                     "1000000000000 entries of 'vertex'");
     expect_rejected(header("ascii", "element vertex 100\n" + kXyz) + line, "promises 100 points");
     expect_rejected(header("ascii", "element vertex 3\n" + kXyz) + "1.00 2.00 3.00\n1.00 2.00 3.00\n",
-                    "1 points are missing");
+                    "ends early: its header promises 3 points, 2 are there");
     expect_rejected(header("ascii", "element vertex 1\n" + kXyz) + "1 2 3 4\n",
                     "more values than the header names");
-    expect_rejected(header("ascii", "element vertex 1\n" + kXyz) + "1 2        \n", "'' for its property z");
+    expect_rejected(header("ascii", "element vertex 1\n" + kXyz) + "1 2        \n",
+                    "vertex 1 has no value for its property z");
     expect_rejected(header("binary_little_endian", "element vertex 2\n" + kXyz) + std::string(23, 'a'),
                     "promises 2 points, at most 1");
     expect_rejected(

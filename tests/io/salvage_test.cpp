@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include "io/core/counted.h"
 #include "io/formats/las_header.h"
 #include "io/formats/laz/chunk_table.h"
 #include "tests/io/e57_builder.h"
@@ -99,7 +100,9 @@ void cut_everywhere(const std::string& name, const std::string& bytes, const Exp
         const Error advice = with_salvage_advice(usual.error(), path, {"", true, {0, 0, true}});
         if (saved && saved->records.count > 0) {
             ASSERT_THAT(advice.line(),
-                        HasSubstr(fmt::format("{} points can be saved with --salvage", saved->records.count)));
+                        HasSubstr("; " + counted(saved->records.count, "point") + " can be saved with --salvage"));
+        } else if (saved) {
+            ASSERT_THAT(advice.line(), HasSubstr("none of its points can be saved")) << name << " cut to " << cut;
         } else {
             ASSERT_EQ(advice.line(), usual.error().line());
         }

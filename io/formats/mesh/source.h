@@ -15,6 +15,12 @@ inline constexpr uint64_t kMostSamples = uint64_t{1} << 30;
 /// than this.
 inline constexpr uint64_t kMostDefaultSamples = 20'000'000;
 
+/// What is lost of damaged files, beside what io::lost has.
+inline constexpr std::string_view kCutFaces = "faces that are not there: the file ends before them",
+                                  kDamagedFaces = "faces that make no sense",
+                                  kCutLine = "line that is cut off, and all that may have followed it",
+                                  kDamagedLines = "lines that make no sense";
+
 /// What is known of the file: path, format, bytes, time, unit; `details` say more of the mesh.
 /// `state` is a hash of all else that the samples follow from: textures.
 /// The mesh is finished and has triangles. Errors: a spacing that would give too many samples.

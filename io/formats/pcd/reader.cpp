@@ -234,10 +234,11 @@ class PcdSource final : public PointSource {
             for (uint64_t left = header_.points * field.bytes(); left > 0;) {
                 const auto bytes = static_cast<size_t>(std::min<uint64_t>(left, passed.size()));
                 auto done = input.read(std::span(passed).first(bytes));
-                if (!done && salvage_ && &field == &header_.fields.back()) {
-                    // The other fields are whole: points as far as this one goes.
+                if (!done && salvage_ && done.error().kind == ErrorKind::input_rejected) {
+                    // Points as far as the last field goes, as the others are whole then.
                     const uint64_t before = header_.points * (layout_.binary.packed_bytes - field.bytes());
-                    keep_first((input.state().decoded - before) / field.bytes());
+                    const bool last = &field == &header_.fields.back();
+                    keep_first(last ? (input.state().decoded - before) / field.bytes() : 0);
                     return {};
                 }
                 LUCARNE_TRY(std::move(done));
