@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -7,6 +8,8 @@
 
 int main(int argc, char** argv) {
     using namespace lucarne;
+    // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
+    std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Lucarne: point clouds of any size in the light of their own surfaces."};
     app.name("lucarne");
     app.require_subcommand(1);

@@ -96,6 +96,23 @@ TEST(ConvertFaults, SayThatTheDiskIsFull) {
     EXPECT_FALSE(left);
 }
 
+TEST(ConvertFaults, SayThatAFileMayNotGrowFurther) {
+    const TempFolder folder;
+    const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc");
+    const auto convert = "convert --normals none " + scan + " -o ";
+    ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
+    ASSERT_EQ(lucarne(convert + cache).code, 0);
+    const auto left_before = std::distance(std::filesystem::directory_iterator(folder.path()), {});
+    for (const std::string& arguments : {convert + quoted(folder / "b.luc"),
+                                         "export " + cache + " -o " + quoted(folder / "b.las"),
+                                         "export " + cache + " -o " + quoted(folder / "b.copc.laz")}) {
+        const auto outcome = lucarne(arguments, "ulimit -f 64; ");  // blocks of 512 bytes, or of 1024
+        EXPECT_EQ(outcome.code, 1) << arguments;
+        EXPECT_NE(outcome.text.find("File too large"), std::string::npos) << outcome.text;
+    }
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), left_before);
+}
+
 TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
     const TempFolder folder;
     io::testing::write_bytes(folder / "empty.las", "");

@@ -13,9 +13,10 @@ struct Outcome {
     int code = -1;
     std::string text;  ///< stderr and stdout
 };
-inline Outcome lucarne(const std::string& arguments) {
+/// `before`: a command of the shell, such as "ulimit -f 1; ".
+inline Outcome lucarne(const std::string& arguments, const std::string& before = {}) {
     Outcome outcome;
-    FILE* pipe = ::popen((std::string(LUCARNE_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
+    FILE* pipe = ::popen((before + LUCARNE_BINARY + " " + arguments + " 2>&1").c_str(), "r");
     if (!pipe) return outcome;
     char buffer[4096];
     while (std::fgets(buffer, sizeof buffer, pipe)) outcome.text += buffer;
