@@ -134,7 +134,7 @@ Result<void> check_format(const std::string& name, const Header& h) {
         return rejected(name, fmt::format("has records of {} bytes, but point format {} needs {}",
                                           h.record_length, h.point_format, record_bytes(h.point_format) + h.wave_bytes));
     for (int axis = 0; axis < 3; ++axis)
-        if (h.scale[axis] == 0 || !usable(std::abs(h.scale[axis]) * 0x1p31 + std::abs(h.offset[axis])))
+        if (!std::isnormal(h.scale[axis]) || !usable(std::abs(h.scale[axis]) * 0x1p31 + std::abs(h.offset[axis])))
             return rejected(name, fmt::format("has no usable scale and offset for {} ({}, {})", "xyz"[axis],
                                               h.scale[axis], h.offset[axis]));
     return {};

@@ -97,6 +97,7 @@ class LasSource final : public PointSource {
             fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
                         header_.wave_bytes ? las::with_waves(header_.point_format) : header_.point_format);
         if (header_.wave_bytes) skip_waves();
+        if (!options.quiet) warn_of_mirrors(name);
         if (header_.find("lascompatible", 22204))
             log::warn("{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns and "
                       "angles that do not fit that stand in extra bytes only",
@@ -147,6 +148,14 @@ class LasSource final : public PointSource {
     }
 
  private:
+    /// Such a scale means what it says, but is hardly ever meant.
+    void warn_of_mirrors(const std::string& name) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (header_.scale[axis] < 0)
+                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it", name,
+                          "xyz"[axis], header_.scale[axis]);
+    }
+
     void skip_waves() {
         add_loss(header_.losses, "wave packets of points, which are not read", header_.points);
         // Descriptors (100 to 354) and packets (65535) that nothing points to any more.

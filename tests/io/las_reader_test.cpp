@@ -354,6 +354,7 @@ TEST_F(Las, HeadersThatLieAreRejectedWithTheLie) {
     lie([](LasFile& f) { f.minor = 9; }, "LAS 1.9");
     lie([](LasFile& f) { f.scale[2] = 0; }, "scale and offset for z");
     lie([](LasFile& f) { f.scale[0] = std::nan(""); }, "scale and offset for x");
+    lie([](LasFile& f) { f.scale[1] = 1e-320; }, "scale and offset for y");
     lie([](LasFile& f) { f.scale[0] = 1e300; }, "scale and offset for x");
     lie([](LasFile& f) { f.offset[1] = std::numeric_limits<double>::infinity(); }, "scale and offset for y");
 }
@@ -387,6 +388,11 @@ TEST_F(Las, WarningsAreOfTheFileTheyAreAbout) {
     file.add_vlr("lascompatible", 22204, "");
     EXPECT_THAT(said(), HasSubstr("compatibility mode"));
     file.vlrs.clear();
+    file.scale[1] = -0.01;
+    EXPECT_THAT(said(), HasSubstr("its scale for y is negative (-0.01): the scan is mirrored, if nobody meant it"));
+    const auto mirrored = open(file);
+    EXPECT_EQ(position_of(mirrored->schema(), read_all(*mirrored)->bytes.data()).y, -0.02);
+    file.scale[1] = 0.01;
     file.records[8] = record0(2'000'000'000, 2, 3);
     file.box = {0, 1};
     const std::string outside = said();
