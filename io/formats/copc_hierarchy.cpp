@@ -33,8 +33,11 @@ class HierarchyReader {
 
     /// No two pages share a byte, so there is no cycle, and all entries together are no more than the file.
     Result<void> add_page(uint64_t offset, uint64_t bytes) {
-        if (bytes == 0 || bytes % kEntryBytes != 0 || offset > file_.size() || bytes > file_.size() - offset)
-            return refused(file_, "has a hierarchy page that does not lie in the file");
+        if (offset > file_.size() || bytes > file_.size() - offset)
+            return rejected(file_.path().string(),
+                            "ends before a page of its hierarchy does; only convert can read it, as LAZ");
+        if (bytes == 0 || bytes % kEntryBytes != 0)
+            return refused(file_, "has a hierarchy page that is no list of entries");
         const auto after = ends_.upper_bound(offset);  // the first page that ends behind our begin
         if (after != ends_.end() && after->second < offset + bytes)
             return refused(file_, "has hierarchy pages that overlap");

@@ -92,12 +92,12 @@ TEST_F(Copc, PagesThatLieAreRefused) {
     const uint64_t below = get<uint64_t>(entry(4) + 16);
     EXPECT_THAT(refusal(with(entry(4) + 16, page_)), HasSubstr("pages that overlap")) << "a cycle";
     EXPECT_THAT(refusal(with(entry(4) + 16, below - 32)), HasSubstr("pages that overlap"));
-    EXPECT_THAT(refusal(with(entry(4) + 16, uint64_t{bytes_.size()})), HasSubstr("not lie in the file"));
-    EXPECT_THAT(refusal(with(entry(4) + 16, UINT64_MAX - 31)), HasSubstr("not lie in the file"));
-    EXPECT_THAT(refusal(with(entry(4) + 24, int32_t{33})), HasSubstr("not lie in the file"));
-    EXPECT_THAT(refusal(with(entry(4) + 24, int32_t{0})), HasSubstr("not lie in the file"));
+    EXPECT_THAT(refusal(with(entry(4) + 16, uint64_t{bytes_.size()})), HasSubstr("ends before a page"));
+    EXPECT_THAT(refusal(with(entry(4) + 16, UINT64_MAX - 31)), HasSubstr("ends before a page"));
+    EXPECT_THAT(refusal(with(entry(4) + 24, int32_t{33})), HasSubstr("is no list of entries"));
+    EXPECT_THAT(refusal(with(entry(4) + 24, int32_t{0})), HasSubstr("is no list of entries"));
     EXPECT_THAT(refusal(with(entry(4) + 24, int32_t{-32})), HasSubstr("negative size"));
-    EXPECT_THAT(refusal(with(kPageOffsetAt + 8, UINT64_MAX - 31)), HasSubstr("not lie in the file"));
+    EXPECT_THAT(refusal(with(kPageOffsetAt + 8, UINT64_MAX - 31)), HasSubstr("ends before a page"));
     EXPECT_THAT(refusal(with(kPageOffsetAt, page_ + 32)), HasSubstr("overlap"));
 }
 

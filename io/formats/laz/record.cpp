@@ -53,8 +53,10 @@ Result<Compression> read_compression(const std::string& file, const las::Header&
             {static_cast<Item>(load<uint16_t>(at)), load<uint16_t>(at + 2), load<uint16_t>(at + 4)});
     }
     if (header.wave_bytes)
-        return refused(file, fmt::format("has compressed point format {} (wave packets), which is not read",
-                                         las::with_waves(header.point_format)));
+        return rejected(file,
+                        fmt::format("has compressed point format {} (wave packets), which is not read",
+                                    las::with_waves(header.point_format)),
+                        "decompress it to LAS, whose wave packets are passed over");
     const uint16_t version = compression.items[0].version;
     const bool extended = las::extended_format(header.point_format);
     if (!extended && version < 2)
