@@ -32,7 +32,8 @@ std::string losses_text(const io::Losses& losses) {
     return text;
 }
 
-json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents) {
+json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents,
+               bool unit_given) {
     json stations = json::array();
     for (const auto& s : info.stations)
         stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
@@ -48,6 +49,7 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
     described["epsg"] = info.epsg ? json(info.epsg) : json();
     described["unit"] = unit_name(info.metres_per_unit);
     described["metres_per_unit"] = info.metres_per_unit;
+    described["unit_stated"] = unit_given || io::states_unit(info);
     described["stations"] = std::move(stations);
     described["attributes"] = attributes_json(schema);
     described["left_out"] = losses_json(contents ? contents->losses : info.losses);

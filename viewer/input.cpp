@@ -16,6 +16,7 @@
 #include "octree/open.h"
 #include "octree/stream/joined_source.h"
 #include "viewer/kept_cache.h"
+#include "viewer/scan_list.h"
 #include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
@@ -95,6 +96,11 @@ Result<Source> open_parts(const InputOptions& options) {
     return octree::join_sources(std::move(sources));
 }
 
+InputOptions with_each_once(InputOptions options) {
+    options.paths = once_each(options.paths);
+    return options;
+}
+
 /// Whether octrees are among them, which are opened as they are.
 bool has_octree(const InputOptions& options) {
     const auto found =
@@ -171,7 +177,8 @@ void add_input_options(CLI::App& command, InputOptions& options) {
     add_read_options(command, options.read);
 }
 
-Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening) {
+Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening) {
+    const InputOptions options = with_each_once(given);
     OpenInput open;
     if (has_octree(options)) {
         LUCARNE_ASSIGN(open.source, open_parts(options));
@@ -193,7 +200,8 @@ Result<OpenInput> open_growing(const InputOptions& options, const Opening& openi
     return open;
 }
 
-Result<Source> open_input(const InputOptions& options) {
+Result<Source> open_input(const InputOptions& given) {
+    const InputOptions options = with_each_once(given);
     return has_octree(options) ? open_parts(options) : convert_scans(options);
 }
 

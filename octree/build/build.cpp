@@ -158,6 +158,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                    }));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
+    for (const auto* input : options.inputs) warn_of_assumed_unit(input->info(), bare.metres_per_unit);
     if (options.listener) options.listener->scanned(bare);
     LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
                        return resumable(

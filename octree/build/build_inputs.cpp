@@ -1,6 +1,23 @@
 #include "octree/build/build_inputs.h"
 
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+#include "io/formats/scan.h"
+
 namespace lucarne::octree {
+namespace {
+
+/// Files without points decide nothing: some programs write them with a header of defaults.
+bool in_stated_unit(const io::ScanInfo& scan) {
+    return scan.declared_points > 0 && io::states_unit(scan);
+}
+
+}  // namespace
 
 Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs) {
     size_t without = inputs.inputs();
@@ -23,20 +40,47 @@ Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inpu
     return std::optional(false);
 }
 
+double common_unit(const Unifier& inputs) {
+    std::vector<double> stated;
+    for (size_t i = 0; i < inputs.inputs(); ++i)
+        if (const auto& scan = inputs.source(i).info(); in_stated_unit(scan))
+            stated.push_back(scan.metres_per_unit);
+    std::map<double, size_t> count;
+    for (const double unit : stated) ++count[unit];
+    // The first of several largest.
+    const auto most = std::ranges::max_element(stated, {}, [&](double unit) { return count[unit]; });
+    return most == stated.end() ? 1.0 : *most;
+}
+
 Result<void> check_units(const Unifier& inputs) {
-    for (size_t i = 1; i < inputs.inputs(); ++i)
-        if (inputs.source(i).info().metres_per_unit != inputs.source(0).info().metres_per_unit)
-            return rejected(inputs.source(i).info().path, "is in another unit than the first input",
-                            "convert it on its own");
+    const double common = common_unit(inputs);
+    for (size_t i = 0; i < inputs.inputs(); ++i)
+        LUCARNE_TRY(check_unit(inputs.source(i).info(), common, "the other inputs have"));
     return {};
+}
+
+Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::string_view who) {
+    if (!in_stated_unit(scan) || scan.metres_per_unit == metres_per_unit) return {};
+    return rejected(
+        scan.path,
+        fmt::format("has a unit of {} m, {} one of {} m", scan.metres_per_unit, who, metres_per_unit),
+        "convert it on its own, or say the unit of all with --unit where a file is wrong");
+}
+
+void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit) {
+    if (metres_per_unit != 1.0 && scan.declared_points > 0 && !io::states_unit(scan))
+        log::warn("{}: does not say its unit; that of the others is assumed, {} m (--unit can say otherwise)",
+                  scan.path, metres_per_unit);
 }
 
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
     SourceHeader header{
         .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
-    header.metres_per_unit = inputs.source(0).info().metres_per_unit;
+    header.metres_per_unit = common_unit(inputs);
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
+        if (!io::states_unit(header.scans.back()))
+            header.scans.back().metres_per_unit = header.metres_per_unit;
         if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;
     }
     return header;

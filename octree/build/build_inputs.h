@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "octree/build/build.h"
 #include "octree/build/scan_stage.h"
@@ -10,8 +11,15 @@ namespace lucarne::octree {
 /// Which normals to estimate: empty for no estimation at all, else whether normals are wanted besides areas.
 Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs);
 
-/// Errors: the inputs are in different units of length.
+/// Metres per unit of all inputs: the unit that most of those with points state, the first of these where as
+/// many state another; metres where none does.
+double common_unit(const Unifier& inputs);
+/// Errors: an input with points states another.
 Result<void> check_units(const Unifier& inputs);
+/// The same of one scan. `who`: "the cache has".
+Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::string_view who);
+/// Where a scan does not state its unit and will not be taken as metres.
+void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit);
 
 /// Of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);

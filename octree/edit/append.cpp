@@ -4,7 +4,9 @@
 #include <glm/common.hpp>
 
 #include "io/core/log.h"
+#include "io/formats/scan.h"
 #include "octree/attributes.h"
+#include "octree/build/build_inputs.h"
 #include "octree/build/scan_stage.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
@@ -110,6 +112,7 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     header.points = before.points + facts.points;
     for (size_t i = 1; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
+        if (!io::states_unit(header.scans.back())) header.scans.back().metres_per_unit = before.metres_per_unit;
         header.scans.back().losses = facts.inputs[i].losses;
     }
     return header;
@@ -125,12 +128,12 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     const CacheSchema cache(*opened.cache);
     std::vector<const io::PointSource*> sources{&cache};
     for (const auto* scan : scans) {
-        if (scan->info().metres_per_unit != before.metres_per_unit)
-            return rejected(scan->info().path, "is in another unit than the cache", "convert it on its own");
+        LUCARNE_TRY(check_unit(scan->info(), before.metres_per_unit, "the cache has"));
         sources.push_back(scan);
     }
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
+    for (const auto* scan : scans) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
     change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);

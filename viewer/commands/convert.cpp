@@ -86,9 +86,11 @@ struct Summary {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
     io::Losses losses;
 
-    Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents) {
+    Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents,
+            const io::ReadOptions& read) {
         for (size_t i = 0; i < std::min(scans.size(), contents.size()); ++i) {
-            inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i]));
+            inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i],
+                                       read.metres_per_unit.has_value()));
             io::add_losses(losses, contents[i].losses);
         }
     }
@@ -96,7 +98,7 @@ struct Summary {
 };
 
 Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report,
-                          const Summary& summary) {
+                          const Summary& summary, const SetAside& aside) {
     nlohmann::json stages = nlohmann::json::array();
     for (const auto& stage : report.stages)
         stages.push_back(
@@ -105,7 +107,8 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
                               {"nodes", report.nodes},   {"chunks", report.chunks},
                               {"bytes", report.bytes},   {"stages", std::move(stages)},
                               {"left_out", losses_json(summary.losses)},
-                              {"inputs", summary.inputs}};
+                              {"inputs", summary.inputs},
+                              {"rejected", aside.json()}};
     return write_file(path, json_text(root), overwrite);
 }
 
@@ -152,7 +155,7 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
                    }));
     log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed{}",
               build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
-              report.nodes, Summary(build.inputs, report.inputs).text());
+              report.nodes, Summary(build.inputs, report.inputs, options.read).text());
     if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
     return aside.result(build.output.string());
 }
@@ -164,9 +167,10 @@ Result<void> convert(ConvertOptions options) {
     if (names_scan(output))
         return bad_arguments(output, "has the name of a scan",
                              "a cache is named .luc; lucarne export writes scans");
-    LUCARNE_ASSIGN(options.inputs, expand_folders(options.inputs));
+    LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
+    options.inputs = list.files;
     LUCARNE_TRY(check_outputs({options.append ? "" : output, options.json}, build.overwrite, options.inputs));
-    SetAside aside(options.inputs.size(), options.read);
+    SetAside aside(list, options.read);
     build.read_options = io::options_text(options.read);
     if (options.append) return append(std::move(options), aside);
     Scans scans;
@@ -178,10 +182,10 @@ Result<void> convert(ConvertOptions options) {
         cpu += stage.cpu_seconds;
         wall += stage.wall_seconds;
     }
-    const Summary summary(build.inputs, report.inputs);
+    const Summary summary(build.inputs, report.inputs, options.read);
     log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
               report.points, report.nodes, bytes_text(report.bytes), wall, cpu, summary.text());
-    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary));
+    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
     return aside.result(build.output.string());
 }
 

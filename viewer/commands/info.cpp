@@ -74,14 +74,15 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
 Result<json> describe_scan(const std::string& path, const Options& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
-    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr);
+    const bool given = options.read.metres_per_unit.has_value();
+    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr, given);
     std::optional<Progress> progress;
     const uint64_t declared = scan->info().declared_points;
     if (declared > kLong) progress.emplace("looking through", declared, "points");
     LUCARNE_ASSIGN(const auto contents, io::survey(*scan, [&](uint64_t points) {
                        if (progress) progress->add(points);
                    }));
-    return scan_json(scan->info(), scan->schema(), &contents);
+    return scan_json(scan->info(), scan->schema(), &contents, given);
 }
 
 Result<json> describe(const std::string& path, const Options& options) {
@@ -91,7 +92,13 @@ Result<json> describe(const std::string& path, const Options& options) {
 }
 
 void print(const json& described) {
+    const bool assumed = !described.value("unit_stated", true);
     for (const auto& [name, value] : described.items()) {
+        if (name == "unit_stated") continue;
+        if (name == "unit" && assumed) {
+            fmt::print("{:<17} {} (assumed)\n", name, value.get<std::string>());
+            continue;
+        }
         if (!value.is_array() || value.empty() || !value[0].is_object()) {
             fmt::print("{:<17} {}\n", name, value.is_string() ? value.get<std::string>() : text_of(value));
             continue;
@@ -102,12 +109,12 @@ void print(const json& described) {
 }
 
 Result<void> info(const Options& options) {
-    LUCARNE_ASSIGN(const auto inputs, expand_folders(options.inputs));
-    LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, inputs));
-    const bool several = inputs.size() > 1;
-    SetAside aside(inputs.size(), options.read);
+    LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
+    LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, list.files));
+    const bool several = list.files.size() + list.problems.size() > 1;
+    SetAside aside(list, options.read);
     json all = json::array();
-    for (const std::string& input : inputs) {
+    for (const std::string& input : list.files) {
         auto described = describe(input, options);
         if (described) {
             if (!all.empty()) fmt::print("\n");
@@ -118,6 +125,7 @@ Result<void> info(const Options& options) {
             LUCARNE_TRY(aside.take(std::move(described).error(), only));
         }
     }
+    for (const auto& rejected : aside.json()) all.push_back(rejected);
     if (!options.json_file.empty()) {
         LUCARNE_TRY(write_file(options.json_file, json_text(several ? all : all[0]), options.overwrite));
     }

@@ -31,14 +31,18 @@ bool is_folder(const std::string& path) {
     return std::filesystem::is_directory(path, ignored);
 }
 
-/// Paths that are rows of their own after all: folders' files, and octrees among what was to be one cache.
-Result<std::vector<std::string>> expanded(const std::vector<std::string>& paths) {
-    LUCARNE_ASSIGN(auto files, expand_folders(paths));
-    if (files.size() > kMostScans)
-        return rejected(paths.front(),
-                        fmt::format("holds {} scans, {} can be open", files.size(), kMostScans),
+/// Paths that are rows of their own after all: folders' files, and folders that show what is wrong with them.
+Result<std::vector<std::string>> expanded(const InputOptions& how, bool together) {
+    LUCARNE_ASSIGN(ScanList list, expand_folders(how.paths, how.read));
+    if (list.files.size() > kMostScans)
+        return rejected(how.paths.front(),
+                        fmt::format("holds {} scans, {} can be open", list.files.size(), kMostScans),
                         "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
-    return files;
+    if (!together)
+        for (const Error& problem : list.problems)
+            if (std::ranges::find(how.paths, problem.what) == how.paths.end())
+                list.files.push_back(problem.what);
+    return list.files;
 }
 
 }  // namespace
@@ -94,7 +98,7 @@ Opened open_paths(uint64_t id, bool together, InputOptions how, Watch& watch, ui
     if (watch.cancelled) return {id, failed("opening", "was stopped"), {}, false};
     try {
         if (std::ranges::any_of(how.paths, is_folder)) {
-            auto files = expanded(how.paths);
+            auto files = expanded(how, together);
             if (!files) return {id, tl::make_unexpected(std::move(files).error()), {}, false};
             return {id, OpenInput{}, std::move(*files), together};
         }

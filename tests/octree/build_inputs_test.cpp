@@ -1,0 +1,83 @@
+// The unit of several inputs.
+#include "octree/build/build_inputs.h"
+
+#include <deque>
+
+#include <gtest/gtest.h>
+
+#include "octree/build/unify.h"
+#include "tests/octree/test_sources.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr double kFoot = 0.3048;
+
+class Units : public ::testing::Test {
+ protected:
+    io::ScanInfo& add(const std::string& path, double metres_per_unit, const std::string& system = "",
+                      uint64_t points = 10) {
+        auto& source = sources_.emplace_back(io::Schema{}, points, [](uint64_t, std::byte*) {});
+        source.info().path = path;
+        source.info().metres_per_unit = metres_per_unit;
+        source.info().coordinate_system = system;
+        return source.info();
+    }
+    Unifier unified() const {
+        std::vector<const io::PointSource*> all;
+        for (const auto& source : sources_) all.push_back(&source);
+        return Unifier::create(all).value();
+    }
+
+    std::deque<test::ComputedSource> sources_;
+};
+
+TEST_F(Units, FilesWithoutPointsDecideNothingAndStopNothing) {
+    add("empty.las", kFoot, "feet", 0);
+    add("a.las", 1, "UTM");
+    add("b.e57", 1).format = "E57 1.0, 1 scan";
+    const Unifier inputs = unified();
+    EXPECT_EQ(common_unit(inputs), 1.0);
+    EXPECT_TRUE(check_units(inputs));
+}
+
+TEST_F(Units, TheMostFilesThatStateOneDecideWhereverTheyStand) {
+    add("feet.las", kFoot, "feet");
+    add("a.las", 1, "UTM");
+    add("b.ptx", 1).format = "PTX, 1 scan";
+    const auto checked = check_units(unified());
+    EXPECT_EQ(common_unit(unified()), 1.0);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().what, "feet.las");
+    EXPECT_NE(checked.error().line().find("a unit of 0.3048 m, the other inputs have one of 1 m"),
+              std::string::npos);
+    EXPECT_NE(checked.error().todo.find("--unit"), std::string::npos);
+}
+
+TEST_F(Units, OfTwoUnitsAsOftenStatedTheFirstDecides) {
+    add("feet.las", kFoot, "feet");
+    add("a.las", 1, "UTM");
+    EXPECT_EQ(common_unit(unified()), kFoot);
+    EXPECT_EQ(check_units(unified()).error().what, "a.las");
+}
+
+TEST_F(Units, FilesThatStateNoneAreInThatOfTheOthers) {
+    add("rows.xyz", 1);
+    add("feet.las", kFoot, "feet");
+    add("mesh.obj", 1);
+    const Unifier inputs = unified();
+    EXPECT_EQ(common_unit(inputs), kFoot);
+    EXPECT_TRUE(check_units(inputs));
+    for (const auto& scan : header_of(inputs, {}, inputs.schema()).scans)
+        EXPECT_EQ(scan.metres_per_unit, kFoot);
+}
+
+TEST_F(Units, WhereNoneStatesOneItIsTheMetre) {
+    add("rows.xyz", 1);
+    add("mesh.obj", 1);
+    EXPECT_EQ(common_unit(unified()), 1.0);
+    EXPECT_TRUE(check_units(unified()));
+}
+
+}  // namespace
+}  // namespace lucarne::octree
