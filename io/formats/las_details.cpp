@@ -67,4 +67,19 @@ Result<Header> from_details(const std::string& file, const nlohmann::json& detai
     return rejected(file, fmt::format("the LAS header kept with the points is damaged ({})", error.what()));
 }
 
+std::optional<Lattice> lattice_of(const ScanInfo& scan) try {
+    const auto details = nlohmann::json::parse(scan.details);
+    if (details.at("format") != "las") return std::nullopt;
+    Lattice lattice;
+    for (int axis = 0; axis < 3; ++axis) {
+        lattice.scale[axis] = details.at("scale").at(static_cast<size_t>(axis)).get<double>();
+        lattice.offset[axis] = details.at("offset").at(static_cast<size_t>(axis)).get<double>();
+        if (lattice.scale[axis] == 0 || !usable(lattice.scale[axis]) || !usable(lattice.offset[axis]))
+            return std::nullopt;
+    }
+    return lattice;
+} catch (const std::exception&) {  // nlohmann's: the details of another format
+    return std::nullopt;
+}
+
 }  // namespace lucarne::io::las

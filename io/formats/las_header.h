@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "io/core/file.h"
+#include "io/formats/lattice.h"
 #include "io/points.h"
 
 // The public header and the variable length records of LAS 1.0-1.4.
@@ -92,5 +93,7 @@ inline constexpr uint64_t kMostPointsAByte = 1000;
 /// `info.details`: what a later export needs to write the same header again.
 nlohmann::json to_details(const Header& header);
 Result<Header> from_details(const std::string& file, const nlohmann::json& details);
+/// Where the integers of a scan's file stood; empty where it was no LAS.
+std::optional<Lattice> lattice_of(const ScanInfo& scan);
 
 }  // namespace lucarne::io::las

@@ -129,21 +129,14 @@ Result<void> describe_extras(const std::string& path, Header& header, const std:
     return {};
 }
 
-/// A decimal scale and a round offset for positions that have none.
-void choose_scale(const std::string& path, Header& header, const WriteOptions& options) {
-    header.scale = glm::dvec3(1e-4);
-    header.offset = glm::dvec3(0.0);
-    if (options.bounds) {
-        const auto& [low, high] = *options.bounds;
-        for (int axis = 0; axis < 3; ++axis) {
-            header.offset[axis] = std::nearbyint(low[axis] / 2 + high[axis] / 2);
-            const double reach =
-                std::max({high[axis] - header.offset[axis], header.offset[axis] - low[axis], 1e-3});
-            header.scale[axis] = std::pow(10.0, std::ceil(std::log10(reach / kLargestInteger)));
-        }
-    }
-    log::warn("{}: positions are rounded to multiples of {}, {}, {}", path, header.scale.x, header.scale.y,
-              header.scale.z);
+/// For positions that are not integers yet.
+Result<Lattice> choose_lattice(const Schema& schema, const WriteOptions& options) {
+    if (options.lattice) return *options.lattice;
+    if (!options.bounds) return Lattice{glm::dvec3(1e-4), glm::dvec3(0.0)};
+    DecimalSearch search(schema, *options.bounds);
+    if (options.preview)
+        LUCARNE_TRY(options.preview([&](std::span<const std::byte> records) { return search.add(records); }));
+    return search.found();
 }
 
 void add_stations(Header& header, const std::vector<Station>& stations) {
@@ -201,22 +194,28 @@ Converter make_converter(const Schema& from, const Schema& to, const std::vector
 
 }  // namespace
 
-bool Converter::convert_position(const std::byte* in, std::byte* out) const {
+bool Converter::convert_position(const std::byte* in, std::byte* out) {
     if (from_.position == PositionType::i32_scaled) {
         std::memcpy(out, in, 12);
         return true;
     }
-    const glm::dvec3 at = (position_of(from_, in) - to_.offset) / to_.scale;
+    const glm::dvec3 position = position_of(from_, in);
+    const glm::dvec3 at = (position - to_.offset) / to_.scale;
     bool good = true;
     for (int axis = 0; axis < 3; ++axis) {
-        const double rounded = std::nearbyint(at[axis]);
-        good = good && std::abs(rounded) <= kLargestInteger;
-        store(out + 4 * axis, static_cast<int32_t>(good ? rounded : 0));
+        const double whole = std::nearbyint(at[axis]);
+        good = good && std::abs(whole) <= kLargestInteger;
+        store(out + 4 * axis, static_cast<int32_t>(good ? whole : 0));
+        const double back = whole * to_.scale[axis] + to_.offset[axis], x = position[axis];
+        const bool same = from_.position == PositionType::f32
+                              ? static_cast<float>(back) == static_cast<float>(x)
+                              : std::abs(back - x) <= 0x1p-50 * (std::abs(x) + std::abs(to_.offset[axis]));
+        if (!same) rounded_ = std::max(rounded_, std::abs(back - x));
     }
     return good;
 }
 
-bool Converter::convert(const std::byte* in, size_t count, std::byte* out) const {
+bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
     bool good = true;
     for (size_t i = 0; i < count; ++i, in += from_.stride, out += to_.stride) {
         std::memset(out, 0, to_.stride);
@@ -248,12 +247,12 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     }
     header.compressed = compress;
     choose_format(header, schema, from_las, compress);
-    if (schema.position == PositionType::i32_scaled) {
-        header.scale = schema.scale;
-        header.offset = schema.offset;
-    } else {
-        choose_scale(path, header, options);
+    Lattice lattice{schema.scale, schema.offset};
+    if (schema.position != PositionType::i32_scaled) {
+        LUCARNE_ASSIGN(lattice, choose_lattice(schema, options));
     }
+    header.scale = lattice.scale;
+    header.offset = lattice.offset;
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
     state_unit(path, header, info.metres_per_unit);

@@ -17,7 +17,9 @@ class Converter {
         fields_.push_back({from, to, factor});
     }
     /// False where a position does not fit 32-bit integers with the target's scale and offset.
-    bool convert(const std::byte* in, size_t count, std::byte* out) const;
+    bool convert(const std::byte* in, size_t count, std::byte* out);
+    /// By how much positions were rounded so far, at most: less than their type tells apart is none.
+    double rounded() const { return rounded_; }
     /// Nothing to do: both schemas are the same.
     bool identity() const { return from_ == to_; }
 
@@ -26,10 +28,11 @@ class Converter {
         Attribute from, to;
         double factor;
     };
-    bool convert_position(const std::byte* in, std::byte* out) const;
+    bool convert_position(const std::byte* in, std::byte* out);
 
     Schema from_, to_;
     std::vector<Field> fields_;
+    double rounded_ = 0;
 };
 
 struct Target {
@@ -41,7 +44,8 @@ struct Target {
 /// The header kept in `info.details` where the source was LAS, else the smallest point format that has a
 /// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
 /// bytes (where it does not fit, the field gets the nearest value as well). Positions that are not integers
-/// yet get a scale; the loss is reported. To be compressed (LAZ), point formats 6 to 8.
+/// yet get the lattice of `options`, else the decimals that its preview shows, else the finest its box
+/// allows. To be compressed (LAZ), point formats 6 to 8.
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
                            const WriteOptions& options, bool compress);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/core/file.h"
+#include "io/core/log.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -185,7 +186,11 @@ Result<void> Writer::finish() {
         file_.write_at(0, header_block(header, statistics_, points_offset_, any ? evlr_offset : 0).data()));
     LUCARNE_ASSIGN(const Bytes front, front_records(path_, header));
     LUCARNE_TRY(file_.write_at(header_bytes(header.minor), front.data()));
-    return file_.commit();
+    LUCARNE_TRY(file_.commit());
+    if (const double most = target_.converter.rounded(); most > 0)
+        log::warn("{}: coordinates are rounded, by at most {:.2g}: its integers cannot hold all their digits",
+                  path_, most);
+    return {};
 }
 
 Result<void> Writer::write_piece(const std::byte* in, size_t count) {
@@ -197,7 +202,8 @@ Result<void> Writer::write_piece(const std::byte* in, size_t count) {
         converted_.resize(count * stride);
         if (!target_.converter.convert(in, count, converted_.data()))
             return failed(path_,
-                          fmt::format("a position does not fit 32-bit integers of scale {}", header.scale.x),
+                          fmt::format("a position does not fit 32-bit integers of scale {}, {}, {}",
+                                      header.scale.x, header.scale.y, header.scale.z),
                           "choose PLY, which holds doubles");
         in = converted_.data();
     }

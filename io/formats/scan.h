@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "io/formats/lattice.h"
 #include "io/points.h"
 
 namespace lucarne::io {
@@ -61,7 +62,12 @@ struct WriteOptions {
     bool overwrite = false;
     uint64_t expected_points = 0;  ///< a hint; 0 where unknown
     /// The box of the points, where known: lets a LAS writer pick the finest scale for float positions.
-    std::optional<std::array<glm::dvec3, 2>> bounds;
+    std::optional<PositionBox> bounds{};
+    /// Where all float positions are known to stand, as those of several LAS files do.
+    std::optional<Lattice> lattice{};
+    /// Shows all records that are to be written, until `visit` is false: for a writer that needs to know more
+    /// of them than their box. Empty where they can be had only once.
+    std::function<Result<void>(const std::function<bool(std::span<const std::byte>)>& visit)> preview{};
 };
 
 /// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file appears when `finish`

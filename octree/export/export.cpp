@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "io/core/progress.h"
 #include "io/formats/copc_writer.h"
 #include "octree/attributes.h"
 #include "octree/build/node_sampler.h"
@@ -12,6 +13,17 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kBatchPoints = 1 << 16;  // an overfull node is not copied as a whole
+
+/// That of the integers that all scans had in their files, where they were LAS files all.
+std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
+    std::vector<io::Lattice> lattices;
+    for (const auto& scan : header.scans) {
+        const auto lattice = io::las::lattice_of(scan);
+        if (!lattice) return std::nullopt;
+        lattices.push_back(*lattice);
+    }
+    return io::common_lattice(lattices, {header.min, header.max});
+}
 
 }  // namespace
 
@@ -61,17 +73,43 @@ void Exporter::append(const NodeData& data, size_t first, size_t count,
     }
 }
 
-Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
+io::WriteOptions Exporter::write_options(bool overwrite) const {
+    const SourceHeader& header = source_.header();
+    io::WriteOptions options{.overwrite = overwrite, .expected_points = header.points};
+    options.bounds = {header.min, header.max};
+    options.lattice = lattice_of(header);
+    options.preview = [this](const auto& visit) -> Result<void> {
+        Progress progress("looking at all values", source_.header().points, "points");
+        return visit_batches([&](std::span<const std::byte> records) -> Result<bool> {
+            progress.add(records.size() / schema_.stride);
+            return visit(records);
+        });
+    };
+    return options;
+}
+
+Result<void> Exporter::visit_batches(
+    const std::function<Result<bool>(std::span<const std::byte>)>& visit) const {
     std::vector<std::byte> records;
     for (uint32_t node = 0; node < source_.nodes().size(); ++node) {
         LUCARNE_ASSIGN(const NodeData data, source_.load(node));
         for (size_t first = 0; first < data.count; first += kBatchPoints) {
             records.clear();
             append(data, first, std::min(kBatchPoints, data.count - first), records);
-            LUCARNE_TRY(writer.write(records));
+            LUCARNE_ASSIGN(const bool more, visit(records));
+            if (!more) return {};
         }
-        progress(data.count);
     }
+    return {};
+}
+
+Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
+    const auto write_batch = [&](std::span<const std::byte> records) -> Result<bool> {
+        LUCARNE_TRY(writer.write(records));
+        progress(records.size() / schema_.stride);
+        return true;
+    };
+    LUCARNE_TRY(visit_batches(write_batch));
     return writer.finish();
 }
 
@@ -93,11 +131,7 @@ Result<void> Exporter::write_copc(const std::filesystem::path& path, bool overwr
     cube.centre = header.root.min + cube.half_size;
     cube.spacing = header.root.size * kNodeSpacing;
     LUCARNE_ASSIGN(const auto writer,
-                   io::copc::NodeWriter::create(path, schema_, info_,
-                                                {.overwrite = overwrite,
-                                                 .expected_points = header.points,
-                                                 .bounds = std::array{header.min, header.max}},
-                                                cube));
+                   io::copc::NodeWriter::create(path, schema_, info_, write_options(overwrite), cube));
     const auto nodes = source_.nodes();
     std::vector<std::byte> records;
     for (uint32_t node = 0; node < nodes.size(); ++node) {

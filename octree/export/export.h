@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "io/formats/scan.h"
 #include "octree/source.h"
 
 namespace lucarne::octree {
@@ -19,7 +20,9 @@ class Exporter {
     const io::Schema& schema() const { return schema_; }
     /// What the writer needs to know; the details of the format where all inputs had the same.
     const io::ScanInfo& info() const { return info_; }
-    /// Writes every point, node by node, and finishes the file. `progress` is told the points of each node.
+    /// What the points tell a writer before it gets them. Not longer than this.
+    io::WriteOptions write_options(bool overwrite) const;
+    /// Writes every point, node by node, and finishes the file. `progress` is told of points that are done.
     Result<void> write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const;
 
     /// Writes a COPC file: its nodes are the source's, in their prefix order, each level's spacing half of
@@ -34,6 +37,8 @@ class Exporter {
     };
     /// Appends `count` of a node's points in our schema, from `first` on.
     void append(const NodeData& data, size_t first, size_t count, std::vector<std::byte>& records) const;
+    /// Shows every point, node by node, until `visit` is false.
+    Result<void> visit_batches(const std::function<Result<bool>(std::span<const std::byte>)>& visit) const;
     /// Appends all points of a node, and with `below` of its descendants.
     Result<void> append_node(uint32_t node, bool below, std::vector<std::byte>& records) const;
 

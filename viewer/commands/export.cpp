@@ -34,9 +34,8 @@ Result<void> export_cache(const Options& options) {
         log::info("{}: {} points", options.output.string(), points);
         return {};
     }
-    LUCARNE_ASSIGN(const auto writer,
-                   io::create_scan(options.output, exporter.schema(), exporter.info(),
-                                   {.overwrite = options.overwrite, .expected_points = points}));
+    LUCARNE_ASSIGN(const auto writer, io::create_scan(options.output, exporter.schema(), exporter.info(),
+                                                      exporter.write_options(options.overwrite)));
     LUCARNE_TRY(exporter.write(*writer, advance));
     log::info("{}: {} points", options.output.string(), points);
     return {};
@@ -46,7 +45,8 @@ Result<void> export_cache(const Options& options) {
 
 void add_export(CLI::App& app, Command& chosen) {
     auto options = std::make_shared<Options>();
-    auto* command = app.add_subcommand("export", "Write a cache back to a scan file, losing nothing");
+    auto* command =
+        app.add_subcommand("export", "Write a cache back to a scan file, with every point and attribute");
     command->add_option("cache", options->cache, "The cache (or COPC file) to read")->required()->type_name("CACHE");
     command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         ->required()
