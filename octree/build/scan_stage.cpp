@@ -131,6 +131,8 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes) {
         facts.inputs.push_back(std::move(seen));
     }
     if (facts.points == 0) return rejected(inputs.source(0).info().path, "has no points");
+    for (size_t input = 0; input < inputs.inputs(); ++input)
+        if (facts.inputs[input].points == 0) log::warn("{}: has no points", inputs.source(input).info().path);
     LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
     return facts;
 }

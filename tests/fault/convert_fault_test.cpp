@@ -155,6 +155,21 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
     EXPECT_EQ(io::testing::read_bytes(folder / "taken.luc"), "mine");
 }
 
+TEST(ConvertFaults, NameAnInputWithoutPointsAmongOthersAndTakeTheOthers) {
+    const TempFolder folder;
+    ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "a.las")).code, 0);
+    const std::string head = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n";
+    io::testing::write_bytes(folder / "empty.ply", head + "property float z\nend_header\n");
+    const std::string empty = quoted(folder / "empty.ply"), to = " --normals none -o ";
+    const auto among = lucarne("convert " + empty + " " + quoted(folder / "a.las") + to + quoted(folder / "a.luc"));
+    EXPECT_EQ(among.code, 0) << "nothing is lost";
+    EXPECT_NE(among.text.find("/empty.ply: has no points\n"), std::string::npos) << among.text;
+    EXPECT_NE(among.text.find("/empty.ply has no points\n"), std::string::npos) << among.text;
+    const auto alone = lucarne("convert " + empty + to + quoted(folder / "b.luc"));
+    EXPECT_EQ(alone.code, 3);
+    EXPECT_NE(alone.text.find("/empty.ply: has no points\n"), std::string::npos) << alone.text;
+}
+
 TEST(ConvertFaults, NeedNoHandleForEveryInput) {
     const TempFolder folder;
     ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "a.las")).code, 0);

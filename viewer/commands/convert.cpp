@@ -81,10 +81,11 @@ class ClosedScan final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-/// What each input holds, and what all of them lost.
+/// What each input holds, what all of them lost, and which were empty.
 struct Summary {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
     io::Losses losses;
+    std::string empty;
 
     Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents,
             const io::ReadOptions& read) {
@@ -92,9 +93,10 @@ struct Summary {
             inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i],
                                        read.metres_per_unit.has_value()));
             io::add_losses(losses, contents[i].losses);
+            if (contents[i].points == 0) empty += fmt::format("; {} has no points", scans[i]->info().path);
         }
     }
-    std::string text() const { return losses.empty() ? "" : "; left out: " + losses_text(losses); }
+    std::string text() const { return (losses.empty() ? "" : "; left out: " + losses_text(losses)) + empty; }
 };
 
 Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report,
