@@ -210,6 +210,24 @@ TEST_F(SharedSalvage, OfPointWiseLazEveryPointBeforeTheCut) {
     EXPECT_LT(saved->records.count, chunks[0].points + chunks[1].points * 3 / 4);
 }
 
+TEST_F(SharedSalvage, OfLazWhoseHeaderPromisesTooManyNoPointThatNeverWas) {
+    std::string bytes = shared_bytes("las/autzen_trim.laz");
+    const testing::TemporaryFolder folder;
+    testing::write_bytes(folder / "sound.laz", bytes);
+    const auto sound = salvage(folder / "sound.laz");
+    ASSERT_TRUE(sound);
+    const auto count = static_cast<uint32_t>(sound->records.count);
+    for (const uint32_t promised : {200'000u, 1'000'000u}) {
+        std::memcpy(&bytes[107], &promised, sizeof promised);
+        testing::write_bytes(folder / fmt::format("{}.laz", promised), bytes);
+        const auto saved = salvage(folder / fmt::format("{}.laz", promised));
+        ASSERT_TRUE(saved);
+        EXPECT_EQ(saved->records.count, count);
+        EXPECT_EQ(saved->lost, promised - count);
+        EXPECT_TRUE(saved->records.bytes == sound->records.bytes);
+    }
+}
+
 TEST_F(SharedSalvage, OfLazWithADamagedChunkAllOthers) {
     for (const char* name : {"autzen_trim.laz", "statue_lion_takanawa.copc.laz", "lone-star.copc.laz"}) {
         const auto path = testing::shared_data() / "las" / name;

@@ -162,6 +162,11 @@ class Walk {
 
 }  // namespace
 
+Result<uint64_t> end_of_chunks(const InputFile& file, const las::Header& header) {
+    LUCARNE_ASSIGN(const uint64_t table, table_offset(file, header.points_offset));
+    return table ? table : file.size();
+}
+
 Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
                                             const Compression& compression, bool salvage) {
     if (header.points == 0) return std::vector<ChunkPlace>();

@@ -19,4 +19,7 @@ struct ChunkPlace {
 Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
                                             const Compression& compression, bool salvage = false);
 
+/// Where chunks end at the latest: where the chunk table begins, if there may be one, else with the file.
+Result<uint64_t> end_of_chunks(const InputFile& file, const las::Header& header);
+
 }  // namespace lucarne::io::laz

@@ -23,10 +23,10 @@ struct OpenChunk {
     uint64_t left = 0;
 };
 
-Result<OpenChunk> open_chunk(const Points& points, size_t index) {
+Result<OpenChunk> open_chunk(const Points& points, size_t index, uint64_t most_bytes = UINT64_MAX) {
     const ChunkPlace& place = points.chunks[index];
     OpenChunk chunk;
-    chunk.bytes.resize(place.bytes);
+    chunk.bytes.resize(std::min(place.bytes, most_bytes));
     LUCARNE_TRY(points.file->read_at(place.offset, chunk.bytes));
     LUCARNE_ASSIGN(chunk.decoder, ChunkDecoder::create(points.file->path().string(), points.compression,
                                                        place.points, chunk.bytes));
@@ -57,11 +57,12 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
 }
 
 /// How many points of a damaged chunk can be trusted: where the file ends within one whose points follow each
-/// other, those before that; else none.
+/// other, those before that; else none. A table behind the last point, where the header promises more, is none.
 Result<uint64_t> sound_points(const Points& points, size_t index) {
     const ChunkPlace& place = points.chunks[index];
     if (points.compression.layered || !ends_with_file(points, index)) return 0u;
-    auto chunk = open_chunk(points, index);
+    LUCARNE_ASSIGN(const uint64_t end, end_of_chunks(*points.file, points.header));
+    auto chunk = open_chunk(points, index, end > place.offset ? end - place.offset : UINT64_MAX);
     if (!chunk && chunk.error().kind == ErrorKind::input_rejected) return 0u;
     if (!chunk) return tl::unexpected(std::move(chunk).error());
     std::vector<std::byte> record(points.header.record_length);
