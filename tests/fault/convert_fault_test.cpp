@@ -174,7 +174,11 @@ TEST(ConvertFaults, NeedNoHandleForEveryInput) {
     const TempFolder folder;
     ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "a.las")).code, 0);
     std::string inputs;
-    for (int i = 0; i < 60; ++i) inputs += quoted(folder / "a.las") + " ";
+    for (int i = 0; i < 60; ++i) {  // the same file would be taken once
+        const auto copy = folder / (std::to_string(i) + ".las");
+        std::filesystem::copy_file(folder / "a.las", copy);
+        inputs += quoted(copy) + " ";
+    }
     rlimit before{}, few{};
     ::getrlimit(RLIMIT_NOFILE, &before);
     few = before;
