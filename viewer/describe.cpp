@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/counted.h"
 #include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
@@ -28,7 +29,7 @@ json losses_json(const io::Losses& losses) {
 std::string losses_text(const io::Losses& losses) {
     std::string text;
     for (const auto& loss : losses)
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", loss.count, loss.what);
+        text += (text.empty() ? "" : ", ") + counted(loss.count, loss.what);
     return text;
 }
 

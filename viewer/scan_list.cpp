@@ -20,13 +20,6 @@ constexpr std::array<std::string_view, 12> kExtensions = {".las", ".laz", ".e57"
                                                           ".pts", ".xyz", ".asc", ".csv", ".obj", kText};
 constexpr size_t kNamed = 5;  ///< of a long list
 
-/// "a, b and 3 more".
-std::string some_of(const std::vector<std::string>& names) {
-    std::string text;
-    for (size_t i = 0; i < std::min(names.size(), kNamed); ++i) text += (i ? ", " : "") + names[i];
-    return names.size() > kNamed ? fmt::format("{} and {} more", text, names.size() - kNamed) : text;
-}
-
 /// By its rows: licences and notes are no broken scans.
 bool holds_points(const fs::path& text, io::ReadOptions options) {
     options.quiet = true;
@@ -68,6 +61,12 @@ void look_through(const std::string& folder, const io::ReadOptions& options, Sca
 }
 
 }  // namespace
+
+std::string some_of(const std::vector<std::string>& names) {
+    std::string text;
+    for (size_t i = 0; i < std::min(names.size(), kNamed); ++i) text += (i ? ", " : "") + names[i];
+    return names.size() > kNamed ? fmt::format("{} and {} more", text, names.size() - kNamed) : text;
+}
 
 std::span<const std::string_view> scan_extensions() {
     return kExtensions;

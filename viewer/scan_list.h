@@ -13,6 +13,9 @@
 
 namespace lucarne::viewer {
 
+/// "a, b and 3 more": the first five.
+std::string some_of(const std::vector<std::string>& names);
+
 /// Of the files that may be scans: ".las", in lower case.
 std::span<const std::string_view> scan_extensions();
 /// Whether the name ends in one of them.

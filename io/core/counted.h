@@ -4,16 +4,10 @@
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
-
 namespace lucarne {
 
-/// "1 point", "2 points".
-inline std::string counted(uint64_t count, std::string_view one, std::string_view many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-inline std::string counted(uint64_t count, std::string_view one) {
-    return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
-}
+/// "2 points that are not there", of 1 "1 point that is not there". `many` is one of our own phrases, in the plural:
+/// its first word that ends in s is the noun.
+std::string counted(uint64_t count, std::string_view many);
 
 }  // namespace lucarne

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/formats/e57/layout.h"
 #include "io/formats/format.h"
@@ -82,9 +83,8 @@ class E57Source final : public PointSource {
     E57Source(E57 e57, const ReadOptions& options) : e57_(std::move(e57)) {
         const auto& document = e57_.document;
         info_.path = e57_.file->path().string();
-        info_.format = fmt::format("E57 1.0, {} scan{}, {} image{}", document.scans.size(),
-                                   document.scans.size() == 1 ? "" : "s", document.images.size(),
-                                   document.images.size() == 1 ? "" : "s");
+        info_.format = fmt::format("E57 1.0, {}, {}", counted(document.scans.size(), "scans"),
+                                   counted(document.images.size(), "images"));
         info_.file_bytes = e57_.file->size();
         info_.modified = e57_.file->modified();
         info_.metres_per_unit = options.metres_per_unit.value_or(1.0);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/formats/format.h"
 
@@ -58,7 +59,7 @@ class RecordReader {
 
  private:
     Result<void> stop(uint32_t found, uint32_t promised, const char* kind) {
-        log::warn("{}: {} {} promised, {} there", file_.path().string(), promised, kind, found);
+        log::warn("{}: {} promised, {} there", file_.path().string(), counted(promised, kind), found);
         add_loss(losses_, fmt::format("{} that are not there", kind), promised - found);
         return {};
     }
@@ -169,7 +170,7 @@ Result<void> check_points(const InputFile& file, Header& h, bool salvage) {
         if (h.points / kMostPointsAByte > bytes || bomb)
             return rejected(
                 file.path().string(),
-                fmt::format("promises {} points, more than its {} bytes can hold", h.points, file.size()));
+                fmt::format("promises {}, more than its {} bytes can hold", counted(h.points, "points"), file.size()));
         if (h.points == 0 && bytes > kRoomOfNoPoints)
             log::warn("{}: its header promises no points, but there are {} bytes for them", file.path().string(), bytes);
         return {};
@@ -178,8 +179,8 @@ Result<void> check_points(const InputFile& file, Header& h, bool salvage) {
     if (h.points > there)
         return rejected(
             file.path().string(),
-            fmt::format("is truncated: its header promises {} points, {} are there, {} are missing", h.points,
-                        there, h.points - there));
+            fmt::format("is truncated: its header promises {}, {} {} there", counted(h.points, "points"), there,
+                        there == 1 ? "is" : "are"));
     if (h.points == 0 && there > 0)  // a writer that was interrupted leaves such files
         log::warn("{}: its header promises no points, but there is room for {}", file.path().string(), there);
     return {};

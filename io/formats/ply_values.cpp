@@ -170,12 +170,12 @@ Result<void> read_entry(BufferedInput& input, const Header& header, const Elemen
 
 tl::unexpected<Error> ends_early(const BufferedInput& input, const Element& element, uint64_t number) {
     const std::string name = printable(element.name);
-    const std::string promised = name == "vertex" ? counted(element.count, "point")
-                                 : name == "face" ? counted(element.count, "face")
-                                                  : counted(element.count, fmt::format("entry of '{}'", name),
-                                                            fmt::format("entries of '{}'", name));
-    return rejected(input.path(), fmt::format("ends early: its header promises {}, {} {} there", promised,
-                                              number - 1, number == 2 ? "is" : "are"));
+    const std::string promised = name == "vertex" ? "points"
+                                 : name == "face" ? "faces"
+                                                  : fmt::format("entries of '{}'", name);
+    return rejected(input.path(),
+                    fmt::format("ends early: its header promises {}, {} {} there",
+                                counted(element.count, promised), number - 1, number == 2 ? "is" : "are"));
 }
 
 tl::unexpected<Error> bad_word(const BufferedInput& input, const Element& element, uint64_t number,

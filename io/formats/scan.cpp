@@ -65,13 +65,13 @@ std::optional<std::string> savable(const PointSource& scan) {
     if (const auto mesh = details.find("mesh"); mesh != details.end() && mesh->contains("spacing_m")) {
         if (!damaged(info.losses)) return std::nullopt;
         return fmt::format("{}, about {}, can be saved with --salvage",
-                           counted(mesh->at("triangles").get<uint64_t>(), "whole triangle"),
-                           counted(info.declared_points, "point"));
+                           counted(mesh->at("triangles").get<uint64_t>(), "whole triangles"),
+                           counted(info.declared_points, "points"));
     }
     const auto contents = survey(scan);
     if (!contents || !damaged(contents->losses)) return std::nullopt;
     if (contents->points == 0) return "none of its points can be saved";
-    return counted(contents->points, "point") + " can be saved with --salvage";
+    return counted(contents->points, "points") + " can be saved with --salvage";
 }
 
 }  // namespace

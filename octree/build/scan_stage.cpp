@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "octree/build/record_bytes.h"
 
@@ -122,7 +123,7 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes) {
                 return {};
             }));
         for (const auto& loss : left.losses)
-            log::warn("{}: {} {}", inputs.source(input).info().path, loss.count, loss.what);
+            log::warn("{}: {}", inputs.source(input).info().path, counted(loss.count, loss.what));
         facts.min = glm::min(facts.min, seen.min);
         facts.max = glm::max(facts.max, seen.max);
         facts.points += seen.points;

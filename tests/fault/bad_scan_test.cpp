@@ -44,7 +44,7 @@ TEST(BadScan, FilesThatAreNotWhatTheySayAreRejectedByEveryCommand) {
         {"", "is empty"},
         {"What is this?", "is named .las and has no such header"},
         {good.substr(0, 200), "ends inside its LAS header"},
-        {good.substr(0, good.size() - 1), "1 are missing"},
+        {good.substr(0, good.size() - 1), "is truncated: its header promises"},
         {las.bytes(), "promises 4000000000 points"},
         {"ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nend_header\n1 2\n",
          "promises 5 points"}};
@@ -70,7 +70,7 @@ TEST(BadScan, WhatIsFoundOnlyWhileReadingIsRejectedAsWell) {
 TEST(BadScan, TheBadLasAndPlyFilesOfTheSharedDataAreRejectedOrConverted) {
     const auto shared = io::testing::shared_data();
     if (shared.empty()) GTEST_SKIP() << "the shared data is not here";
-    expect_rejected(shared / "bad/pdal_garbage_nVariableLength.las", "1 are missing");
+    expect_rejected(shared / "bad/pdal_garbage_nVariableLength.las", "is truncated: its header promises");
     expect_rejected(shared / "bad/pdal_no_vertex.ply", "no vertex element");
     const TemporaryFolder folder;
     for (const char* name : {"pdal_bad_vlr_count.las", "pdal_gps-time-nan.las"}) {

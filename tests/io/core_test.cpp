@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include "io/core/counted.h"
 #include "io/core/file.h"
 #include "io/core/options.h"
 #include "io/core/parallel.h"
@@ -32,6 +33,21 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view text
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, overwrite));
     LUCARNE_TRY(file.append(text));
     return file.commit();
+}
+
+TEST(Counted, OneIsSingular) {
+    EXPECT_EQ(counted(0, "points"), "0 points");
+    EXPECT_EQ(counted(1, "points"), "1 point");
+    EXPECT_EQ(counted(1, "whole triangles"), "1 whole triangle");
+    EXPECT_EQ(counted(1, "extended variable length records that are not there"),
+              "1 extended variable length record that is not there");
+    EXPECT_EQ(counted(1, "points that are not there: the file ends before them"),
+              "1 point that is not there: the file ends before it");
+    EXPECT_EQ(counted(1, "images, which are listed but not read"), "1 image, which is listed but not read");
+    EXPECT_EQ(counted(1, "entries of 'faces', which are not read"), "1 entry of 'faces', which is not read");
+    EXPECT_EQ(counted(1, "faces that make no sense"), "1 face that makes no sense");
+    EXPECT_EQ(counted(2, "faces that make no sense"), "2 faces that make no sense");
+    EXPECT_EQ(counted(1, ""), "1 ");
 }
 
 TEST(OutputFile, AppearsOnlyWhenCommitted) {

@@ -326,14 +326,14 @@ TEST_F(Las, HeadersThatLieAreRejectedWithTheLie) {
         change(file);
         expect_rejected(file, reason);
     };
-    lie([](LasFile& f) { f.said_old_points = 3; }, "promises 3 points, 2 are there, 1 are missing");
-    lie([](LasFile& f) { f.said_old_points = 0xffffffff; }, "4294967293 are missing");
+    lie([](LasFile& f) { f.said_old_points = 3; }, "promises 3 points, 2 are there");
+    lie([](LasFile& f) { f.said_old_points = 0xffffffff; }, "promises 4294967295 points, 2 are there");
     lie(
         [](LasFile& f) {
             f.minor = 4;
             f.said_points = std::numeric_limits<int64_t>::max();
         },
-        "are missing");
+        "is truncated: its header promises");
     lie([](LasFile& f) { f.record_length = 19; }, "records of 19 bytes, but point format 0 needs 20");
     lie(
         [](LasFile& f) {

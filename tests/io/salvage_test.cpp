@@ -100,7 +100,7 @@ void cut_everywhere(const std::string& name, const std::string& bytes, const Exp
         const Error advice = with_salvage_advice(usual.error(), path, {"", true, {0, 0, true}});
         if (saved && saved->records.count > 0) {
             ASSERT_THAT(advice.line(),
-                        HasSubstr("; " + counted(saved->records.count, "point") + " can be saved with --salvage"));
+                        HasSubstr("; " + counted(saved->records.count, "points") + " can be saved with --salvage"));
         } else if (saved) {
             ASSERT_THAT(advice.line(), HasSubstr("none of its points can be saved")) << name << " cut to " << cut;
         } else {

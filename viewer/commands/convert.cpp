@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/file.h"
 #include "io/core/json.h"
 #include "io/core/log.h"
@@ -85,7 +86,7 @@ class ClosedScan final : public io::PointSource {
 struct Summary {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
     io::Losses losses;
-    std::string empty;
+    std::vector<std::string> empty;
 
     Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents,
             const io::ReadOptions& read) {
@@ -93,10 +94,14 @@ struct Summary {
             inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i],
                                        read.metres_per_unit.has_value()));
             io::add_losses(losses, contents[i].losses);
-            if (contents[i].points == 0) empty += fmt::format("; {} has no points", scans[i]->info().path);
+            if (contents[i].points == 0) empty.push_back(scans[i]->info().path);
         }
     }
-    std::string text() const { return (losses.empty() ? "" : "; left out: " + losses_text(losses)) + empty; }
+    std::string text() const {
+        std::string all = losses.empty() ? "" : "; left out: " + losses_text(losses);
+        if (!empty.empty()) all += fmt::format("; without points: {}", some_of(empty));
+        return all;
+    }
 };
 
 Result<void> write_report(const std::string& path, bool overwrite, const octree::BuildReport& report,
@@ -185,8 +190,8 @@ Result<void> convert(ConvertOptions options) {
         wall += stage.wall_seconds;
     }
     const Summary summary(build.inputs, report.inputs, options.read);
-    log::info("{}: {} points in {} nodes, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
-              report.points, report.nodes, bytes_text(report.bytes), wall, cpu, summary.text());
+    log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
+              counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes), wall, cpu, summary.text());
     if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
     return aside.result(build.output.string());
 }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/progress.h"
 #include "io/formats/copc.h"
@@ -31,13 +32,13 @@ Result<void> export_cache(const Options& options) {
     const auto advance = [&](uint64_t done) { progress.add(done); };
     if (io::copc::is_name(options.output)) {
         LUCARNE_TRY(exporter.write_copc(options.output, options.overwrite, advance));
-        log::info("{}: {} points", options.output.string(), points);
+        log::info("{}: {}", options.output.string(), counted(points, "points"));
         return {};
     }
     LUCARNE_ASSIGN(const auto writer, io::create_scan(options.output, exporter.schema(), exporter.info(),
                                                       exporter.write_options(options.overwrite)));
     LUCARNE_TRY(exporter.write(*writer, advance));
-    log::info("{}: {} points", options.output.string(), points);
+    log::info("{}: {}", options.output.string(), counted(points, "points"));
     return {};
 }
 

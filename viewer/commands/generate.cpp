@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/progress.h"
@@ -43,13 +44,14 @@ Result<void> generate(GenerateOptions options) {
     }
     LUCARNE_TRY(writer->finish());
     const size_t stations = source->info().stations.size();
+    const std::string all = counted(points, "points");
     if (stations == 0 && !options.scan.even)
-        log::info("{}: {} points of {}", options.output, points, options.scan.scene);
+        log::info("{}: {} of {}", options.output, all, options.scan.scene);
     else if (options.scan.even)
-        log::info("{}: {} points of {}, sampled evenly", options.output, points, options.scan.scene);
+        log::info("{}: {} of {}, sampled evenly", options.output, all, options.scan.scene);
     else
-        log::info("{}: {} points of {} from {} station{}", options.output, points, options.scan.scene,
-                  stations, stations == 1 ? "" : "s");
+        log::info("{}: {} of {} from {}", options.output, all, options.scan.scene,
+                  counted(stations, "stations"));
     return {};
 }
 

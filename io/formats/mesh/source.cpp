@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -170,20 +171,19 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann:
                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(const double spacing, spacing_of(mesh, info, options));
     if (mesh.not_finite > 0)
-        log::warn("{}: {} triangles with a coordinate that is not finite are left out", info.path,
-                  mesh.not_finite);
+        log::warn("{}: {} with a coordinate that is not finite: left out", info.path,
+                  counted(mesh.not_finite, "triangles"));
     if (mesh.fanned > 0)
         log::warn(
-            "{}: {} polygons are too large to be cut properly; where they are not convex they are wrong",
-            info.path, mesh.fanned);
+            "{}: {} of over 256 corners, too many to be cut properly: wrong where not convex", info.path,
+            counted(mesh.fanned, "polygons"));
     const double metres = info.metres_per_unit;
     info.declared_points = static_cast<uint64_t>(mesh.area() / (spacing * spacing));
     if (!options.quiet)
         log::info(
-            "{}: a mesh of {:.6g} m2, sampled every {:.3g} m: about {} points; --spacing or --mesh-points "
-            "can "
-            "say otherwise",
-            info.path, mesh.area() * metres * metres, spacing * metres, info.declared_points);
+            "{}: a mesh of {:.6g} m2, sampled every {:.3g} m: about {}; --spacing or --mesh-points can say "
+            "otherwise",
+            info.path, mesh.area() * metres * metres, spacing * metres, counted(info.declared_points, "points"));
     describe(mesh, details["mesh"]);
     details["mesh"]["area_m2"] = mesh.area() * metres * metres;
     details["mesh"]["spacing_m"] = spacing * metres;

@@ -18,7 +18,7 @@ inline constexpr uint64_t kMostDefaultSamples = 20'000'000;
 /// What is lost of damaged files, beside what io::lost has.
 inline constexpr std::string_view kCutFaces = "faces that are not there: the file ends before them",
                                   kDamagedFaces = "faces that make no sense",
-                                  kCutLine = "line that is cut off, and all that may have followed it",
+                                  kCutLine = "lines that are cut off, and all that may have followed",
                                   kDamagedLines = "lines that make no sense";
 
 /// What is known of the file: path, format, bytes, time, unit; `details` say more of the mesh.
