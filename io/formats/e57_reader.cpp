@@ -145,6 +145,31 @@ Result<void> check_apart(const std::string& name, const e57::FileHeader& header,
     return {};
 }
 
+/// The scan's section. `constant` counts the points of all scans that take no bytes: kMostConstant in a file,
+/// or one a byte of it.
+Result<e57::Section> checked_section(const std::shared_ptr<const InputFile>& file,
+                                     const e57::FileHeader& header, const e57::Scan& scan, bool salvage,
+                                     uint64_t& constant) {
+    LUCARNE_ASSIGN(auto section, e57::read_section(file, header, scan, salvage));
+    if (e57::record_bits(scan) > 0) return section;
+    const uint64_t most = std::max(e57::kMostConstant, file->size());
+    if (constant + scan.records > most)
+        return rejected(file->path().string(),
+                        fmt::format("promises {} points that take no bytes, at most {} can be",
+                                    constant + scan.records, most));
+    constant += scan.records;
+    return section;
+}
+
+void warn_of_poses(const std::string& name, const e57::Document& document) {
+    const auto unturned =
+        std::count_if(document.scans.begin(), document.scans.end(),
+                      [](const e57::Scan& scan) { return scan.pose && scan.pose->unturned; });
+    if (unturned > 0)
+        log::warn("{}: the rotation of {} of its {} scans has no length, it is left out", name, unturned,
+                  document.scans.size());
+}
+
 Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
                                               const ReadOptions& options) {
     const std::string name = file->path().string();
@@ -153,9 +178,11 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> f
     E57 e57;
     LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
     e57.salvage = options.salvage;
+    if (!options.quiet) warn_of_poses(name, e57.document);
+    uint64_t constant = 0;
     for (e57::Scan& scan : e57.document.scans) {
         Result<e57::Section> section;
-        if (scan.records > 0) section = e57::read_section(file, header, scan, options.salvage);
+        if (scan.records > 0) section = checked_section(file, header, scan, options.salvage, constant);
         if (!section && (!options.salvage || section.error().kind != ErrorKind::input_rejected))
             return tl::unexpected(std::move(section).error());
         if (!section) {

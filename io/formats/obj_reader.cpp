@@ -51,7 +51,7 @@ class ObjParser {
         }
         if (!joined.empty()) LUCARNE_TRY(take(joined));
         finish_colors();
-        return {};
+        return finish_faces();
     }
 
     Mesh& mesh() { return mesh_; }
@@ -59,6 +59,8 @@ class ObjParser {
     uint64_t other() const { return other_; }
     uint64_t faces() const { return faces_; }
     const Losses& losses() const { return losses_; }
+    /// Texture coordinates and normals that corners of triangles name and that are not there.
+    uint64_t missing() const { return missing_; }
 
  private:
     tl::unexpected<Error> wrong(std::string why) const {
@@ -141,13 +143,13 @@ class ObjParser {
         return {};
     }
 
-    /// Colours are 0 to 1, or 0 to 255 where any is larger.
+    /// Colours are 0 to 1, give or take what rounding did to a white; or 0 to 255 where any is larger.
     void finish_colors() {
         if (raw_colors_.empty()) return;
         raw_colors_.resize(mesh_.positions.size(), glm::vec3(-1.0f));
         float largest = 0;
         for (const auto& c : raw_colors_) largest = std::max({largest, c.x, c.y, c.z});
-        const float white = largest > 1 ? 1.0f : 255.0f;
+        const float white = largest > 1.5f ? 1.0f : 255.0f;
         for (const auto& c : raw_colors_) {
             const auto byte = [&](float v) {
                 return static_cast<uint8_t>(v >= 0 ? std::lround(std::min(v * white, 255.0f)) : kNoColor[0]);
@@ -156,18 +158,18 @@ class ObjParser {
         }
     }
 
-    /// An index counts from 1, or backwards from -1 at the last; what it names stands above.
-    Result<uint32_t> index(std::string_view word, size_t count, std::string_view of) const {
+    /// An index counts from 1, or backwards from -1 at the last above; given from 0 on. What it names may
+    /// stand further down; kNowhere where that cannot be.
+    Result<uint32_t> index(std::string_view word, size_t above, std::string_view of) const {
         const auto number = parse_number<int64_t>(word);
         if (!number) return wrong(fmt::format("has '{}' for the number of a {}", printable(word), of));
-        const int64_t at = *number > 0 ? *number - 1 : *number + static_cast<int64_t>(count);
-        if (*number == 0 || at < 0 || at >= static_cast<int64_t>(count))
-            return wrong(fmt::format("names {} {}, of {} above it", of, *number, count));
-        return static_cast<uint32_t>(at);
+        const int64_t at = *number > 0 ? *number - 1 : *number + static_cast<int64_t>(above);
+        return *number == 0 || at < 0 || at > kNowhere ? kNowhere : static_cast<uint32_t>(at);
     }
 
     Result<void> face(std::string_view rest) {
         polygon_.clear();
+        bool late = false;  // names vertices further down
         for (auto word = next_word(rest); !word.empty() && word[0] != '#'; word = next_word(rest)) {
             std::array<std::string_view, 3> parts;
             for (size_t i = 0; i < 3; ++i) {
@@ -176,7 +178,11 @@ class ObjParser {
                 word.remove_prefix(slash == word.npos ? word.size() : slash + 1);
             }
             Corner corner;
-            LUCARNE_ASSIGN(corner.position, index(parts[0], mesh_.positions.size(), "vertex"));
+            const size_t above = mesh_.positions.size();
+            LUCARNE_ASSIGN(corner.position, index(parts[0], above, "vertex"));
+            if (corner.position == kNowhere)
+                return wrong(fmt::format("names vertex {}, of {} above it", parts[0], above));
+            late = late || corner.position >= above;
             if (!parts[1].empty()) {
                 LUCARNE_ASSIGN(corner.coordinate,
                                index(parts[1], mesh_.coordinates.size(), "texture coordinate"));
@@ -188,7 +194,41 @@ class ObjParser {
         }
         if (input_.open_line() && !whole()) return wrong("is half a face");
         ++faces_;
-        mesh_.add(polygon_, material_, std::nullopt);
+        if (late) {
+            late_faces_.push_back({line_, late_corners_.size(), polygon_.size(), material_});
+            late_corners_.insert(late_corners_.end(), polygon_.begin(), polygon_.end());
+        } else {
+            mesh_.add(polygon_, material_, std::nullopt);
+        }
+        return {};
+    }
+
+    /// Adds the faces whose vertices stand below them, and forgets what corners name that never came.
+    Result<void> finish_faces() {
+        for (const LateFace& face : late_faces_) {
+            const auto polygon = std::span(late_corners_).subspan(face.first, face.corners);
+            const auto lost = std::ranges::find_if(
+                polygon, [&](const Corner& c) { return c.position >= mesh_.positions.size(); });
+            if (lost == polygon.end()) {
+                mesh_.add(polygon, face.material, std::nullopt);
+                continue;
+            }
+            line_ = face.line;
+            if (!salvage_)
+                return wrong(fmt::format("names vertex {}, of {}", uint64_t{lost->position} + 1,
+                                         mesh_.positions.size()));
+            add_loss(losses_, kDamagedLines, 1);
+        }
+        const auto forget = [&](std::vector<Corners>& list, size_t there) {
+            for (Corners& corners : list)
+                for (uint32_t& named : corners) {
+                    if (named == kNone || named < there) continue;
+                    named = kNone;
+                    ++missing_;
+                }
+        };
+        forget(mesh_.coordinate_corners, mesh_.coordinates.size());
+        forget(mesh_.normal_corners, mesh_.normals.size());
         return {};
     }
 
@@ -212,6 +252,13 @@ class ObjParser {
         for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) take(word);
     }
 
+    static constexpr uint32_t kNowhere = kNone - 1;  ///< beyond the end of any list
+    struct LateFace {
+        uint64_t line = 0;
+        size_t first = 0, corners = 0;  ///< in late_corners_
+        uint32_t material = kNone;
+    };
+
     std::string name_;
     bool salvage_;
     BufferedInput input_;
@@ -219,10 +266,11 @@ class ObjParser {
     Companions companions_;
     std::map<std::string, uint32_t, std::less<>> materials_;
     std::vector<glm::vec3> raw_colors_;
-    std::vector<Corner> polygon_;
+    std::vector<Corner> polygon_, late_corners_;
+    std::vector<LateFace> late_faces_;
     Losses losses_;
     uint32_t material_ = kNone;
-    uint64_t line_ = 0, other_ = 0, faces_ = 0;
+    uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
 Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> file,
@@ -240,6 +288,11 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     if (parser.other() > 0) {
         details["mesh"]["left_out_lines_points_curves"] = parser.other();
         log::warn("{}: {} lines, points, curves and calls are left out", info.path, parser.other());
+    }
+    if (parser.missing() > 0) {
+        details["mesh"]["coordinates_and_normals_not_there"] = parser.missing();
+        log::warn("{}: corners name {} texture coordinates or normals that are not there, they have none",
+                  info.path, parser.missing());
     }
     mesh.finish();
     if (parser.faces() > 0 && mesh.triangles.empty() && !options.quiet)

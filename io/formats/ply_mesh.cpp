@@ -92,6 +92,7 @@ class MeshLoader {
                     normal[k] = property_of(element, {column.property.name}, false);
             }
         }
+        wraps_ = color && color->type == ScalarType::u8;
         const size_t u = property_of(element, {"texture_u", "s", "u"}, false);
         const size_t v = property_of(element, {"texture_v", "t", "v"}, false);
         for (uint64_t i = 0; i < element.count && !lost_place_; ++i) {
@@ -116,7 +117,7 @@ class MeshLoader {
 
     uint8_t byte(double value) const {
         // A "char" that means uchar comes as a negative number.
-        const double whole = std::round((value < 0 ? value + 256 : value) * to_byte_);
+        const double whole = std::round((wraps_ && value < 0 ? value + 256 : value) * to_byte_);
         return static_cast<uint8_t>(whole >= 0 ? std::min(whole, 255.0) : 0.0);
     }
 
@@ -236,6 +237,7 @@ class MeshLoader {
     Losses vertex_losses_, face_losses_;
     double to_byte_;
     bool salvage_;
+    bool wraps_ = false;       ///< colours are bytes
     bool by_vertex_ = false;   ///< texture coordinates
     bool lost_place_ = false;  ///< where the next entry begins is not known
 };

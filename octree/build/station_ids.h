@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -31,9 +32,11 @@ class StationIds {
         const auto& ids = by_id_[scan];
         if (ids.size() == 1) return ids.begin()->second;
         if (ids.size() < 2 || !source_) return -1;
-        const auto found =
-            ids.find(static_cast<uint32_t>(io::scalar_at(source_->type, record + source_->offset)));
-        return found == ids.end() ? -1 : found->second;
+        // Some files hold it as a float, which may be no whole number, too large or none.
+        const double id = io::scalar_at(source_->type, record + source_->offset);
+        if (!(id >= 0 && id <= std::numeric_limits<uint32_t>::max())) return -1;
+        const auto found = ids.find(static_cast<uint32_t>(id));
+        return found == ids.end() || found->first != id ? -1 : found->second;
     }
 
  private:

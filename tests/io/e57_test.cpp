@@ -405,6 +405,42 @@ TEST_F(E57, CountsAndOffsetsThatLieAreRefusedBeforeReading) {
     expect_refused(BuiltFile{{constant}}, "promises 1099511627776 points");
 }
 
+TEST_F(E57, ManyScansOfConstantsHoldNoMorePointsThanOne) {
+    BuiltScan constant{integer_field("cartesianX", 1, 1) + integer_field("cartesianY", 2, 2) +
+                           integer_field("cartesianZ", 3, 3),
+                       65000, data_packet({"", "", ""})};
+    BuiltFile file{{constant, constant}};
+    expect_refused(file, "promises 130000 points that take no bytes, at most 65536");
+    file.scans[1].records = 536;
+    const auto r = read(file);
+    ASSERT_TRUE(r) << r.error().line();
+    EXPECT_EQ(r->count, 65536u);
+    // Of a larger file as many points as it has bytes.
+    file.scans[1].records = 65000;
+    std::string bytes(size_t{1} << 14, '\0');
+    file.scans.push_back({integer_field("cartesianX", 0, 255) + integer_field("cartesianY", 0, 255) +
+                              integer_field("cartesianZ", 0, 255),
+                          16 * bytes.size(), ""});
+    for (int packet = 0; packet < 16; ++packet) file.scans[2].packets += data_packet({bytes, bytes, bytes});
+    EXPECT_TRUE(read(file));
+    // Salvaging leaves out the scans that are too many.
+    file.scans.pop_back();
+    file_.set(file.bytes());
+    const auto saved = open_scan(file_.path(), {.salvage = true});
+    ASSERT_TRUE(saved) << saved.error().line();
+    EXPECT_EQ(testing::read_all(**saved, 1000)->count, 65000u);
+}
+
+TEST_F(E57, APoseWhoseQuaternionIsZeroOnlyMoves) {
+    BuiltScan posed = one_point();
+    posed.more = "<pose><rotation><w>0</w><x>0</x></rotation><translation><x>10</x></translation></pose>";
+    const auto r = read(BuiltFile{{posed, one_point()}});
+    ASSERT_TRUE(r) << r.error().line();
+    ASSERT_EQ(r->count, 2u);
+    EXPECT_EQ(position(*r, 0), glm::dvec3(11, 2, 3));
+    EXPECT_EQ(position(*r, 1), glm::dvec3(1, 2, 3));
+}
+
 TEST_F(E57, SectionsThatOverlapAreRefused) {
     BuiltScan again = one_point();
     again.file_offset = std::to_string(e57::kHeaderBytes);
@@ -433,9 +469,8 @@ TEST_F(E57, FieldsWithoutSenseAreRefusedByName) {
     BuiltScan flat{float_field("cartesianX") + float_field("cartesianY"), 1,
                    data_packet({"01234567", "01234567"})};
     expect_refused(BuiltFile{{flat}}, "no coordinates");
-    for (const char* pose :
-         {"<rotation><w>0</w></rotation>", "<rotation><w>nan</w></rotation>",
-          "<translation><x>1e99</x></translation>", "<translation><x>far</x></translation>"}) {
+    for (const char* pose : {"<rotation><w>nan</w></rotation>", "<translation><x>1e99</x></translation>",
+                             "<translation><x>far</x></translation>"}) {
         BuiltScan posed = one_point();
         posed.more = std::string("<pose>") + pose + "</pose>";
         expect_refused(BuiltFile{{posed}}, "has ");

@@ -282,6 +282,15 @@ TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
     for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(1, 2, 255));
     read("v 0 0 0 0.2 0.4 1\nv 1 0 0 0.2 0.4 1\nv 0 1 0 0.2 0.4 1\nf 1 2 3\n", every(0.05));
     for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(51, 102, 255));
+    // Rounding takes a white of 1 a little further, and a black of 0 below.
+    read("v 0 0 0 0.2 0.4 1.00001\nv 1 0 0 0.2 0.4 1\nv 0 1 0 0.2 0.4 1\nf 1 2 3\n", every(0.05));
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(51, 102, 255));
+    read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nproperty float red\nproperty float green\nproperty float blue\nelement face 1\nproperty list "
+        "uchar int vertex_indices\nend_header\n0 0 0 -0.0001 .2 1\n1 0 0 -1e-9 .2 1\n0 1 0 0 .2 1\n3 0 1 2\n",
+        every(0.05));
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(0, 51, 255));
     put("m.mtl", "newmtl a b\nKd 0.2 0.4 1\nnewmtl c\nKd 1 1 0\n");
     put("a.obj",
         "mtllib m.mtl\n" + kSquare + "v 0 0 1\nv 1 0 1\nv 1 1 1\nusemtl c\nf 5 6 7\nusemtl a b\nf 5 7 6\n");
@@ -322,9 +331,11 @@ TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
                 HasSubstr("line 4 names vertex 4, of 3"));
     EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n").line(), HasSubstr("names vertex -4"));
     EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n").line(), HasSubstr("names vertex 0"));
-    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2 3\n").line(),
-                HasSubstr("names texture coordinate 1"));
-    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2 3\n").line(), HasSubstr("names normal 1"));
+    EXPECT_THAT(error_of("v 0 0 0\nf 1 2 4\nv 1 0 0\nv 0 1 0\n").line(),
+                HasSubstr("line 2 names vertex 4, of 3"));
+    EXPECT_THAT(error_of("v 0 0 0\nf -1 -2 1\nv 1 0 0\nv 0 1 0\n").line(), HasSubstr("names vertex -2"));
+    EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/x 2 3\n").line(),
+                HasSubstr("has 'x' for the number of a texture coordinate"));
     EXPECT_THAT(error_of("v 0 0\n").line(), HasSubstr("too few numbers"));
     const std::string ply =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
@@ -335,6 +346,42 @@ TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
     EXPECT_THAT(error_of(ply).line(), HasSubstr("ends early: its header promises 1 face, 0 are there"));
     EXPECT_THAT(error_of(ply + "4 0 1 2\n").line(),
                 HasSubstr("face 1 has no value for its property vertex_indices"));
+}
+
+TEST_F(MeshScan, TextureCoordinatesAndNormalsThatAreNotThereAreNone) {
+    read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1/1/2 2/2/1 3/-3/0\n", every(0.05));
+    EXPECT_NEAR(static_cast<double>(points()), 200, 30);
+    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
+    EXPECT_EQ(details()["coordinates_and_normals_not_there"], 5);
+}
+
+TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
+    read("v 0 0 0\nf 1//1 2//1 3//1\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nv 5 5 5\n", every(0.05));
+    EXPECT_NEAR(static_cast<double>(points()), 200, 30);
+    for (size_t i = 0; i < points(); ++i) {
+        EXPECT_EQ(triple(i, "normal"), glm::dvec3(1, 0, 0));
+        EXPECT_LE(position(i).x + position(i).y, 1.0001);
+    }
+    EXPECT_FALSE(details().contains("coordinates_and_normals_not_there"));
+    // Indices from the end count from where the face stands, and its material is that of its place.
+    put("m.mtl", "newmtl first\nKd 1 0 0\nnewmtl second\nKd 0 0 1\n");
+    put("a.obj", "mtllib m.mtl\nusemtl first\nv 0 0 0\nf -1 2 3\nusemtl second\nv 1 0 0\nv 0 1 0\n");
+    read_folder("a.obj", every(0.05));
+    ASSERT_GT(points(), 100u);
+    for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(255, 0, 0));
+}
+
+TEST_F(MeshScan, ATinyMeshFarAwayStaysWhereItIs) {
+    // Coordinates take more steps than 32 bits can count: their own are coarser than the mesh.
+    read("v 4000000 0 0\nv 4000000.0000000010 0 0\nv 4000000 0.0000000005 0\nf 1 2 3\n", about(100));
+    ASSERT_GT(points(), 0u);
+    for (size_t i = 0; i < points(); ++i) EXPECT_NEAR(position(i).x, 4e6, 2e-9);
+    read("v 2e16 0 0\nv 20000000000000004 0 0\nv 2e16 4 0\nf 1 2 3\n", about(100));
+    ASSERT_GT(points(), 0u);
+    for (size_t i = 0; i < points(); ++i) {
+        EXPECT_GE(position(i).x, 2e16);
+        EXPECT_LE(position(i).x, 2e16 + 4);
+    }
 }
 
 TEST_F(MeshScan, VerticesAloneAreAPointCloud) {
@@ -498,6 +545,46 @@ TEST(Triangulate, EarsCoverPolygonsWithHolesJoinedByABridge) {
         area += twice / 2;
     }
     EXPECT_NEAR(area, 3, 1e-12);
+}
+
+TEST(Triangulate, EarsCoverAnyPolygonThatDoesNotCrossItself) {
+    Random random(5);
+    for (int round = 0; round < 200; ++round) {
+        // Around the origin, in order of direction, at any distance.
+        const int corners = 4 + static_cast<int>(random.next() % 253);
+        std::vector<glm::dvec3> polygon;
+        double area = 0;
+        for (int i = 0; i < corners; ++i) {
+            const double angle = 2 * std::acos(-1.0) * i / corners, far = 0.05 + random.uniform();
+            polygon.emplace_back(far * std::cos(angle), far * std::sin(angle), 0);
+        }
+        for (size_t i = 0; i < polygon.size(); ++i)
+            area += glm::cross(polygon[i], polygon[(i + 1) % polygon.size()]).z / 2;
+        std::vector<std::array<uint32_t, 3>> triangles;
+        ASSERT_TRUE(mesh::triangulate(polygon, triangles));
+        ASSERT_EQ(triangles.size(), polygon.size() - 2);
+        double covered = 0;
+        for (const auto& [a, b, c] : triangles) {
+            const double twice = glm::cross(polygon[b] - polygon[a], polygon[c] - polygon[a]).z;
+            ASSERT_GE(twice, 0) << "turned over";
+            covered += twice / 2;
+        }
+        ASSERT_NEAR(covered, area, 1e-9);
+    }
+}
+
+TEST(Triangulate, APolygonThatCrossesItselfGetsATriangleACornerStill) {
+    Random random(7);
+    std::vector<glm::dvec3> polygon;
+    for (size_t i = 0; i < mesh::kMostEarCorners; ++i)
+        polygon.emplace_back(random.uniform(), random.uniform(), random.uniform());
+    std::vector<std::array<uint32_t, 3>> triangles;
+    EXPECT_TRUE(mesh::triangulate(polygon, triangles));
+    EXPECT_EQ(triangles.size(), polygon.size() - 2);
+    std::vector<int> used(polygon.size());
+    for (const auto& triangle : triangles)
+        for (const uint32_t corner : triangle) ++used[corner];
+    EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0);
 }
 
 class SharedMeshes : public MeshScan {};

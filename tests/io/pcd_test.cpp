@@ -143,6 +143,13 @@ TEST_F(Pcd, ColoursComeInEveryPacking) {
         EXPECT_EQ(value(0, names::color, 1), 11) << number;
         EXPECT_EQ(value(0, "alpha"), 0xfe) << number;
     }
+    // Text that cannot say its bits says no colour.
+    for (const std::string none : {"nan", "-nan", "inf"}) {
+        read(header("x y z rgba", "4 4 4 4", "F F F F", "1 1 1 1", "") + grid(1, 1, "ascii") + "1 2 3 " +
+             none + "\n");
+        for (size_t k = 0; k < 3; ++k) EXPECT_EQ(value(0, names::color, k), 188) << none;
+        EXPECT_EQ(value(0, "alpha"), 255) << none;
+    }
     // A packed colour beside another stays a field.
     read(header("x y z r g b rgb", "4 4 4 1 1 1 4", "F F F U U U U", "1 1 1 1 1 1 1", "") +
          grid(1, 1, "ascii") + "1 2 3 4 5 6 7\n");

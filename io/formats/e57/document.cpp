@@ -105,8 +105,8 @@ Result<Pose> parse_pose(const std::string& file, pugi::xml_node node) {
     LUCARNE_ASSIGN(double y, child_number(file, rotation, "y"));
     LUCARNE_ASSIGN(double z, child_number(file, rotation, "z"));
     const double squared = w * w + x * x + y * y + z * z;
-    if (!(squared > 1e-12 && squared < 1e12))
-        return rejected(file, "has a pose whose quaternion cannot be normalised");
+    pose.unturned = !(squared > 1e-12 && squared < 1e12);
+    if (pose.unturned) return pose;  // it cannot be normalised; some writers leave it 0
     // The matrix of a quaternion (Shoemake 1985), columns first; 2 / |q|^2 normalises it.
     const double s = 2.0 / squared;
     pose.rotation = {{1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)},

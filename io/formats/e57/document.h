@@ -35,6 +35,7 @@ struct Field {
 struct Pose {
     glm::dmat3 rotation{1.0};
     glm::dvec3 translation{0.0};
+    bool unturned = false;  ///< its rotation cannot be one and is left out
     bool moves() const { return rotation != glm::dmat3(1.0) || translation != glm::dvec3(0.0); }
 };
 

@@ -17,13 +17,13 @@ constexpr size_t kSlack = 16;  ///< that unpack_bits may touch behind the last b
 enum PacketType : uint8_t { kIndexPacket = 0, kDataPacket = 1, kEmptyPacket = 2 };
 constexpr size_t kPacketHeaderBytes = 4, kDataHeaderBytes = 6;
 
+}  // namespace
+
 uint64_t record_bits(const Scan& scan) {
     return std::accumulate(
         scan.fields.begin(), scan.fields.end(), uint64_t{0},
         [](uint64_t sum, const Field& f) { return sum + (f.kind == Field::Kind::text ? 0 : f.bits); });
 }
-
-}  // namespace
 
 Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
                              const Scan& scan, bool salvage) {

@@ -19,6 +19,8 @@ struct Section {
 Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
                              const Scan& scan, bool salvage = false);
 
+/// What one record takes; 0 where all fields are constants.
+uint64_t record_bits(const Scan& scan);
 inline constexpr uint64_t kMostConstant = uint64_t{1} << 16;
 inline constexpr size_t kBlockRecords = 1024;
 

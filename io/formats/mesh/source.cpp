@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -47,7 +48,11 @@ class SampleReader final : public PointReader {
 
  private:
     void fill(const Sample& sample, std::byte* record) const {
-        const glm::dvec3 steps = glm::round((sample.position - schema_.offset) / schema_.scale);
+        // Far from the origin coordinates may be coarser than the whole mesh, and so than 2^31 steps.
+        constexpr double kLeast = std::numeric_limits<int32_t>::min(),
+                         kMost = std::numeric_limits<int32_t>::max();
+        const glm::dvec3 steps =
+            glm::clamp(glm::round((sample.position - schema_.offset) / schema_.scale), kLeast, kMost);
         for (int k = 0; k < 3; ++k) store(record + 4 * k, static_cast<int32_t>(steps[k]));
         const glm::vec3 normal = surface_.normal(sample);
         for (int k = 0; k < 3; ++k) store(record + 12 + 4 * k, normal[k]);

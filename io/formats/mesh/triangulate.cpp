@@ -1,12 +1,18 @@
 #include "io/formats/mesh/triangulate.h"
 
 #include <cmath>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 namespace lucarne::io::mesh {
 namespace {
+
+/// Cutting an ear off changes only whether its two neighbours are ears (Eberly 2002, "Triangulation by ear
+/// clipping"). Of polygons that touch or cross themselves this is not true: where no ear is known all corners
+/// are looked at again, this often in a polygon, so that its cost stays that of the square of its corners.
+constexpr int kMostLooks = 4;
 
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -57,6 +63,12 @@ bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<uint32_t>& le
     return true;
 }
 
+/// The first ear from `at` on, which is `at` itself where there is none.
+size_t next_ear(const std::vector<bool>& ears, const std::vector<uint32_t>& left, size_t at) {
+    for (size_t tried = 0; tried < left.size() && !ears[left[at]]; ++tried) at = (at + 1) % left.size();
+    return at;
+}
+
 }  // namespace
 
 bool triangulate(std::span<const glm::dvec3> polygon, std::vector<std::array<uint32_t, 3>>& triangles) {
@@ -70,15 +82,24 @@ bool triangulate(std::span<const glm::dvec3> polygon, std::vector<std::array<uin
         return fan;
     }
     std::vector<uint32_t> left(corners);
-    for (uint32_t i = 0; i < corners; ++i) left[i] = i;
+    std::iota(left.begin(), left.end(), 0u);
+    std::vector<bool> ears(corners);
+    const auto look = [&](size_t at) { ears[left[at]] = is_ear(flat, left, at); };
+    for (size_t i = 0; i < left.size(); ++i) look(i);
+    int looks = 0;
     size_t at = 0;
     while (left.size() > 3) {
         const size_t n = left.size();
-        size_t ear = at % n;
-        for (size_t tried = 0; tried < n && !is_ear(flat, left, ear); ++tried) ear = (ear + 1) % n;
+        size_t ear = next_ear(ears, left, at % n);
+        if (!ears[left[ear]] && looks++ < kMostLooks) {
+            for (size_t i = 0; i < n; ++i) look(i);
+            ear = next_ear(ears, left, ear);
+        }
         // Where nothing is an ear the polygon crosses itself: any corner has to do.
         triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+        look((ear + n - 2) % (n - 1));
+        look(ear % (n - 1));
         at = ear;
     }
     triangles.push_back({left[0], left[1], left[2]});

@@ -1,6 +1,7 @@
 #include "io/formats/text/rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -213,9 +214,12 @@ class RowParser {
         uint32_t bits = 0;
         const auto text = word();
         if (field.type == ScalarType::f32) {
+            constexpr uint32_t kNoColor = 0xffbcbcbc;  // the sRGB grey of an albedo of .5
             const auto value = parse_number<float>(text);
             if (!value) return false;
             std::memcpy(&bits, &*value, sizeof bits);
+            // Bits that are no number were lost when they were written as text.
+            if (!std::isfinite(*value)) bits = kNoColor;
         } else {
             const auto value = parse_number<int64_t>(text);
             if (!value || *value < std::numeric_limits<int32_t>::min() ||

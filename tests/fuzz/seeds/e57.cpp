@@ -57,6 +57,16 @@ BuiltFile widths() {
     return {{scan}};
 }
 
+/// Points without a bit, and a pose whose quaternion is 0.
+BuiltFile constants() {
+    BuiltScan scan{integer_field("cartesianX", 1, 1) + integer_field("cartesianY", 2, 2) +
+                       integer_field("cartesianZ", 3, 3),
+                   40, data_packet({"", "", ""})};
+    BuiltScan posed = scan;
+    posed.more = "<pose><rotation><w>0</w></rotation><translation><x>1</x></translation></pose>";
+    return {{scan, posed}};
+}
+
 }  // namespace
 
 void e57_seeds(const Seeds& seeds) {
@@ -68,6 +78,7 @@ void e57_seeds(const Seeds& seeds) {
     add("posed", posed());
     add("spherical", spherical());
     add("widths", widths());
+    add("constants", constants());
     add("empty", {});
 }
 

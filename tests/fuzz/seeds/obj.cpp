@@ -13,6 +13,8 @@ void obj_seeds(const Seeds& seeds) {
                        std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nmtllib ") + descriptor +
                            "\nnewmtl a b\nKd 1 .5 0\nmap_Kd -s 2 2 -o .5 -clamp on x.png\nusemtl a b\n"
                            "f 1/1 2/1 3/1\n");
+    seeds.add_scan("further-down",
+                   "v 0 0 0\nf 1/1/1 2/2/1 3/-9/0 4\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\n");
     seeds.add_scan("vertices", "v 0 0 0 255 0 0\nv 1 0 0\nv 1e6 1e5 -3\n");
 }
 

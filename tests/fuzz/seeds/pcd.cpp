@@ -91,6 +91,10 @@ void add(const Seeds& seeds, const std::string& name, const Cloud& cloud) {
 void pcd_seeds(const Seeds& seeds) {
     add(seeds, "organised", organised());
     add(seeds, "doubles", doubles());
+    seeds.add_scan(
+        "lost-colour",
+        "# .PCD v0.7\nFIELDS x y z rgba\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 2\nHEIGHT 1\nDATA ascii\n"
+        "1 2 3 nan\n4 5 6 2.35e-38\n");
 }
 
 }  // namespace lucarne::fuzz
