@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/core/file.h"
 #include "io/formats/format.h"
+#include "io/formats/text/decimal.h"
 
 namespace lucarne::io {
 
@@ -32,10 +35,21 @@ class CountedWriter : public PointWriter {
     }
 
  protected:
-    CountedWriter(OutputFile file, const Schema& schema) : schema_(schema), file_(std::move(file)) {}
+    CountedWriter(OutputFile file, const Schema& schema) : schema_(schema), file_(std::move(file)) {
+        for (int axis = 0; axis < 3; ++axis)
+            decimals_[static_cast<size_t>(axis)] = text::Decimal::of(schema.scale[axis], schema.offset[axis]);
+    }
 
     /// One record of the schema as one of the file.
     virtual void pack(const std::byte* record, std::byte* out) const = 0;
+
+    /// A scaled coordinate as the double nearest to the decimal fraction that it stands for, where it is one:
+    /// 35 * .01 is .35 and no .35000000000000003.
+    double scaled_coordinate(int axis, const std::byte* record) const {
+        const auto integer = load<int32_t>(record + 4 * axis);
+        const auto& decimal = decimals_[static_cast<size_t>(axis)];
+        return decimal ? decimal->value(integer) : integer * schema_.scale[axis] + schema_.offset[axis];
+    }
 
     /// Room for the count at the end of a header that is being made; it is filled in by finish().
     void leave_room_for_count(std::string& header) {
@@ -60,6 +74,7 @@ class CountedWriter : public PointWriter {
     }
 
     OutputFile file_;
+    std::array<std::optional<text::Decimal>, 3> decimals_;
     size_t record_bytes_ = 0;
     uint64_t count_ = 0;
     std::vector<uint64_t> count_offsets_;

@@ -156,9 +156,7 @@ class PlyWriter final : public CountedWriter {
         const bool scaled = schema_.position == PositionType::i32_scaled;
         for (const Output& o : outputs_) {
             if (scaled && o.offset < 12) {
-                const int axis = static_cast<int>(o.offset / 4);
-                store_scalar(o.to, out,
-                             load<int32_t>(record + o.offset) * schema_.scale[axis] + schema_.offset[axis]);
+                store_scalar(o.to, out, scaled_coordinate(static_cast<int>(o.offset / 4), record));
             } else if (o.from == o.to || scalar_bytes(o.from) == 1) {
                 std::memcpy(out, record + o.offset, scalar_bytes(o.to));
             } else {

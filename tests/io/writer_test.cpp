@@ -219,6 +219,31 @@ TEST_F(Writers, A64BitIntegerBecomesTwoPropertiesInPly) {
     EXPECT_EQ(value(*source, "two_words"), 9);
 }
 
+TEST_F(Writers, ScaledCoordinatesLeaveAsTheFractionsThatTheyStandFor) {
+    Points points(PositionType::i32_scaled);
+    points.schema.scale = {0.01, 0.001, 0.01};
+    points.schema.offset = {0, 2'600'000, 0};
+    const std::array<int32_t, 3> steps = {35, 1, 63600176};
+    std::byte* at = points.add();
+    for (size_t axis = 0; axis < 3; ++axis) store(at + 4 * axis, steps[axis]);
+    ASSERT_NE(35 * 0.01, 0.35) << "what it is about";
+    for (const std::string name : {"a.ply", "a.pcd"}) {
+        const auto source = written(name, points);
+        ASSERT_TRUE(source);
+        const auto all = read_all(*source);
+        ASSERT_TRUE(all) << all.error().line();
+        ASSERT_EQ(source->schema().position, PositionType::f64);
+        EXPECT_EQ(position_of(source->schema(), all->bytes.data()),
+                  glm::dvec3(0.35, 2'600'000.001, 636001.76))
+            << name;
+    }
+    points.schema.scale = glm::dvec3(1.0 / 3);  // no decimal fraction
+    points.schema.offset = glm::dvec3(0.1);
+    const auto source = written("b.ply", points);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(position_of(source->schema(), read_all(*source)->bytes.data()).x, 35 * (1.0 / 3) + 0.1);
+}
+
 TEST_F(Writers, StationsUnitsAndColourBitsSurviveInBothFormats) {
     ScanInfo info;
     info.color_bits = 16;

@@ -132,11 +132,9 @@ class PcdWriter final : public CountedWriter {
                 case Output::Kind::copy:
                     std::memcpy(out, from, o.field.bytes());
                     break;
-                case Output::Kind::axis: {
-                    const int axis = static_cast<int>(o.from);
-                    store(out, load<int32_t>(record + 4 * axis) * schema_.scale[axis] + schema_.offset[axis]);
+                case Output::Kind::axis:
+                    store(out, scaled_coordinate(static_cast<int>(o.from), record));
                     break;
-                }
                 case Output::Kind::rgb:
                 case Output::Kind::rgba:
                     for (uint32_t k = 0; k < 3; ++k) out[k] = from[2 - k];

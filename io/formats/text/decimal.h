@@ -26,10 +26,14 @@ class Decimal {
             if (step == 0 || step / power != scale || start / power != offset) continue;
             decimal.step_ = static_cast<int64_t>(step);
             decimal.start_ = static_cast<int64_t>(start);
+            decimal.power_ = power;
             return decimal;
         }
         return std::nullopt;
     }
+
+    /// The double nearest to it: both numbers of the division are exact where the sum has at most 15 digits.
+    double value(int32_t integer) const { return static_cast<double>(integer * step_ + start_) / power_; }
 
     /// At most 24 characters. Returns where the text ends.
     char* write(int32_t integer, char* to) const {
@@ -54,6 +58,7 @@ class Decimal {
  private:
     int digits_ = 0;  ///< behind the point
     int64_t step_ = 0, start_ = 0;
+    double power_ = 1;  ///< 10^digits_
 };
 
 }  // namespace lucarne::io::text
