@@ -155,6 +155,29 @@ TEST(TextWriter, WritesAHeaderThatOthersRead) {
     EXPECT_EQ(read_bytes(folder / "a.xyz"), "636001.76 0.00 0.00 65535 0 0 0\n");
 }
 
+/// The most that this process ever held, bytes.
+uint64_t most_held() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10;
+    return 0;
+}
+
+TEST(TextWriter, WideRowsAskForBoundedMemory) {
+    const TemporaryFolder folder;
+    Made scan;
+    scan.schema_.position = PositionType::f32;
+    scan.schema_.stride = 12;
+    scan.schema_.add("wide", ScalarType::u8, 4096);
+    constexpr size_t kRows = 4096;
+    scan.records.resize(kRows * scan.schema_.stride);
+    const uint64_t before = most_held();
+    const auto written = write(scan, folder / "a.xyz");
+    ASSERT_TRUE(written) << written.error().line();
+    EXPECT_EQ(std::filesystem::file_size(folder / "a.xyz"), kRows * (3 + 4096) * 2);
+    EXPECT_LT(most_held() - before, uint64_t{200} << 20);
+}
+
 TEST(TextWriter, TakesNamesThatWouldBreakARow) {
     const TemporaryFolder folder;
     Made scan;

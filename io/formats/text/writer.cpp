@@ -18,7 +18,7 @@
 namespace lucarne::io::text {
 namespace {
 
-constexpr size_t kPieceRows = 4096, kPiecesAtOnce = 64;
+constexpr size_t kPieceRows = 4096, kPieceBytes = size_t{1} << 20, kPiecesAtOnce = 64;  ///< at most
 constexpr size_t kLongestNumber = 32;   ///< characters, with its separator
 constexpr size_t kMostStations = 500;   ///< the first row has to be in the first 64 KiB of a file
 
@@ -104,7 +104,9 @@ char* put_value(ScalarType type, const std::byte* at, char* to) {
 class TextWriter final : public PointWriter {
  public:
     TextWriter(OutputFile file, const Schema& schema, char separator)
-        : file_(std::move(file)), schema_(schema), outputs_(outputs_of(schema)), separator_(separator) {}
+        : file_(std::move(file)), schema_(schema), outputs_(outputs_of(schema)), separator_(separator) {
+        piece_rows_ = std::clamp<size_t>(kPieceBytes / (outputs_.size() * kLongestNumber), 1, kPieceRows);
+    }
 
     Result<void> begin(ScanInfo info) {
         if (info.stations.size() > kMostStations) {
@@ -122,7 +124,7 @@ class TextWriter final : public PointWriter {
     }
 
     Result<void> write(std::span<const std::byte> records) override {
-        const size_t most = kPiecesAtOnce * kPieceRows * schema_.stride;
+        const size_t most = kPiecesAtOnce * piece_rows_ * schema_.stride;
         for (; !records.empty(); records = records.subspan(std::min(most, records.size())))
             LUCARNE_TRY(write_some(records.first(std::min(most, records.size()))));
         return {};
@@ -133,9 +135,9 @@ class TextWriter final : public PointWriter {
  private:
     Result<void> write_some(std::span<const std::byte> records) {
         const size_t rows = records.size() / schema_.stride;
-        pieces_.resize((rows + kPieceRows - 1) / kPieceRows);
-        parallel_ranges(rows, kPieceRows, [&](size_t first, size_t last) {
-            pieces_[first / kPieceRows] =
+        pieces_.resize((rows + piece_rows_ - 1) / piece_rows_);
+        parallel_ranges(rows, piece_rows_, [&](size_t first, size_t last) {
+            pieces_[first / piece_rows_] =
                 text_of(records.subspan(first * schema_.stride, (last - first) * schema_.stride));
         });
         for (const std::string& piece : pieces_) LUCARNE_TRY(file_.append(piece));
@@ -167,6 +169,7 @@ class TextWriter final : public PointWriter {
     Schema schema_;
     std::vector<Output> outputs_;
     char separator_;
+    size_t piece_rows_ = 1;
     std::vector<std::string> pieces_;
 };
 
