@@ -1,6 +1,7 @@
 // PLY: ASCII, binary little and big endian. Source: see ply_header.h.
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,11 +9,11 @@
 #include "io/core/log.h"
 #include "io/formats/buffered_input.h"
 #include "io/formats/format.h"
+#include "io/formats/pick.h"
 #include "io/formats/ply_layout.h"
 #include "io/formats/ply_mesh.h"
 #include "io/formats/ply_values.h"
 #include "io/formats/ply_writer.h"
-#include "io/formats/pick.h"
 #include "io/formats/text.h"
 
 namespace lucarne::io {
@@ -219,25 +220,53 @@ class PlySource final : public PointSource {
         }
     }
 
-    /// Full intensity is told by the largest component of a sample: spread over the file where vertices can
-    /// be addressed, else from its beginning. Nothing is converted, so a wrong guess loses nothing.
+    /// Where lines that are no vertices may begin at the earliest: the next element, or the end.
+    uint64_t end_of_lines() const {
+        const auto& vertices = header_.vertices();
+        const auto next = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
+        const bool last = std::all_of(next, header_.elements.end(),
+                                      [](const Element& element) { return element.count == 0; });
+        // A value takes two bytes with what separates it.
+        const uint64_t least = 2 * vertices.properties.size() * vertices.count;
+        return last ? file_->size() : std::min(file_->size(), vertices_offset_ + least);
+    }
+
+    /// Offsets from which kBlockPoints vertices each are a sample of all. Where only the pass itself can tell
+    /// where a vertex begins, as binary lists are of any length, there is but the first.
+    Result<std::vector<uint64_t>> sample_places() const {
+        std::vector<uint64_t> places = {vertices_offset_};
+        const uint64_t count = header_.vertices().count;
+        if (count <= kBlocks * kBlockPoints) return places;
+        if (fixed())
+            for (uint64_t block = 1; block < kBlocks; ++block)
+                places.push_back(vertices_offset_ + count / kBlocks * block * layout_.packed_bytes);
+        if (header_.encoding != ply::Encoding::ascii) return places;
+        std::array<std::byte, size_t{1} << 16> bytes{};
+        for (uint64_t block = 1; block < kBlocks; ++block) {
+            const uint64_t at =
+                vertices_offset_ + (end_of_lines() - vertices_offset_) / (kBlocks + 1) * block;
+            LUCARNE_ASSIGN(const size_t got, file_->read_some(at, bytes));
+            const auto* line_end = std::memchr(bytes.data(), header_.line_end, got);
+            if (line_end)
+                places.push_back(
+                    at + 1 + static_cast<uint64_t>(static_cast<const std::byte*>(line_end) - bytes.data()));
+        }
+        return places;
+    }
+
+    /// Full intensity is told by the largest component of a sample. Nothing is converted, so a wrong guess
+    /// loses nothing.
     Result<uint32_t> find_color_bits(std::optional<uint32_t> stated) const {
         const Attribute* color = layout_.schema.find(names::color);
         if (!color || color->type == ScalarType::u8) return 8u;
         if (stated) return *stated;
-        constexpr uint64_t kBlocks = 64, kBlockPoints = 256;
-        const uint64_t count = header_.vertices().count;
-        const uint64_t step =
-            fixed() ? std::max<uint64_t>(kBlockPoints, count / kBlocks) : std::max<uint64_t>(count, 1);
+        LUCARNE_ASSIGN(const auto places, sample_places());
         double largest = 0;
-        for (uint64_t first = 0; first < count; first += step) {
-            PlyReader reader(file_, header_, layout_,
-                             vertices_offset_ + (fixed() ? first * layout_.packed_bytes : 0), salvage_);
+        for (const uint64_t place : places) {
+            PlyReader reader(file_, header_, layout_, place, {});
             PointBatch batch;
-            const auto points =
-                static_cast<size_t>(fixed() ? std::min(kBlockPoints, count - first) : kBlocks * kBlockPoints);
             // What is wrong further inside is for the real pass to report.
-            if (!reader.read(batch, points)) break;
+            (void)reader.read(batch, places.size() > 1 ? kBlockPoints : kBlocks * kBlockPoints);
             for (size_t i = 0; i < batch.count * 3; ++i) {
                 const std::byte* record = batch.bytes.data() + i / 3 * layout_.schema.stride;
                 largest = std::max(largest, scalar_at(color->type, record + color->offset +
@@ -247,6 +276,8 @@ class PlySource final : public PointSource {
         if (color->type == ScalarType::u16) return largest > 255 ? 16u : 8u;
         return largest > 255 ? 16u : largest > 1 ? 8u : 0u;
     }
+
+    static constexpr uint64_t kBlocks = 64, kBlockPoints = 256;  ///< of a sample
 
     std::shared_ptr<const InputFile> file_;
     ply::Header header_;
@@ -271,6 +302,7 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> f
 }
 
 bool is_ply(std::string_view head) {
+    head = without_mark(head);
     return head.starts_with("ply") && head.size() > 3 && (is_blank(head[3]) || head[3] == '\n');
 }
 

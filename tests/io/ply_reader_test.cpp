@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
@@ -169,6 +170,45 @@ TEST_F(Ply, ColoursOfEveryKindBecomeColor) {
         EXPECT_EQ(source_->schema().find(names::color)->type, c.expected) << c.values;
         EXPECT_EQ(source_->info().color_bits, c.bits) << c.values;
     }
+}
+
+/// Points as text, dark but for the last ones.
+std::string dark_points(int count, const std::string& more, const std::string& bright) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+        text += "1 2 3 " + (i < count / 2 ? "1 2 3" : bright) + more + (i % 3 ? "\n" : "\n\n");
+    return text;
+}
+
+TEST_F(Ply, ColoursOfTextAreLookedAtAllOverTheFile) {
+    constexpr int kPoints = 50'000;
+    std::string properties = fmt::format("element vertex {}\n", kPoints) + kXyz;
+    for (const char* name : {"red", "green", "blue"})
+        properties += std::string("property ushort ") + name + "\n";
+    const auto source = open(header("ascii", properties) + dark_points(kPoints, "", "60000 1 2"));
+    ASSERT_TRUE(source) << source.error().line();
+    EXPECT_EQ((*source)->info().color_bits, 16u);
+    properties += "property list uchar int l\n";
+    const auto lists = open(header("ascii", properties) + dark_points(kPoints, " 2 7 8", "60000 1 2"));
+    ASSERT_TRUE(lists) << lists.error().line();
+    EXPECT_EQ((*lists)->info().color_bits, 16u);
+}
+
+TEST_F(Ply, NumbersOfOtherElementsAreNoColours) {
+    constexpr int kPoints = 20'000;
+    std::string properties = fmt::format("element vertex {}\n", kPoints) + kXyz;
+    for (const char* name : {"red", "green", "blue"})
+        properties += std::string("property ushort ") + name + "\n";
+    const auto source =
+        open(header("ascii",
+                    properties + fmt::format("element edge {}\nproperty list uchar int l\n", 2 * kPoints)) +
+             dark_points(kPoints, "", "255 0 1") + [] {
+                 std::string edges;
+                 for (int i = 0; i < 2 * kPoints; ++i) edges += "5 1 2 30000 30001 30002\n";
+                 return edges;
+             }());
+    ASSERT_TRUE(source) << source.error().line();
+    EXPECT_EQ((*source)->info().color_bits, 8u);
 }
 
 TEST_F(Ply, AnIncompleteOrMixedColourStaysSingleProperties) {
