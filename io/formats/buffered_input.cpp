@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/text.h"
+
 namespace lucarne::io {
 
 BufferedInput::BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end,
@@ -26,6 +28,13 @@ Result<std::span<const std::byte>> BufferedInput::peek(size_t bytes) {
         last_ += got;
     }
     return std::span<const std::byte>(buffer_).subspan(first_, last_ - first_);
+}
+
+Result<void> BufferedInput::skip_mark() {
+    LUCARNE_ASSIGN(const auto bytes, peek(3));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    skip(text.size() - without_mark(text).size());
+    return {};
 }
 
 Result<void> BufferedInput::skip_far(uint64_t bytes) {

@@ -25,6 +25,7 @@ class BufferedInput {
     /// the next call.
     Result<std::span<const std::byte>> peek(size_t bytes);
     void skip(size_t bytes) { first_ += bytes; }  ///< of what `peek` returned
+    Result<void> skip_mark();                     ///< that of UTF-8, where it comes next
     Result<void> skip_far(uint64_t bytes);        ///< any number of bytes; past the end is an error
     /// The next line without its terminator; empty at the end of the range. A line over 1 MiB is rejected.
     Result<std::optional<std::string_view>> line(char terminator);

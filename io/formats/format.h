@@ -10,16 +10,21 @@
 
 namespace lucarne::io {
 
+inline constexpr size_t kHeadBytes = 4096;  ///< of a file, by which its format is told
+
 /// One scan file format. A new one is a file that exports such a function and a line in registry.cpp.
 struct Format {
     std::string_view name;                      ///< "LAS"
-    std::string_view extension;                 ///< ".las", lower case: what `create` is chosen by; empty where it is not written
-    bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to 4096)
+    /// ".las", lower case: what `create` is chosen by; what a file is that nothing else tells.
+    std::string_view extension;
+    bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to kHeadBytes)
     Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file,
                                                  const ReadOptions& options);
     /// Null for a format that is only read.
     Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,
                                                    const ScanInfo& info, const WriteOptions& options);
+    /// Its files may begin with anything: where no other format is recognised the extension is enough.
+    bool by_name = false;
 };
 
 const Format& las_format();
@@ -44,6 +49,10 @@ inline size_t batch_limit(const Schema& schema, size_t most) {
 inline bool usable(double coordinate) {
     return coordinate <= 1e30 && coordinate >= -1e30;
 }
+
+/// The first whole line of a file's first bytes that is neither blank nor a comment behind #; empty where
+/// there is none.
+std::string_view first_statement(std::string_view head);
 
 /// The path's extension with its dot.
 std::string lower_extension(const std::filesystem::path& path);

@@ -30,6 +30,7 @@ class ObjParser {
           companions_(mesh_, file->path()) {}
 
     Result<void> parse() {
+        LUCARNE_TRY(input_.skip_mark());
         std::string joined;  // of a line that goes on behind a backslash
         for (;;) {
             LUCARNE_ASSIGN(const auto got, input_.line('\n'));
@@ -50,6 +51,7 @@ class ObjParser {
             joined.clear();
         }
         if (!joined.empty()) LUCARNE_TRY(take(joined));
+        if (strange_ && mesh_.positions.empty()) return rejected(name_, "is no OBJ: it has no vertices");
         finish_colors();
         return finish_faces();
     }
@@ -106,6 +108,7 @@ class ObjParser {
             material_ = found == materials_.end() ? kNone : found->second;
         } else {
             other_ += word == "l" || word == "p" || word == "curv" || word == "surf" || word == "call";
+            strange_ = strange_ || !(word[0] >= 'a' && word[0] <= 'z');
         }
         return {};
     }
@@ -270,6 +273,7 @@ class ObjParser {
     std::vector<LateFace> late_faces_;
     Losses losses_;
     uint32_t material_ = kNone;
+    bool strange_ = false;  ///< words that are none of OBJ's
     uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
@@ -307,23 +311,15 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
 bool is_obj(std::string_view head) {
     static constexpr std::array<std::string_view, 11> kWords = {"v", "vn", "vt",     "vp",     "f", "o",
                                                                 "g", "s",  "mtllib", "usemtl", "l"};
-    const bool whole = head.size() < 4096;
-    while (!head.empty()) {
-        const size_t end = head.find('\n');
-        auto line = head.substr(0, end);
-        if (end == head.npos && !whole) return false;
-        head.remove_prefix(end == head.npos ? head.size() : end + 1);
-        const auto word = next_word(line);
-        if (word.empty() || word[0] == '#') continue;
-        return std::find(kWords.begin(), kWords.end(), word) != kWords.end() && !next_word(line).empty();
-    }
-    return false;
+    auto line = first_statement(head);
+    const auto word = next_word(line);
+    return std::find(kWords.begin(), kWords.end(), word) != kWords.end() && !next_word(line).empty();
 }
 
 }  // namespace
 
 const Format& obj_format() {
-    static constexpr Format kFormat{"OBJ", "", is_obj, open_obj, nullptr};
+    static constexpr Format kFormat{"OBJ", ".obj", is_obj, open_obj, nullptr, true};
     return kFormat;
 }
 

@@ -227,7 +227,7 @@ class PlySource final : public PointSource {
         const bool last = std::all_of(next, header_.elements.end(),
                                       [](const Element& element) { return element.count == 0; });
         // A value takes two bytes with what separates it.
-        const uint64_t least = 2 * vertices.properties.size() * vertices.count;
+        const uint64_t least = 2 * vertices.properties.size() * std::min(vertices.count, file_->size());
         return last ? file_->size() : std::min(file_->size(), vertices_offset_ + least);
     }
 

@@ -18,8 +18,6 @@ auto formats() {
                       &pcd_format(), &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
 }
 
-constexpr size_t kHeadBytes = 4096;
-
 /// What a file is that we do not read, for a better message than "unknown".
 std::string_view foreign_format(std::string_view head) {
     if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
@@ -37,13 +35,45 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
     std::array<std::byte, kHeadBytes> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), got);
-    for (const Format* format : formats())
-        if (format->recognises(head)) return format->open(file, options);
-    const auto foreign = foreign_format(head);
+    const Format *told = nullptr, *named = nullptr;
+    const std::string extension = lower_extension(path);
+    for (const Format* format : formats()) {
+        if (!told && format->recognises(head)) told = format;
+        if (!named && format->extension == extension) named = format;
+    }
+    const auto foreign = told ? std::string_view() : foreign_format(head);
+    // Any text may be rows of numbers: with the name of another format it is that, until the columns are
+    // said.
+    const bool rows = told && told->open == text_format().open;
+    if (named && foreign.empty() &&
+        (!told || (rows && options.columns.empty() && named->open != told->open))) {
+        auto scan = named->by_name ? named->open(file, options)
+                                   : rejected(path.string(),
+                                              fmt::format("is named {} and has no such header", extension));
+        if (!scan && rows && scan.error().todo.empty())
+            scan.error().todo = "if it holds rows of numbers, say what they are with --columns";
+        return scan;
+    }
+    if (told) return told->open(file, options);
     return rejected(path.string(),
                     foreign.empty() ? "is in no format that can be read"
                                     : fmt::format("is {}, which cannot be read", foreign),
                     "convert it to LAS or PLY");
+}
+
+std::string_view first_statement(std::string_view head) {
+    const bool cut = head.size() >= kHeadBytes;
+    head = without_mark(head);
+    while (!head.empty()) {
+        const size_t end = head.find('\n');
+        if (end == head.npos && cut) break;
+        const auto line = head.substr(0, end);
+        head.remove_prefix(end == head.npos ? head.size() : end + 1);
+        auto rest = line;
+        const auto word = next_word(rest);
+        if (!word.empty() && word[0] != '#') return line;
+    }
+    return {};
 }
 
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,

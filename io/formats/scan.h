@@ -35,8 +35,8 @@ struct ReadOptions {
 /// was made with others is not taken for it.
 std::string options_text(const ReadOptions& options);
 
-/// Opens a scan file; its format is told by its content, by its name only among text files whose rows look the
-/// same. Reads the header only, and a sample of a text file.
+/// Opens a scan file; its format is told by its content; by its name where that says nothing, and among text
+/// files whose rows look the same. Reads the header only, and a sample of a text file.
 /// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
                                                const ReadOptions& options = {});

@@ -16,6 +16,13 @@ constexpr bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
+/// The text behind the mark that some editors put before UTF-8.
+constexpr std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    return text;
+}
+
 /// Cuts the next word off the front of `line`; empty when there is none.
 inline std::string_view next_word(std::string_view& line) {
     size_t first = 0;

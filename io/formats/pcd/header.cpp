@@ -48,6 +48,7 @@ class HeaderParser {
         : input_(file, 0, std::min(file->size(), kMostHeader)) {}
 
     Result<Header> parse() {
+        LUCARNE_TRY(input_.skip_mark());
         while (!encoding_) {
             LUCARNE_ASSIGN(const auto line, input_.line('\n'));
             if (!line) return wrong("ends without a DATA line");

@@ -12,6 +12,7 @@
 #include "io/formats/pcd/lzf.h"
 #include "io/formats/pcd/writer.h"
 #include "io/formats/pick.h"
+#include "io/formats/text.h"
 
 namespace lucarne::io {
 namespace {
@@ -266,13 +267,15 @@ Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> f
 }
 
 bool is_pcd(std::string_view head) {
-    return head.starts_with("# .PCD") || head.starts_with("VERSION ") || head.starts_with("FIELDS ");
+    auto line = first_statement(head);
+    const auto word = next_word(line);
+    return word == "VERSION" || word == "FIELDS" || without_mark(head).starts_with("# .PCD");
 }
 
 }  // namespace
 
 const Format& pcd_format() {
-    static constexpr Format kFormat{"PCD", ".pcd", is_pcd, open_pcd, pcd::create};
+    static constexpr Format kFormat{"PCD", ".pcd", is_pcd, open_pcd, pcd::create, true};
     return kFormat;
 }
 

@@ -55,6 +55,7 @@ class ScanFinder {
 
     Result<std::vector<Scan>> find() {
         std::vector<Scan> scans;
+        LUCARNE_TRY(input_.skip_mark());
         for (;;) {
             LUCARNE_ASSIGN(const bool more, skip_blank_lines());
             if (!more) return scans;
@@ -280,6 +281,7 @@ Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> f
 
 /// Two counts and three numbers.
 bool is_ptx(std::string_view head) {
+    head = without_mark(head);
     const char line_end = line_end_of(head);
     for (int i = 0; i < 3; ++i) {
         const size_t end = head.find(line_end);
@@ -294,7 +296,7 @@ bool is_ptx(std::string_view head) {
 }  // namespace
 
 const Format& ptx_format() {
-    static constexpr Format kFormat{"PTX", "", is_ptx, open_ptx, nullptr};
+    static constexpr Format kFormat{"PTX", ".ptx", is_ptx, open_ptx, nullptr, true};
     return kFormat;
 }
 

@@ -48,10 +48,6 @@ class TextSource final : public PointSource {
 
     Result<void> describe(const ReadOptions& options) {
         const std::string extension = lower_extension(file_->path());
-        for (const std::string_view other : {".las", ".laz", ".e57", ".ply", ".pcd", ".obj"})
-            if (extension == other && options.columns.empty())
-                return refuse(fmt::format("is named {} and has no such header", other),
-                              "if it holds rows of numbers, say what they are with --columns");
         LUCARNE_TRY(read_head());
         const bool pts = head_.count.has_value() || extension == ".pts";
         head_.layout.has_counts = pts;
@@ -207,16 +203,16 @@ bool is_text(std::string_view head) {
 }  // namespace
 
 const Format& text_format() {
-    static constexpr Format kFormat{"XYZ", ".xyz", is_text, open_text, text::create};
+    static constexpr Format kFormat{"XYZ", ".xyz", is_text, open_text, text::create, true};
     return kFormat;
 }
 // The same to read; written with a header.
 const Format& txt_format() {
-    static constexpr Format kFormat{"TXT", ".txt", is_text, open_text, text::create};
+    static constexpr Format kFormat{"TXT", ".txt", is_text, open_text, text::create, true};
     return kFormat;
 }
 const Format& csv_format() {
-    static constexpr Format kFormat{"CSV", ".csv", is_text, open_text, text::create};
+    static constexpr Format kFormat{"CSV", ".csv", is_text, open_text, text::create, true};
     return kFormat;
 }
 

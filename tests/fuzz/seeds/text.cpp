@@ -24,6 +24,12 @@ void text_seeds(const Seeds& seeds) {
     seeds.add_scan("guessed.xyz",
                    "0 0 0 10 20 30 0.6 0.8 0\r\n1 1 1 200 100 50 0 0 1\r\n2 2 2 255 255 255 1 0 0\r\n");
     seeds.add_scan("one.pts", "2\n1 2 3 -1035 97 59 38\n4 5 6 2047 1 2 3\n");
+    seeds.add_scan("marked.ptx", "\xef\xbb\xbf" + ptx("0 0 0", "1 2 3 0.5\n0 0 0 0\n4 5 6 1\n7 8 9 0\n"));
+    seeds.add_scan(
+        "marked.pcd",
+        "\xef\xbb\xbf# by hand\nVERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n"
+        "DATA ascii\n1 2 3\n");
+    seeds.add_scan("marked.obj", "\xef\xbb\xbf# by hand\nv 0 0 0\nv 1 0 0\n");
     seeds.add_scan("several.pts", "1\n1 2 3 0.5\n2\n4 5 6 0.25\n7 8 9 1\n");
     seeds.add_scan("colored.ptx",
                    ptx("0.5 1 2", "1 2 3 0.5 10 20 30\n0 0 0 0.5 0 0 0\n4 5 6 1 1 2 3\n7 8 9 0 4 5 6\n"));

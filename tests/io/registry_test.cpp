@@ -1,0 +1,81 @@
+// A file's format is told by its content, whatever stands before it; where that says nothing, by its name.
+#include <gmock/gmock.h>
+
+#include "tests/io/scan_text.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Registry : public testing::TextScan {
+ protected:
+    Result<std::unique_ptr<PointSource>> open(const std::string& name, const std::string& bytes) const {
+        testing::write_bytes(folder_ / name, bytes);
+        return open_scan(folder_ / name, {.columns = "", .quiet = true, .mesh = {.spacing = 0.1}});
+    }
+    const testing::TemporaryFolder folder_;
+};
+
+const std::string kMark = "\xef\xbb\xbf";
+const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string kPcd =
+    "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n"
+    "1 2 3\n4 5 6\n";
+const std::string kPtx =
+    "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 .5\n4 5 6 .5\n";
+const std::string kPly =
+    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+    "end_header\n1 2 3\n4 5 6\n";
+
+TEST_F(Registry, AByteOrderMarkIsPassedOver) {
+    for (const auto& [text, format] :
+         {std::pair(kObj, "OBJ"), std::pair(kPcd, "PCD"), std::pair(kPtx, "PTX"), std::pair(kPly, "PLY"),
+          std::pair(std::string("1 2 3\n4 5 6\n"), "XYZ")}) {
+        read(kMark + text, {.columns = "", .quiet = true, .mesh = {.spacing = 0.1}});
+        ASSERT_TRUE(source_) << format;
+        EXPECT_THAT(source_->info().format, StartsWith(format));
+        EXPECT_GE(points(), 2u) << format;
+    }
+}
+
+TEST_F(Registry, CommentsBeforeAHeaderOfPcdDoNotMatter) {
+    for (const std::string comment : {"# made by hand\n", "#\n\n# .PCD v.7\n", "# .PCD v.7\r\n"}) {
+        read(comment + kPcd);
+        ASSERT_TRUE(source_) << comment;
+        EXPECT_THAT(source_->info().format, StartsWith("PCD"));
+        EXPECT_EQ(points(), 2u);
+    }
+}
+
+TEST_F(Registry, WhereTheContentSaysNothingTheExtensionDoes) {
+    std::string comments;
+    while (comments.size() < 10'000) comments += "# a long licence in front of everything\n";
+    const auto obj = open("a.OBJ", comments + kObj);
+    ASSERT_TRUE(obj) << obj.error().line();
+    EXPECT_THAT((*obj)->info().format, StartsWith("OBJ"));
+    const auto pcd = open("a.pcd", comments + kPcd);
+    ASSERT_TRUE(pcd) << pcd.error().line();
+    EXPECT_THAT((*pcd)->info().format, StartsWith("PCD"));
+    const auto csv = open("a.csv", std::string("# \0\n", 4) + "x,y,z\n1,2,3\n");
+    ASSERT_TRUE(csv) << csv.error().line();
+}
+
+TEST_F(Registry, TheErrorIsThatOfTheFormatThatTheExtensionNames) {
+    const std::string zeros(5000, '\0');
+    for (const std::string extension : {".las", ".laz", ".e57", ".ply"})
+        for (const std::string& bytes : {zeros, std::string("What is this?")})
+            EXPECT_THAT(open("a" + extension, bytes).error().line(),
+                        HasSubstr("is named " + extension + " and has no such header"));
+    EXPECT_THAT(open("a.pcd", zeros).error().line(), HasSubstr("PCD"));
+    EXPECT_THAT(open("a.pcd", "# nothing\n").error().line(), HasSubstr("its PCD header ends without"));
+    EXPECT_THAT(open("a.dat", zeros).error().line(), HasSubstr("is in no format that can be read"));
+    EXPECT_THAT(open("a.las", "\x89PNG" + zeros).error().line(), HasSubstr("is a picture"));
+    EXPECT_THAT(open("a.obj", zeros).error().line(), HasSubstr("is no OBJ"));
+    EXPECT_THAT(open("a.obj", "1 2 3\n4 5 6\n").error().line(),
+                HasSubstr("if it holds rows of numbers, say what they are with --columns"));
+}
+
+}  // namespace
+}  // namespace lucarne::io
