@@ -57,7 +57,7 @@ std::string_view first_statement(std::string_view head);
 /// The path's extension with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// `name` in printable ASCII, at most 64 characters, never empty.
+/// `name` in printable UTF-8, at most 64 bytes, never empty.
 std::string printable(std::string_view name);
 /// The same, made different from every attribute of the schema.
 std::string unique_name(const Schema& schema, std::string_view name);

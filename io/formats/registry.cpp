@@ -25,6 +25,25 @@ std::string_view foreign_format(std::string_view head) {
     return {};
 }
 
+/// How many bytes the first character takes; 0 where it is no valid UTF-8 (RFC 3629), or one that is not seen:
+/// control characters, ends of lines, marks that turn the direction of what follows.
+size_t shown_bytes(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    if (first < 0x80) return first >= 0x20 && first != 0x7f;
+    if (first < 0xc2 || first > 0xf4) return 0;
+    const size_t bytes = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    if (text.size() < bytes) return 0;
+    uint32_t code = first & (0x7fu >> bytes);
+    for (const char c : text.substr(1, bytes - 1)) {
+        if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) return 0;
+        code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
+    }
+    constexpr std::array<uint32_t, 5> kLeast = {0, 0, 0xa0, 0x800, 0x10000};  // in so many bytes; C1 ends at 0xa0
+    const bool no_character = code < kLeast[bytes] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
+    const bool not_seen = (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+    return no_character || not_seen ? 0 : bytes;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
@@ -35,6 +54,8 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
     std::array<std::byte, kHeadBytes> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()), got);
+    if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff"))
+        return rejected(path.string(), "is UTF-16 text", "save it as UTF-8");
     const Format *told = nullptr, *named = nullptr;
     const std::string extension = lower_extension(path);
     for (const Format* format : formats()) {
@@ -98,8 +119,14 @@ std::string lower_extension(const std::filesystem::path& path) {
 }
 
 std::string printable(std::string_view name) {
+    constexpr size_t kMost = 64;
     std::string clean;
-    for (const char c : name.substr(0, 64)) clean += c >= ' ' && c < 0x7f ? c : '?';
+    while (!name.empty() && clean.size() < kMost) {
+        const size_t bytes = shown_bytes(name);
+        if (clean.size() + bytes > kMost) break;
+        clean += bytes ? name.substr(0, bytes) : "?";
+        name.remove_prefix(std::max<size_t>(bytes, 1));
+    }
     return clean.empty() ? "unnamed" : clean;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -19,10 +21,6 @@ struct Alias {
 };
 // As compared: lower case, letters and digits only.
 constexpr std::array kAliases = std::to_array<Alias>({
-    {"easting", "x"},
-    {"northing", "y"},
-    {"elevation", "z"},
-    {"height", "z"},
     {"xm", "x"},
     {"ym", "y"},
     {"zm", "z"},
@@ -47,7 +45,13 @@ constexpr std::array kAliases = std::to_array<Alias>({
     {"normalx", "nx"},
     {"normaly", "ny"},
     {"normalz", "nz"},
+    {"rot", "red"},
+    {"grn", "green"},  // Grün
+    {"gruen", "green"},
+    {"blau", "blue"},
     {"i", "intensity"},
+    {"intensitt", "intensity"},  // Intensität
+    {"intensitaet", "intensity"},
     {"scalarintensity", "intensity"},
     {"reflectance", "intensity"},
     {"amplitude", "intensity"},
@@ -62,6 +66,14 @@ constexpr std::array kAliases = std::to_array<Alias>({
     {"edgeofflightline", "edge_of_flight_line"},
     {"scananglerank", "scan_angle_rank"},
     {"infrared", "nir"},
+});
+// Of an axis that no column is called by its own name, as they may mean something else. What is no ASCII is
+// gone from names that are compared: "hhe" is Höhe.
+constexpr std::array kSurveyors = std::to_array<Alias>({
+    {"e", "x"},          {"east", "x"},     {"easting", "x"}, {"ost", "x"},      {"ostwert", "x"},
+    {"rechtswert", "x"}, {"n", "y"},        {"north", "y"},   {"northing", "y"}, {"nord", "y"},
+    {"nordwert", "y"},   {"hochwert", "y"}, {"h", "z"},       {"height", "z"},   {"elevation", "z"},
+    {"elev", "z"},       {"altitude", "z"}, {"hhe", "z"},     {"hoehe", "z"},
 });
 /// Attributes whose type is agreed on (io/points.h).
 struct Known {
@@ -84,16 +96,26 @@ constexpr std::array kKnown = std::to_array<Known>({
     {names::gps_time, ScalarType::f64},
 });
 
-std::string our_name(std::string_view theirs) {
+/// As names are compared, without a unit in brackets.
+std::string plain_name(std::string_view theirs) {
     std::string plain;
-    for (const char c : theirs) {
+    for (const char c : theirs.substr(0, theirs.find_first_of("[("))) {
         if (c >= 'A' && c <= 'Z')
             plain += static_cast<char>(c - 'A' + 'a');
         else if ((c >= 'a' && c <= 'z') || is_digit(c))
             plain += c;
     }
-    for (const Alias& alias : kAliases)
-        if (plain == alias.theirs) return std::string(alias.ours);
+    return plain;
+}
+/// Empty where there is none.
+std::string_view alias_of(std::string_view theirs, std::span<const Alias> aliases) {
+    const auto found = std::ranges::find(aliases, plain_name(theirs), &Alias::theirs);
+    return found == aliases.end() ? std::string_view() : found->ours;
+}
+
+std::string our_name(std::string_view theirs) {
+    const std::string plain = plain_name(theirs);
+    if (const auto ours = alias_of(theirs, kAliases); !ours.empty()) return std::string(ours);
     for (const auto& triple : {kAxes, kColor, kNormal})
         for (const auto name : triple)
             if (plain == name) return std::string(name);
@@ -167,6 +189,28 @@ bool looks_like_bytes(const Sample& sample, size_t column) {
     for (size_t c = column; c < column + 3; ++c)
         if (const Look look = look_at(sample, c); !look.whole || look.least < 0 || look.most > 255) return false;
     return true;
+}
+
+/// Whether a column counts up: the numbers of points.
+bool counts_up(const Sample& sample, size_t column) {
+    for (size_t row = 1; row < sample.rows(); ++row)
+        if (!(sample.at(row, column) > sample.at(row - 1, column))) return false;
+    return sample.rows() > 1 && look_at(sample, column).whole;
+}
+
+/// The columns of x, y and z. A stray line of words makes no column of words.
+std::optional<std::array<size_t, 3>> guess_axes(const Sample& sample) {
+    std::vector<size_t> numbers;
+    for (size_t column = 0; column < sample.columns && numbers.size() < 4; ++column) {
+        size_t count = 0;
+        for (size_t row = 0; row < sample.rows(); ++row) count += !std::isnan(sample.at(row, column));
+        if (!sample.words[column] || 2 * count >= sample.rows()) numbers.push_back(column);
+    }
+    if (numbers.size() < 3) return std::nullopt;
+    const auto fractions = [&](size_t column) { return !look_at(sample, column).whole; };
+    const size_t first = numbers.size() == 4 && numbers[0] == 0 && counts_up(sample, 0) &&
+                         std::all_of(numbers.begin() + 1, numbers.end(), fractions);
+    return std::array{numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
 ScalarType guessed_type(std::string_view name, const Look& look, bool whole_file) {
@@ -271,24 +315,6 @@ class LayoutMaker {
 
 }  // namespace
 
-std::vector<std::string_view> split(std::string_view line, char separator) {
-    std::vector<std::string_view> cells;
-    if (separator == ' ') {
-        for (auto word = next_word(line); !word.empty(); word = next_word(line)) cells.push_back(word);
-        return cells;
-    }
-    for (bool more = true; more;) {
-        const size_t end = line.find(separator);
-        more = end != line.npos;
-        auto cell = line.substr(0, end);
-        if (more) line.remove_prefix(end + 1);
-        while (!cell.empty() && is_blank(cell.front())) cell.remove_prefix(1);
-        while (!cell.empty() && is_blank(cell.back())) cell.remove_suffix(1);
-        if (more || !cell.empty()) cells.push_back(cell);  // one behind the last value means nothing
-    }
-    return cells;
-}
-
 Result<std::vector<Column>> parse_columns(std::string_view text) {
     const auto wrong = [](std::string why) {
         return bad_arguments("--columns", std::move(why), "write them as x,y,z,-,intensity:f32,r,g,b");
@@ -322,22 +348,26 @@ std::optional<std::vector<Column>> written_columns(std::string_view text) {
 
 std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words) {
     std::vector<Column> columns;
-    for (auto word : words) {
-        if (word.size() >= 2 && word.front() == '"' && word.back() == '"')
-            word = word.substr(1, word.size() - 2);
-        columns.push_back({our_name(word), std::nullopt});
+    for (const auto word : words) columns.push_back({our_name(unquoted(word)), std::nullopt});
+    for (const auto axis : kAxes) {
+        if (count_of(columns, axis) > 0) continue;
+        for (size_t i = 0; i < columns.size(); ++i)
+            if (alias_of(unquoted(words[i]), kSurveyors) == axis) columns[i].name = axis;
     }
     if (!has_axes(columns)) return std::nullopt;
     return columns;
 }
 
-std::vector<Column> guess_columns(const Sample& sample, bool pts) {
-    std::vector<Column> columns;
+std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts) {
+    const auto axes = guess_axes(sample);
+    if (!axes) return std::nullopt;
+    std::vector<Column> columns((*axes)[2] + 1, Column{"-", std::nullopt});
+    for (size_t i = 0; i < 3; ++i) columns[(*axes)[i]].name = kAxes[i];
+    if ((*axes)[0] > 0 && !sample.words[0]) columns[0].name = "id";
     const auto add = [&](const Triple& triple) {
         for (const auto name : triple) columns.push_back({std::string(name), std::nullopt});
     };
     bool color = false, normal = false, intensity = false;
-    add(kAxes);
     while (columns.size() < sample.columns) {
         const size_t at = columns.size(), left = sample.columns - at;
         const bool four = left % 3 == 1 && !intensity && !sample.words[at];
@@ -369,12 +399,14 @@ RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample) 
 }
 
 std::string columns_text(const std::vector<Column>& columns) {
+    constexpr size_t kShown = 40;
     std::string text;
-    for (const Column& c : columns) {
+    for (const Column& c : columns | std::views::take(kShown)) {
         if (!text.empty()) text += ' ';
         text += c.name;
         if (c.type) text += fmt::format(":{}", scalar_name(*c.type));
     }
+    if (columns.size() > kShown) text += fmt::format(" and {} more", columns.size() - kShown);
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/core/error.h"
+#include "io/formats/text/cells.h"
 #include "io/formats/text/rows.h"
 
 // What the columns of a text file are: as the user says, as its header says, or as its numbers look.
@@ -28,19 +29,19 @@ struct Sample {
 
 /// "x,y,z,-,intensity:f32,r,g,b". Errors (bad arguments): an unknown type, x, y or z missing or named twice.
 Result<std::vector<Column>> parse_columns(std::string_view text);
-/// The same as our writer says it: every column with its type, under its own name. Nothing where it is not so.
+/// The same as our writer says it: every column with its type, under its own name. Nothing where it is not
+/// so.
 std::optional<std::vector<Column>> written_columns(std::string_view text);
-
-/// The cells of a line.
-std::vector<std::string_view> split(std::string_view line, char separator);
 
 /// What a header's words mean: the names that others use become ours. Nothing where x, y and z are not among
 /// them, each once.
 std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words);
 
-/// x, y, z; then what looks like unit normals, colours, an intensity. Of four columns that may be an intensity and
-/// colours either way round, those of 0 to 255 are the colours; else the colours stand first, but last in PTS.
-std::vector<Column> guess_columns(const Sample& sample, bool pts);
+/// The first three columns of numbers are x, y, z, but for a first one that counts whole numbers up before
+/// three of fractions ("id"); then what looks like unit normals, colours, an intensity. Of four
+/// columns that may be an intensity and colours either way round, those of 0 to 255 are the colours; else the
+/// colours stand first, but last in PTS. Columns of words are left out. Nothing where there are no three of numbers.
+std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts);
 
 /// The records that these columns make: positions double, or float where all three are said to be. Types that
 /// are not stated follow from the sample: whole numbers and
@@ -48,7 +49,7 @@ std::vector<Column> guess_columns(const Sample& sample, bool pts);
 /// then colours take 16 bits and numbers of no agreed type are double.
 RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample);
 
-/// "x y z intensity:i32 red green blue".
+/// "x y z intensity:i32 red green blue"; of very many the first.
 std::string columns_text(const std::vector<Column>& columns);
 
 /// 8, 16, or 0 where they go from 0 to 1: of the sample's colours.

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "io/core/parallel.h"
-#include "io/formats/text.h"
+#include "io/formats/text/cells.h"
 
 namespace lucarne::io::text {
 namespace {
@@ -119,9 +120,9 @@ class RowParser {
     void skip_blanks() {
         while (is_blank(*at_) && *at_ != layout_.line_end) ++at_;
     }
-    void next_line() {
-        at_ =
-            static_cast<const char*>(std::memchr(at_, layout_.line_end, static_cast<size_t>(end_ - at_))) + 1;
+    void next_line() { at_ = line_end() + 1; }
+    const char* line_end() const {
+        return static_cast<const char*>(std::memchr(at_, layout_.line_end, static_cast<size_t>(end_ - at_)));
     }
     bool is_comment() const {
         return *at_ == '#' || *at_ == '%' || (*at_ == '/' && at_ + 1 < end_ && at_[1] == '/');
@@ -132,6 +133,7 @@ class RowParser {
     /// The word at the cursor, which is moved behind it.
     std::string_view word() {
         const char* first = at_;
+        if (*at_ == '"') at_ = behind_quotes(at_, line_end());
         if (layout_.separator != ' ')
             while (*at_ != layout_.line_end && *at_ != layout_.separator) ++at_;
         else
@@ -148,7 +150,7 @@ class RowParser {
             return true;
         }
         const char* first = at_;
-        const auto parsed = parse_number<double>(word());
+        const auto parsed = cell_number(word());
         if (!parsed) at_ = first;
         value = parsed.value_or(0);
         return parsed.has_value();
@@ -186,8 +188,10 @@ class RowParser {
             case Field::Kind::position:
                 return number(position_[field.to]);
             case Field::Kind::scalar:
-                if (field.type == ScalarType::u64) return store_exactly<uint64_t>(word(), record + field.to);
-                if (field.type == ScalarType::i64) return store_exactly<int64_t>(word(), record + field.to);
+                if (field.type == ScalarType::u64)
+                    return store_exactly<uint64_t>(unquoted(word()), record + field.to);
+                if (field.type == ScalarType::i64)
+                    return store_exactly<int64_t>(unquoted(word()), record + field.to);
                 if (number(value) && store_value(field.type, value, record + field.to)) return true;
                 break;
             case Field::Kind::packed:
@@ -233,9 +237,7 @@ class RowParser {
         return true;
     }
 
-    bool is_missed() const {
-        return layout_.zero_is_missed && position_ == std::array<double, 3>{};
-    }
+    bool is_missed() const { return layout_.zero_is_missed && position_ == std::array<double, 3>{}; }
 
     bool finish_point(std::byte* record) {
         glm::dvec3 p(position_[0], position_[1], position_[2]);
@@ -425,8 +427,10 @@ class RowReader final : public PointReader {
             piece.points = piece.dropped = piece.lines = piece.promised = piece.missed = piece.bad = 0;
             piece.ends_in_point = false;
             piece.problem.clear();
-            if (cuts[i] < cuts[i + 1])
-                parse_rows(layout, std::string_view(text_).substr(cuts[i], cuts[i + 1] - cuts[i]), piece);
+            if (cuts[i] == cuts[i + 1]) return;
+            const std::span<char> text(&text_[cuts[i]], cuts[i + 1] - cuts[i]);
+            if (layout.decimal_comma) std::ranges::replace(text, ',', '.');
+            parse_rows(layout, {text.data(), text.size()}, piece);
         });
         next_ = taken_ = 0;
         if (layout.salvage && open_end_) distrust_last();

@@ -35,6 +35,7 @@ struct RowLayout {
     std::vector<Field> fields;  ///< in the order of the columns
     char separator = ' ';       ///< ' ' means blanks; else ',' or ';', with blanks as one likes
     char line_end = '\n';
+    bool decimal_comma = false;   ///< "12,5"; a comma is never anything else
     bool has_counts = false;      ///< a row of one whole number says how many rows follow (PTS)
     bool zero_is_missed = false;  ///< (0, 0, 0) is a ray that met nothing (PTX)
     struct Pose {
@@ -66,16 +67,16 @@ struct Piece {
     uint64_t missed = 0;         ///< rays that met nothing
     uint64_t bad = 0;            ///< rows that do not fit, with `salvage`
     bool ends_in_point = false;  ///< the last line is the last point
-    uint64_t promised = 0;  ///< by counts
-    std::string problem;    ///< of line `lines`, where something is wrong; nothing behind it is parsed
+    uint64_t promised = 0;       ///< by counts
+    std::string problem;         ///< of line `lines`, where something is wrong; nothing behind it is parsed
 };
 
 /// Parses whole lines: `text` ends with a line end. A row is dropped where a coordinate is not usable.
 void parse_rows(const RowLayout& layout, std::string_view text, Piece& piece);
 
 /// A pass over sections. They share the schema and outlive the reader. Holds a window of 4 MiB of text and
-/// its records, however large the file is. Errors, but for layouts with `salvage`: a row that does not fit the
-/// layout, fewer rows than promised.
+/// its records, however large the file is. Errors, but for layouts with `salvage`: a row that does not fit
+/// the layout, fewer rows than promised.
 std::unique_ptr<PointReader> read_rows(std::shared_ptr<const InputFile> file,
                                        const std::vector<Section>& sections);
 

@@ -48,7 +48,7 @@ class Sampler {
             return;
         }
         for (size_t c = 0; c < cells.size(); ++c) {
-            const auto value = parse_number<double>(cells[c]);
+            const auto value = cell_number(cells[c]);
             if (!value && !cells[c].empty()) sample_.words[c] = true;
             sample_.values.push_back(value.value_or(NAN));
         }
@@ -73,6 +73,7 @@ Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end,
         const uint64_t at = begin + (bytes / places) * place;
         text.resize(static_cast<size_t>(place_bytes));
         LUCARNE_TRY(file.read_at(at, std::as_writable_bytes(std::span(text))));
+        if (layout.decimal_comma) std::ranges::replace(text, ',', '.');
         std::string_view lines = text;
         if (place > 0) lines.remove_prefix(std::min(lines.find(layout.line_end), lines.size() - 1) + 1);
         if (!whole) lines = lines.substr(0, lines.rfind(layout.line_end) + 1);

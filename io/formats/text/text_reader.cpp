@@ -20,22 +20,20 @@ namespace {
 using namespace text;
 
 constexpr size_t kHeadBytes = size_t{64} << 10;
+constexpr size_t kMostColumns = 1000;
+constexpr std::string_view kNoRows =
+    "is in no format that can be read: it is text without rows of three numbers or more";
 constexpr std::string_view kColumnsRemark = "lucarne columns ";
 
 /// What stands before the rows.
 struct Head {
     uint64_t begin = 0, line = 1;  ///< of the count, else of the first row; lines count from 1
     std::optional<uint64_t> count;
-    std::string header, comment;  ///< the last of each
+    std::string header, comment;       ///< the last of each
     std::vector<std::string> remarks;  ///< comments of our own
-    RowLayout layout;             ///< separator and line end
+    RowLayout layout;                  ///< separator and line end
     size_t columns = 0;
 };
-
-/// Semicolons, then commas, then blanks: a line is cut by the first of these that it holds.
-char separator_of(std::string_view line) {
-    return line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
-}
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
@@ -48,14 +46,19 @@ class TextSource final : public PointSource {
 
     Result<void> describe(const ReadOptions& options) {
         const std::string extension = lower_extension(file_->path());
-        LUCARNE_TRY(read_head());
+        std::optional<std::vector<Column>> given;
+        if (!options.columns.empty()) {
+            LUCARNE_ASSIGN(given, parse_columns(options.columns));
+        }
+        LUCARNE_TRY(read_head(given));
         const bool pts = head_.count.has_value() || extension == ".pts";
         head_.layout.has_counts = pts;
         LUCARNE_ASSIGN(auto sampled,
                        take_sample(*file_, head_.begin, file_->size(), head_.layout, head_.columns));
-        LUCARNE_ASSIGN(const auto columns, choose_columns(sampled.sample, options));
+        LUCARNE_ASSIGN(const auto columns, choose_columns(sampled.sample, given, options.quiet));
         Section section{head_.begin, file_->size(), make_layout(columns, sampled.sample), {}, head_.line};
         section.layout.separator = head_.layout.separator;
+        section.layout.decimal_comma = head_.layout.decimal_comma;
         section.layout.line_end = head_.layout.line_end;
         section.layout.has_counts = pts;
         section.layout.salvage = options.salvage;
@@ -65,8 +68,8 @@ class TextSource final : public PointSource {
         info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
         fill_info(pts ? "PTS" : "XYZ", columns, sampled, remarks);
         // The last row may lack its line end.
-        const uint64_t most = (file_->size() - head_.begin + 1) /
-                              (least_cell_bytes(head_.layout.separator) * head_.columns);
+        const uint64_t most =
+            (file_->size() - head_.begin + 1) / (least_cell_bytes(head_.layout.separator) * head_.columns);
         if (head_.count && *head_.count > most && !options.salvage)
             return refuse(
                 fmt::format("is truncated: it promises {} points, at most {} are there", *head_.count, most));
@@ -82,8 +85,8 @@ class TextSource final : public PointSource {
         return rejected(file_->path().string(), std::move(why), std::move(todo));
     }
 
-    /// Finds the first row: a line of three or more cells that begins with a number.
-    Result<void> read_head() {
+    /// Finds the first row of points.
+    Result<void> read_head(const std::optional<std::vector<Column>>& given) {
         std::string bytes(static_cast<size_t>(std::min<uint64_t>(kHeadBytes, file_->size())), '\0');
         LUCARNE_TRY(file_->read_at(0, std::as_writable_bytes(std::span(bytes))));
         std::string_view rest = bytes;
@@ -106,37 +109,63 @@ class TextSource final : public PointSource {
                     head_.comment = comment;
                 continue;
             }
-            const char separator = separator_of(line);
-            const auto cells = split(line, separator);
+            auto cut = cut_of(line);
+            if (!cut && !given)
+                return refuse(
+                    fmt::format("its line {}, '{}', can be read with decimal commas or without", number,
+                                printable(line)),
+                    "set semicolons between the values, or say what the columns are with --columns");
+            if (!cut) cut = Cut{','};
+            if (cut->separator == ';') cut->decimal_comma = bytes.find(',') != bytes.npos;
+            std::string with_points(line);
+            if (cut->decimal_comma) std::ranges::replace(with_points, ',', '.');
+            const auto cells = split(with_points, cut->separator);
             if (cells.size() == 1 && parse_number<uint64_t>(cells[0])) {
                 head_.count = parse_number<uint64_t>(cells[0]);
                 set_begin(begin, number);
-            } else if (cells.size() >= 3 && (parse_number<double>(cells[0]) || cells[0].empty())) {
+            } else if (begins_rows(cells, given)) {
                 if (!head_.count) set_begin(begin, number);
-                head_.layout.separator = separator;
-                head_.columns = cells.size();
-                return {};
+                return take_cut(*cut, cells.size());
             } else if (head_.count) {
                 break;
             } else {
                 head_.header = line;
             }
         }
-        return refuse("is in no format that can be read: it is text without rows of three numbers or more");
+        return refuse(std::string(kNoRows));
+    }
+    static bool begins_rows(const std::vector<std::string_view>& cells,
+                            const std::optional<std::vector<Column>>& given) {
+        if (!given || cells.size() != given->size()) return is_row(cells) && !named_columns(cells);
+        std::vector<std::string_view> axes;
+        for (size_t i = 0; i < cells.size(); ++i)
+            for (const char* axis : {"x", "y", "z"})
+                if ((*given)[i].name == axis) axes.push_back(cells[i]);
+        return is_row(axes);
+    }
+    Result<void> take_cut(const Cut& cut, size_t columns) {
+        if (columns > kMostColumns)
+            return refuse(
+                fmt::format("has {} or more values in a row, {} can be read", columns, kMostColumns));
+        head_.layout.separator = cut.separator;
+        head_.layout.decimal_comma = cut.decimal_comma;
+        head_.columns = columns;
+        return {};
     }
     void set_begin(uint64_t begin, uint64_t line) {
         head_.begin = begin;
         head_.line = line;
     }
 
-    Result<std::vector<Column>> choose_columns(const Sample& sample, const ReadOptions& options) const {
-        if (!options.columns.empty()) {
-            LUCARNE_ASSIGN(auto columns, parse_columns(options.columns));
-            if (columns.size() != sample.columns)
+    Result<std::vector<Column>> choose_columns(const Sample& sample,
+                                               const std::optional<std::vector<Column>>& given,
+                                               bool quiet) const {
+        if (given) {
+            if (given->size() != sample.columns)
                 return bad_arguments("--columns",
-                                     fmt::format("names {} columns, the rows of {} have {}", columns.size(),
+                                     fmt::format("names {} columns, the rows of {} have {}", given->size(),
                                                  file_->path().string(), sample.columns));
-            return columns;
+            return *given;
         }
         for (std::string_view remark : head_.remarks) {
             if (!remark.starts_with(kColumnsRemark)) continue;
@@ -159,10 +188,13 @@ class TextSource final : public PointSource {
                     "say what they are with --columns");
         }
         auto columns = guess_columns(sample, head_.layout.has_counts);
-        if (!options.quiet)
-            log::info("{}: its columns are taken as {}; --columns can say otherwise", file_->path().string(),
-                      columns_text(columns));
-        return columns;
+        if (!columns) return rejected(file_->path().string(), std::string(kNoRows));
+        const std::string text = columns_text(*columns);
+        if (!quiet)
+            log::info("{}: its columns are taken as {}{}; --columns can say otherwise",
+                      file_->path().string(), text,
+                      text.find('-') == text.npos ? "" : " (- is words, and left out)");
+        return std::move(*columns);
     }
 
     void fill_info(std::string_view name, const std::vector<Column>& columns, const Sampled& sampled,

@@ -1,0 +1,70 @@
+#include "io/formats/text/cells.h"
+
+#include <algorithm>
+#include <string>
+
+namespace lucarne::io::text {
+namespace {
+
+std::string with_points(std::string_view text) {
+    std::string points(text);
+    std::ranges::replace(points, ',', '.');
+    return points;
+}
+
+/// Whether every word, without a comma at its end, has a decimal comma: "1,5, 2,5, 3,5".
+bool may_be_decimal(std::string_view line) {
+    auto words = split(line, ' ');
+    return words.size() >= 3 && std::ranges::all_of(words, [](std::string_view word) {
+               if (word.ends_with(',')) word.remove_suffix(1);
+               return std::ranges::count(word, ',') == 1 && !word.starts_with(',') && !word.ends_with(',') &&
+                      word.find('.') == word.npos && cell_number(with_points(word));
+           });
+}
+
+}  // namespace
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+    std::vector<std::string_view> cells;
+    const auto skip_blanks = [&] {
+        while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+    };
+    for (bool more = true; more;) {
+        skip_blanks();
+        const char* end = line.data() + line.size();
+        const auto quoted = static_cast<size_t>(behind_quotes(line.data(), end) - line.data());
+        const size_t length =
+            separator == ' '
+                ? static_cast<size_t>(
+                      std::find_if(line.begin() + static_cast<std::ptrdiff_t>(quoted), line.end(), is_blank) -
+                      line.begin())
+                : std::min(line.find(separator, quoted), line.size());
+        more = length < line.size();
+        auto cell = line.substr(0, length);
+        line.remove_prefix(more ? length + 1 : length);
+        while (!cell.empty() && is_blank(cell.back())) cell.remove_suffix(1);
+        if ((more && separator != ' ') || !cell.empty())
+            cells.push_back(cell);  // one behind the last means nothing
+    }
+    return cells;
+}
+
+bool is_row(const std::vector<std::string_view>& cells) {
+    const auto numbers =
+        std::ranges::count_if(cells, [](auto cell) { return cell_number(cell).has_value(); });
+    return numbers > 0 && numbers + std::ranges::count(cells, std::string_view()) >= 3;
+}
+
+std::optional<Cut> cut_of(std::string_view line) {
+    const bool commas = line.find(',') != line.npos;
+    if (line.find(';') != line.npos) return Cut{';', commas};
+    if (!commas) return Cut{};
+    if (is_row(split(line, ','))) {
+        if (may_be_decimal(line)) return std::nullopt;
+        return Cut{','};
+    }
+    if (is_row(split(with_points(line), ' '))) return Cut{' ', true};
+    return Cut{','};
+}
+
+}  // namespace lucarne::io::text
