@@ -67,7 +67,11 @@ Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const InputFil
 Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path,
                                                    std::shared_ptr<HandlePool> handles) {
     LUCARNE_ASSIGN(InputFile file, InputFile::open(path, std::move(handles)));
-    LUCARNE_ASSIGN(const Superblock block, newest_superblock(file));
+    auto newest = newest_superblock(file);
+    if (!newest && !is_cache(path))
+        return rejected(path.string(), "is no cache",
+                        "if it is a scan, convert it first: lucarne convert SCAN -o CACHE.luc");
+    LUCARNE_ASSIGN(const Superblock block, std::move(newest));
     std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));
     LUCARNE_TRY(cache->read_directory());
     LUCARNE_TRY(cache->check_structure());

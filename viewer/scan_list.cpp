@@ -98,7 +98,9 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     ScanList list;
     for (const std::string& input : once_each(inputs)) {
         std::error_code error;
-        if (fs::is_directory(input, error))
+        if (input.empty())
+            list.problems.push_back({ErrorKind::input_rejected, "''", "is no name of a file", ""});
+        else if (fs::is_directory(input, error))
             look_through(input, options, list);
         else
             list.files.push_back(input);

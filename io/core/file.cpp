@@ -38,7 +38,8 @@ std::filesystem::path unused_name(const std::filesystem::path& folder) {
 Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared_ptr<HandlePool> pool) {
     // Without O_NONBLOCK a FIFO would hang us.
     auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (handle->fd() < 0) return rejected(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
+    if (handle->fd() < 0)
+        return rejected(path.empty() ? "''" : path.string(), fmt::format("cannot be opened ({})", reason(errno)));
     struct stat status {};
     if (::fstat(handle->fd(), &status) != 0 || !S_ISREG(status.st_mode))
         return rejected(path.string(), "is not a regular file");

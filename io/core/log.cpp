@@ -1,5 +1,10 @@
 #include "io/core/log.h"
 
+#include <mutex>
+#include <set>
+#include <string>
+
+#include <spdlog/sinks/dist_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -8,10 +13,28 @@
 namespace lucarne::log {
 namespace {
 
+/// Says no warning twice: a file is opened more than once, and each time the same is found in it. Of very
+/// many warnings it forgets the older ones.
+class WarnOnceSink final : public spdlog::sinks::dist_sink<std::mutex> {
+ protected:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        constexpr size_t kMostKept = 1000;
+        if (message.level == spdlog::level::warn) {
+            if (said_.size() >= kMostKept) said_.clear();
+            if (!said_.emplace(message.payload.data(), message.payload.size()).second) return;
+        }
+        dist_sink::sink_it_(message);
+    }
+
+ private:
+    std::set<std::string> said_;
+};
+
 spdlog::logger& logger() {
     static const auto instance = [] {
-        auto made = std::make_shared<spdlog::logger>("lucarne",
-                                                     std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        auto once = std::make_shared<WarnOnceSink>();
+        once->add_sink(std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        auto made = std::make_shared<spdlog::logger>("lucarne", std::move(once));
         made->set_pattern("lucarne: %^%v%$");
         return made;
     }();

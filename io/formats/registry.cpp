@@ -108,7 +108,7 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
             return format->create(path, schema, info, options);
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
-                         "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz");
+                         "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
 }
 
 std::string lower_extension(const std::filesystem::path& path) {

@@ -141,6 +141,43 @@ TEST_F(ConvertInputs, AFileThatIsGivenTwiceIsTakenOnce) {
     EXPECT_EQ((*cache)->header().scans.size(), 3u);
 }
 
+TEST_F(ConvertInputs, AWarningIsSaidOnceHoweverOftenAFileIsOpened) {
+    std::fstream file(scan(0), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(100).put('\x63');  // 99 variable length records
+    file.close();
+    const auto done = convert(scans_.string() + " --normals none");
+    EXPECT_EQ(done.code, 0) << done.output;
+    const size_t first = done.output.find(" records promised, ");
+    ASSERT_NE(first, std::string::npos) << done.output;
+    EXPECT_EQ(done.output.find(" records promised, ", first + 1), std::string::npos) << done.output;
+}
+
+TEST_F(ConvertInputs, WhatIsRefusedIsNamed) {
+    const auto nameless = test::lucarne("info ''");
+    EXPECT_EQ(nameless.code, 3);
+    EXPECT_NE(nameless.output.find("'': is no name of a file"), std::string::npos) << nameless.output;
+    const auto raw = test::lucarne(fmt::format("export {} -o {}", scan(0), folder_ / "x.las"));
+    EXPECT_EQ(raw.code, 3);
+    EXPECT_NE(raw.output.find(scan(0) + ": is no cache; if it is a scan, convert it first"),
+              std::string::npos)
+        << raw.output;
+    std::ofstream(folder_ / "short.luc") << "x";
+    EXPECT_NE(test::lucarne("verify " + (folder_ / "short.luc")).output.find("is no cache"),
+              std::string::npos);
+    EXPECT_NE(
+        test::lucarne(fmt::format("export {} -o {}", cached(), folder_ / "x.foo")).output.find(".copc.laz"),
+        std::string::npos);
+}
+
+TEST_F(ConvertInputs, InfoPrintsCoordinatesAsTheFileHasThemAndSaysWhichUnitIsAssumed) {
+    const std::string rows = folder_ / "rows.xyz";
+    std::ofstream(rows) << "636000.1 848935.2 0.3\n636000.3 848935.3 0.4\n";
+    const auto text = test::shell(LUCARNE_BINARY " info " + rows + " 2> " + (folder_ / "messages")).output;
+    EXPECT_NE(text.find("636000.1 848935.2 0.3\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("m (assumed)\n"), std::string::npos) << text;
+    EXPECT_EQ(test::lucarne("info --unit m " + rows).output.find("(assumed)"), std::string::npos);
+}
+
 TEST_F(ConvertInputs, TheReportListsWhatWasRejected) {
     cut_short(1);
     const std::string json = folder_ / "report.json";

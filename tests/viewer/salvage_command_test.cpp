@@ -71,11 +71,16 @@ TEST_F(SalvageCommand, OfSeveralInputsTheBrokenOneIsNamedWithWhatCouldBeSaved) {
 }
 
 TEST_F(SalvageCommand, InfoGoesOnBehindABrokenInputAndListsTheOthers) {
-    const auto done = test::lucarne("info --json " + json_ + " " + cut_ + " " + whole_ + " " + whole_);
+    const std::string twin = folder_ / "twin.las";
+    fs::copy_file(whole_, twin);
+    const auto done = test::lucarne("info --json " + json_ + " " + cut_ + " " + whole_ + " " + twin);
     EXPECT_EQ(done.code, 3);
     EXPECT_THAT(done.output, HasSubstr("1 of 3 inputs cannot be read"));
-    const auto info = json_of(json_);
-    ASSERT_EQ(info.size(), 2u);
+    auto info = json_of(json_);
+    ASSERT_EQ(info.size(), 3u);
+    EXPECT_EQ(info[2]["path"], cut_);
+    EXPECT_THAT(info[2]["reason"].get<std::string>(), HasSubstr("is truncated"));
+    info.erase(2);
     for (const auto& scan : info) {
         EXPECT_EQ(scan["points"], points_);
         EXPECT_EQ(scan["unit"], "m");

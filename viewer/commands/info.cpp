@@ -91,10 +91,22 @@ Result<json> describe(const std::string& path, const Options& options) {
     return describe_octree(*source, octree::is_cache(path) ? "cache" : "copc");
 }
 
+/// What a double has beyond 15 digits are no digits of the file.
+std::string coordinates_text(const json& vector) {
+    std::string text;
+    for (const json& value : vector)
+        text += fmt::format("{}{:.15g}", text.empty() ? "" : " ", value.get<double>());
+    return text;
+}
+
 void print(const json& described) {
     const bool assumed = !described.value("unit_stated", true);
     for (const auto& [name, value] : described.items()) {
         if (name == "unit_stated") continue;
+        if (name == "min" || name == "max") {
+            fmt::print("{:<17} {}\n", name, coordinates_text(value));
+            continue;
+        }
         if (name == "unit" && assumed) {
             fmt::print("{:<17} {} (assumed)\n", name, value.get<std::string>());
             continue;
