@@ -138,6 +138,22 @@ TEST_F(SurveyorsText, CommasThatMayBeEitherAreRefused) {
         << "points that part thousands";
 }
 
+TEST_F(SurveyorsText, TruncationAnywhereAndStrayQuotesAreHarmless) {
+    const std::string text =
+        "\"Nr\";\"E\";\"N\";\"H\";\"\"\"Code\"\"\"\n\"P;1\";\"1,5\";2,5;3,5;\"a\"\"b\"\n\"P2\";4;5;6;\n";
+    for (size_t length = 0; length <= text.size(); ++length)
+        (void)try_read(std::string_view(text).substr(0, length), {"", true});
+    for (size_t i = 0; i < text.size(); ++i) {
+        std::string stray = text;
+        stray[i] = '"';
+        (void)try_read(stray, {"", true});
+    }
+    read(text);
+    ASSERT_EQ(points(), 2u);
+    EXPECT_EQ(position(0), glm::dvec3(1.5, 2.5, 3.5));
+    EXPECT_EQ(position(1), glm::dvec3(4, 5, 6));
+}
+
 TEST_F(SurveyorsText, Utf16IsTold) {
     using namespace std::string_literals;
     for (const auto& text : {"\xff\xfe"

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstring>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -20,12 +19,14 @@ struct Cut {
 /// Nothing where commas may be either ("1,5, 2,5, 3,5").
 std::optional<Cut> cut_of(std::string_view line);
 
-/// Where the quotes that begin at `at` end, behind them; `at` where they do not, before `end`.
-inline const char* behind_quotes(const char* at, const char* end) {
-    for (const char* quote = at; quote < end && *quote == '"'; ++quote) {  // "" within them is a quote
-        quote = static_cast<const char*>(std::memchr(quote + 1, '"', static_cast<size_t>(end - quote - 1)));
-        if (!quote) return at;
-        if (quote + 1 == end || quote[1] != '"') return quote + 1;
+/// Where the quotes that may begin at `at` end, behind them; `at` where they do not, before `line_end` or
+/// `end`.
+inline const char* behind_quotes(const char* at, const char* end, char line_end = '\n') {
+    if (at == end || *at != '"') return at;
+    for (const char* next = at + 1; next != end && *next != line_end; ++next) {
+        if (*next != '"') continue;
+        if (next + 1 == end || next[1] != '"') return next + 1;
+        ++next;  // "" within them is a quote
     }
     return at;
 }

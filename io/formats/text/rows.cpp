@@ -120,9 +120,9 @@ class RowParser {
     void skip_blanks() {
         while (is_blank(*at_) && *at_ != layout_.line_end) ++at_;
     }
-    void next_line() { at_ = line_end() + 1; }
-    const char* line_end() const {
-        return static_cast<const char*>(std::memchr(at_, layout_.line_end, static_cast<size_t>(end_ - at_)));
+    void next_line() {
+        at_ =
+            static_cast<const char*>(std::memchr(at_, layout_.line_end, static_cast<size_t>(end_ - at_))) + 1;
     }
     bool is_comment() const {
         return *at_ == '#' || *at_ == '%' || (*at_ == '/' && at_ + 1 < end_ && at_[1] == '/');
@@ -133,7 +133,7 @@ class RowParser {
     /// The word at the cursor, which is moved behind it.
     std::string_view word() {
         const char* first = at_;
-        if (*at_ == '"') at_ = behind_quotes(at_, line_end());
+        at_ = behind_quotes(at_, end_, layout_.line_end);
         if (layout_.separator != ' ')
             while (*at_ != layout_.line_end && *at_ != layout_.separator) ++at_;
         else
