@@ -8,6 +8,7 @@
 #include "io/core/log.h"
 #include "io/formats/e57/layout.h"
 #include "io/formats/format.h"
+#include "io/formats/value_range.h"
 #include "io/formats/wkt.h"
 
 namespace lucarne::io {
@@ -107,9 +108,21 @@ class E57Source final : public PointSource {
         }
         nlohmann::json details = e57::to_details(document);
         details["color_bits"] = info_.color_bits;
+        if (const auto limits = intensity_limits()) details[kIntensityLimits] = *limits;
         info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     }
 
+    /// That hold for the intensities of all scans.
+    std::optional<std::array<double, 2>> intensity_limits() const {
+        std::optional<std::array<double, 2>> all;
+        for (const e57::Scan& scan : e57_.document.scans) {
+            if (scan.records == 0 || !scan.find(names::intensity)) continue;
+            if (!scan.intensity_limits) return std::nullopt;
+            const auto [low, high] = *scan.intensity_limits;
+            all = all ? std::array{std::min((*all)[0], low), std::max((*all)[1], high)} : std::array{low, high};
+        }
+        return all;
+    }
     const Schema& schema() const override { return e57_.layout.schema; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override { return std::make_unique<E57Reader>(e57_); }

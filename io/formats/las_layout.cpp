@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/formats/format.h"
+#include "io/formats/las_extras.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -128,7 +129,15 @@ void add_core(Schema& schema, bool extended) {
     schema.add(std::string(names::point_source_id), ScalarType::u16);
 }
 
+/// An extra holds what one of the first `fields` attributes only comes near to.
+void rename_field(Schema& schema, size_t fields, std::string_view name) {
+    for (size_t i = 0; i < fields; ++i)
+        if (schema.attributes[i].name == name)
+            schema.attributes[i].name = unique_name(schema, std::string(kNearPrefix) + std::string(name));
+}
+
 void add_extra(Schema& schema, const Header& header) {
+    const Schema fields = schema;
     size_t left = header.record_length - record_bytes(header.point_format) - header.wave_bytes;
     if (const Vlr* vlr = header.find(kSpecUser, kExtraBytesRecord)) {
         for (size_t at = 0; left > 0 && vlr->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
@@ -136,7 +145,9 @@ void add_extra(Schema& schema, const Header& header) {
             if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // of no bytes
             const auto type = extra_type(descriptor);
             if (!type || type->components * scalar_bytes(type->type) > left) break;
-            schema.add(unique_name(schema, extra_name(descriptor)), type->type, type->components);
+            const ExtraName extra = name_of_extra(fields, descriptor);
+            if (extra.original) rename_field(schema, fields.attributes.size(), extra.name);
+            schema.add(unique_name(schema, extra.name), type->type, type->components);
             left -= schema.attributes.back().bytes();
         }
     }
@@ -174,6 +185,14 @@ Schema make_schema(const Header& header) {
     if (header.point_format == 8) schema.add(std::string(names::nir), ScalarType::u16);
     add_extra(schema, header);
     return schema;
+}
+
+uint32_t largest_value(bool extended, std::string_view name) {
+    if (name == names::return_number || name == names::number_of_returns) return extended ? 15 : 7;
+    if (name == names::scan_direction || name == names::edge_of_flight_line) return 1;
+    if (name == names::class_flags) return extended ? 15 : 7;
+    if (name == names::classification) return extended ? 255 : 31;
+    return name == names::scanner_channel ? 3 : UINT32_MAX;
 }
 
 void decode(const Header& header, const std::byte* in, size_t count, std::byte* out, size_t out_stride) {

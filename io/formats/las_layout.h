@@ -10,7 +10,8 @@
 namespace lucarne::io::las {
 
 /// The schema of a point format with its extra bytes. `descriptors` is the data of the extra bytes record
-/// (LASF_Spec 4), 192 bytes each; bytes of the record that it does not describe become `extra_bytes` u8 xN.
+/// (LASF_Spec 4), 192 bytes each; bytes of the record that it does not describe become `extra_bytes` u8 xN. How extras
+/// are called: las_extras.h.
 Schema make_schema(const Header& header);
 
 /// An entry of the extra bytes record.
@@ -22,6 +23,9 @@ struct ExtraType {
 /// Empty where the type is not in the specification.
 std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor);
 std::string extra_name(std::span<const std::byte> descriptor);
+
+/// The largest value that the bits of a field take (LAS 1.4 R15, tables 7 and 16); UINT32_MAX where it has whole bytes.
+uint32_t largest_value(bool extended, std::string_view name);
 
 /// Unpacks `count` records of `header`'s format into records of make_schema(header).
 void decode(const Header& header, const std::byte* in, size_t count, std::byte* out, size_t out_stride);

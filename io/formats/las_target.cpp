@@ -10,33 +10,15 @@
 #include "io/core/log.h"
 #include "io/formats/format.h"
 #include "io/formats/las_crs.h"
+#include "io/formats/las_extras.h"
 #include "io/formats/stations.h"
+#include "io/formats/value_range.h"
 
 namespace lucarne::io::las {
 namespace {
 
 constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
 constexpr uint16_t kWktBit = 1 << 4;
-
-bool is_float(ScalarType t) {
-    return t == ScalarType::f32 || t == ScalarType::f64;
-}
-bool is_signed(ScalarType t) {
-    return t == ScalarType::i8 || t == ScalarType::i16 || t == ScalarType::i32 || t == ScalarType::i64;
-}
-/// Whether `wide` can hold every value of `narrow`.
-bool holds(ScalarType wide, ScalarType narrow) {
-    if (wide == narrow) return true;
-    const size_t w = scalar_bytes(wide), n = scalar_bytes(narrow);
-    if (is_float(wide)) return w > n;  // f64 holds f32 and integers up to 32 bits, f32 those up to 16
-    if (is_float(narrow)) return false;
-    return w > n && (is_signed(wide) || !is_signed(narrow));
-}
-
-/// Whether a field of a point format takes the attribute as it is; `color` may be scaled to 16 bits.
-bool fits(const Attribute& field, const Attribute& attribute) {
-    return field.components == attribute.components && holds(field.type, attribute.type);
-}
 
 /// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
 void choose_format(Header& header, const Schema& schema, bool from_las, bool compress) {
@@ -59,48 +41,6 @@ void choose_format(Header& header, const Schema& schema, bool from_las, bool com
     }
 }
 
-/// The entry of the extra bytes record for an attribute: the source's own where it had one.
-Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attribute& attribute,
-                                             const Vlr* kept) {
-    for (size_t at = 0; kept && kept->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
-        const auto entry = std::span(kept->data).subspan(at, kDescriptorBytes);
-        const auto type = extra_type(entry);
-        if (printable(extra_name(entry)) == attribute.name && type && type->type == attribute.type &&
-            type->components == attribute.components)
-            return std::vector<std::byte>(entry.begin(), entry.end());
-    }
-    std::vector<std::byte> entry(kDescriptorBytes);
-    const size_t bytes = attribute.bytes();
-    if (attribute.components <= 3) {
-        store(&entry[2],
-              static_cast<uint8_t>(static_cast<unsigned>(attribute.type) + 10 * (attribute.components - 1)));
-    } else if (bytes <= 255) {
-        store(&entry[3], static_cast<uint8_t>(bytes));  // undocumented: its size instead of its type
-    } else {
-        return failed(path,
-                      fmt::format("LAS cannot hold the attribute {} of {} bytes", attribute.name, bytes),
-                      "choose PLY");
-    }
-    std::memcpy(&entry[4], attribute.name.data(), std::min<size_t>(32, attribute.name.size()));
-    return entry;
-}
-
-/// The attributes that go to extra bytes, in record order; bytes that nobody described come last.
-std::vector<Attribute> extra_attributes(const Header& header, const Schema& schema) {
-    Header bare;
-    bare.point_format = header.point_format;
-    bare.record_length = record_bytes(header.point_format);
-    const Schema fields = make_schema(bare);
-    std::vector<Attribute> extra;
-    for (const Attribute& a : schema.attributes) {
-        const Attribute* field = fields.find(a.name);
-        if (!field || !fits(*field, a)) extra.push_back(a);
-    }
-    std::stable_partition(extra.begin(), extra.end(),
-                          [](const Attribute& a) { return a.name != "extra_bytes"; });
-    return extra;
-}
-
 /// The record, made if it is not there yet.
 Vlr& record_of(Header& header, std::string_view user, uint16_t id) {
     const auto found =
@@ -110,33 +50,44 @@ Vlr& record_of(Header& header, std::string_view user, uint16_t id) {
     return header.vlrs.back();
 }
 
-Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra) {
-    std::vector<std::byte> described;
-    size_t bytes = record_bytes(header.point_format);
-    for (const Attribute& a : extra) {
-        bytes += a.bytes();
-        if (a.name == "extra_bytes" && a.type == ScalarType::u8) continue;
-        LUCARNE_ASSIGN(const auto entry, descriptor_of(path, a, header.find(kSpecUser, kExtraBytesRecord)));
-        described.insert(described.end(), entry.begin(), entry.end());
-    }
-    if (bytes > 0xffff || described.size() > 0xffff)
-        return failed(path, "has more attributes than a LAS record can hold", "choose PLY");
-    header.record_length = static_cast<uint16_t>(bytes);
-    if (described.empty())
-        std::erase_if(header.vlrs, [](const Vlr& v) { return v.is(kSpecUser, kExtraBytesRecord); });
-    else
-        record_of(header, kSpecUser, kExtraBytesRecord).data = std::move(described);
-    return {};
+/// What a writer has to know of values before it gets them.
+struct Survey {
+    Lattice lattice;                 ///< of the positions
+    std::optional<Range> intensity;  ///< of those that have to be spread over 16 bits
+};
+
+/// An intensity that the field cannot hold, unless what it holds instead is there as well; else null.
+const Attribute* wide_intensity(const Schema& schema, const std::vector<Attribute>& extra) {
+    if (schema.find(std::string(kNearPrefix) + std::string(names::intensity))) return nullptr;
+    const auto found = std::find_if(extra.begin(), extra.end(), [](const Attribute& a) {
+        return a.name == names::intensity && a.components == 1;
+    });
+    return found == extra.end() ? nullptr : &*found;
 }
 
-/// For positions that are not integers yet.
-Result<Lattice> choose_lattice(const Schema& schema, const WriteOptions& options) {
-    if (options.lattice) return *options.lattice;
-    if (!options.bounds) return Lattice{glm::dvec3(1e-4), glm::dvec3(0.0)};
-    DecimalSearch search(schema, *options.bounds);
-    if (options.preview)
-        LUCARNE_TRY(options.preview([&](std::span<const std::byte> records) { return search.add(records); }));
-    return search.found();
+/// Positions that are not integers yet get what the options know, else the decimals that they have.
+/// Intensities are spread from the limits that their format has, else from what they are; whole numbers that
+/// fit stay.
+Result<Survey> survey_of(const Schema& schema, const nlohmann::json& details, const Attribute* intensity,
+                         const WriteOptions& options) {
+    Survey survey{{schema.scale, schema.offset}, {}};
+    if (intensity) survey.intensity = stated_range(details);
+    const bool floats = schema.position != PositionType::i32_scaled;
+    if (floats) survey.lattice = options.lattice.value_or(Lattice{glm::dvec3(1e-4), glm::dvec3(0.0)});
+    std::optional<DecimalSearch> search;
+    if (floats && !options.lattice && options.bounds) search.emplace(schema, *options.bounds);
+    std::optional<RangeSearch> range;
+    if (intensity && !survey.intensity) range.emplace(schema, *intensity);
+    bool positions = search.has_value(), values = range.has_value();
+    if (options.preview && (positions || values))
+        LUCARNE_TRY(options.preview([&](std::span<const std::byte> records) {
+            positions = positions && search->add(records);
+            values = values && range->add(records);
+            return positions || values;
+        }));
+    if (search) survey.lattice = search->found();
+    if (range) survey.intensity = range->found();
+    return survey;
 }
 
 void add_stations(Header& header, const std::vector<Station>& stations) {
@@ -173,21 +124,45 @@ void state_unit(const std::string& path, Header& header, double metres) {
     header.minor = 4;
 }
 
+/// What a field gets that nothing of its name and type is for: what comes near, or follows from another.
+std::optional<Converter::Field> derived_field(const Schema& from, const Attribute& field, bool extended,
+                                              const std::optional<Range>& intensity) {
+    const bool near = field.name.starts_with(kNearPrefix);
+    const std::string name = near ? field.name.substr(kNearPrefix.size()) : field.name;
+    if (const Attribute* a = from.find(name); near && a && a->components == field.components) {
+        Converter::Field made{*a, field};
+        made.most = largest_value(extended, name);
+        if (name == names::intensity && intensity) {
+            made.factor = 65535.0 / (intensity->high - intensity->low);
+            made.shift = -intensity->low * made.factor;
+        }
+        return made;
+    }
+    const Attribute* rank = from.find(names::scan_angle_rank);
+    constexpr double kAngleUnit = 0.006;  // degrees (LAS 1.4 R15, table 16); the rank counts whole degrees
+    if (name == names::scan_angle && rank && rank->components == 1)
+        return Converter::Field{*rank, field, 1 / kAngleUnit};
+    return std::nullopt;
+}
+
 Converter make_converter(const Schema& from, const Schema& to, const std::vector<Attribute>& extra,
-                         uint32_t color_bits) {
+                         bool extended, uint32_t color_bits, const std::optional<Range>& intensity) {
     Converter converter(from, to);
     const size_t fields = to.attributes.size() - extra.size();
     for (size_t i = 0; i < fields; ++i) {
         const Attribute& field = to.attributes[i];
         const Attribute* a = from.find(field.name);
-        if (!a || a->components != field.components) continue;
+        if (!a || a->components != field.components) {
+            if (const auto made = derived_field(from, field, extended, intensity)) converter.map(*made);
+            continue;
+        }
         // Colours of 16 bits stay as they are; the specification wants all others spread over 16 bits.
         const bool spread = field.name == names::color && a->type != ScalarType::u16;
-        converter.map(*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0);
+        converter.map({*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0});
     }
     for (size_t k = 0; k < extra.size(); ++k) {
         const Attribute& target = to.attributes[fields + k];  // the same bytes, but maybe without their type
-        converter.map({extra[k].name, target.type, target.components, extra[k].offset}, target);
+        converter.map({{extra[k].name, target.type, target.components, extra[k].offset}, target});
     }
     return converter;
 }
@@ -221,14 +196,16 @@ bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
         std::memset(out, 0, to_.stride);
         good = convert_position(in, out) && good;
         for (const Field& f : fields_) {
-            if (f.factor == 1.0 && f.from.type == f.to.type) {
+            if (f.factor == 1.0 && f.shift == 0.0 && f.from.type == f.to.type) {
                 std::memcpy(out + f.to.offset, in + f.from.offset, f.to.bytes());
                 continue;
             }
             const size_t step = scalar_bytes(f.from.type), out_step = scalar_bytes(f.to.type);
             for (size_t c = 0; c < f.to.components; ++c)
-                store_scalar(f.to.type, out + f.to.offset + c * out_step,
-                             scalar_at(f.from.type, in + f.from.offset + c * step) * f.factor);
+                store_scalar(
+                    f.to.type, out + f.to.offset + c * out_step,
+                    std::min(scalar_at(f.from.type, in + f.from.offset + c * step) * f.factor + f.shift,
+                             f.most));
         }
     }
     return good;
@@ -247,20 +224,18 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     }
     header.compressed = compress;
     choose_format(header, schema, from_las, compress);
-    Lattice lattice{schema.scale, schema.offset};
-    if (schema.position != PositionType::i32_scaled) {
-        LUCARNE_ASSIGN(lattice, choose_lattice(schema, options));
-    }
-    header.scale = lattice.scale;
-    header.offset = lattice.offset;
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
     state_unit(path, header, info.metres_per_unit);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));
+    LUCARNE_ASSIGN(const Survey survey, survey_of(schema, details, wide_intensity(schema, extra), options));
+    header.scale = survey.lattice.scale;
+    header.offset = survey.lattice.offset;
     target.schema = make_schema(header);
-    target.converter = make_converter(schema, target.schema, extra, info.color_bits);
+    target.converter = make_converter(schema, target.schema, extra, extended_format(header.point_format),
+                                      info.color_bits, survey.intensity);
     return target;
 }
 

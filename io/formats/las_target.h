@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "io/formats/las_layout.h"
 #include "io/formats/scan.h"
 
@@ -12,10 +14,12 @@ class Converter {
     Converter() = default;
     Converter(const Schema& from, const Schema& to) : from_(from), to_(to) {}
 
-    /// Attribute `from` becomes `to`; `factor` scales colours to 16 bits.
-    void map(const Attribute& from, const Attribute& to, double factor = 1.0) {
-        fields_.push_back({from, to, factor});
-    }
+    /// An attribute becomes another: value * factor + shift, `most` at most.
+    struct Field {
+        Attribute from, to;
+        double factor = 1.0, shift = 0.0, most = std::numeric_limits<double>::infinity();
+    };
+    void map(const Field& field) { fields_.push_back(field); }
     /// False where a position does not fit 32-bit integers with the target's scale and offset.
     bool convert(const std::byte* in, size_t count, std::byte* out);
     /// By how much positions were rounded so far, at most: less than their type tells apart is none.
@@ -24,10 +28,6 @@ class Converter {
     bool identity() const { return from_ == to_; }
 
  private:
-    struct Field {
-        Attribute from, to;
-        double factor;
-    };
     bool convert_position(const std::byte* in, std::byte* out);
 
     Schema from_, to_;
@@ -43,9 +43,9 @@ struct Target {
 
 /// The header kept in `info.details` where the source was LAS, else the smallest point format that has a
 /// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
-/// bytes (where it does not fit, the field gets the nearest value as well). Positions that are not integers
-/// yet get the lattice of `options`, else the decimals that its preview shows, else the finest its box
-/// allows. To be compressed (LAZ), point formats 6 to 8.
+/// bytes (where it does not fit, the field gets what comes near: las_extras.h). Positions that are not
+/// integers yet get the lattice of `options`, else the decimals that its preview shows, else the finest its
+/// box allows. To be compressed (LAZ), point formats 6 to 8.
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
                            const WriteOptions& options, bool compress);
 

@@ -8,6 +8,7 @@
 
 #include "io/core/file.h"
 #include "io/core/log.h"
+#include "io/formats/las_extras.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -113,8 +114,8 @@ Statistics::Statistics() {
 }
 
 void Statistics::add(const std::byte* records, size_t count, const Schema& schema) {
-    const size_t return_offset = schema.find(names::return_number)->offset;
-    const Attribute* time = schema.find(names::gps_time);
+    const size_t return_offset = field_of(schema, names::return_number)->offset;
+    const Attribute* time = field_of(schema, names::gps_time);
     for (; count-- > 0; records += schema.stride) {
         for (size_t axis = 0; axis < 3; ++axis) {
             const auto value = load<int32_t>(records + 4 * axis);

@@ -139,13 +139,97 @@ TEST_F(Writers, WhatALasFieldCannotHoldGoesToExtraBytes) {
     for (size_t c = 0; c < 5; ++c) points.set("code", static_cast<uint8_t>(c), c);
     points.set("stamp", uint64_t{0xfedcba9876543210});
     const auto source = written("a.las", points);
-    EXPECT_EQ(value(*source, "intensity"), 1);  // rounded for others
-    EXPECT_EQ(value(*source, "intensity_2"), 0.75);
+    EXPECT_EQ(value(*source, "intensity"), 0.75);
+    EXPECT_EQ(value(*source, "las_intensity"), 1);  // rounded for others
     EXPECT_EQ(value(*source, "curvature"), 0.1);
     EXPECT_EQ(value(*source, "normal", 2), 2.5);
     EXPECT_EQ(value(*source, "code", 4), 4);
     const auto all = read_all(*source);
     EXPECT_EQ(load<uint64_t>(&all->bytes[source->schema().find("stamp")->offset]), 0xfedcba9876543210u);
+}
+
+/// The names that a LAS file's extra bytes have in the file.
+std::vector<std::string> names_in_file(const std::string& bytes) {
+    std::vector<std::string> names;
+    const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
+    size_t at = load<uint16_t>(b + 94);
+    for (uint32_t left = load<uint32_t>(b + 100); left > 0; --left) {
+        const size_t length = load<uint16_t>(b + at + 20), data = at + 54;
+        const bool extra = bytes.compare(at + 2, 10, std::string("LASF_Spec\0", 10)) == 0 &&
+                           load<uint16_t>(b + at + 18) == 4;
+        for (size_t entry = data; extra && entry < data + length; entry += 192)
+            names.emplace_back(bytes.substr(entry + 4, 32).c_str());
+        at = data + length;
+    }
+    return names;
+}
+
+TEST_F(Writers, NoExtraOfALasFileIsCalledLikeAFieldAndAllComeBackUnderTheirNames) {
+    Points points(PositionType::i32_scaled);
+    for (const char* name : {"intensity", "return_number", "gps_time", "red", "Classification", "curvature"})
+        points.schema.add(name, name == std::string("intensity") ? ScalarType::f32 : ScalarType::i64);
+    points.add();
+    points.set("intensity", 0.75f);
+    points.set("return_number", int64_t{200});
+    points.set("gps_time", int64_t{-5});
+    points.set("red", int64_t{3});
+    ScanInfo info;
+    info.details = R"({"intensity_limits":[0.5,1.0]})";
+    for (const char* name : {"a.las", "a.laz"}) {
+        const auto source = written(name, points, info);
+        EXPECT_THAT(
+            names_in_file(read_bytes(folder_ / name)),
+            ::testing::ElementsAre("original_intensity", "original_return_number", "original_gps_time",
+                                   "original_red", "original_Classification", "curvature"));
+        EXPECT_EQ(value(*source, "intensity"), 0.75);
+        EXPECT_EQ(value(*source, "las_intensity"), 32768);  // the middle of its limits
+        EXPECT_EQ(value(*source, "return_number"), 200);
+        EXPECT_EQ(value(*source, "las_return_number"), 15);  // the largest of 4 bits
+        EXPECT_EQ(value(*source, "las_gps_time"), -5);
+        EXPECT_EQ(value(*source, "red"), 3);
+        const auto all = read_all(*source);  // and so they stay
+        const auto again =
+            create_scan(folder_ / (std::string("b") + name), source->schema(), source->info(), {});
+        ASSERT_TRUE(again && (*again)->write(all->bytes) && (*again)->finish());
+        EXPECT_EQ(read_bytes(folder_ / (std::string("b") + name)), read_bytes(folder_ / name));
+    }
+}
+
+TEST_F(Writers, AnIntensityWithoutLimitsIsSpreadFromWhatItIsUnlessItFits) {
+    struct Case {
+        float low, high;
+        double expected;  ///< of the high one
+    };
+    for (const Case& c : {Case{0.25f, 0.5f, 65535}, Case{-2048, 2047, 65535}, Case{0, 300, 300}}) {
+        Points points(PositionType::i32_scaled);
+        points.schema.add("intensity", ScalarType::f32);
+        for (const float v : {c.high, c.low}) {
+            points.add();
+            points.set("intensity", v);
+        }
+        WriteOptions options{.overwrite = true};
+        options.preview = [&](const auto& visit) -> Result<void> {
+            visit(points.bytes);
+            return {};
+        };
+        EXPECT_EQ(value(*written("a.las", points, {}, options), "las_intensity"), c.expected);
+    }
+}
+
+TEST_F(Writers, ScanAnglesInWholeDegreesFillTheFieldOfNewerFormatsAndStay) {
+    LasFile file;
+    file.format = 1;
+    file.records = {record0(1, 2, 3, 0, 0, 0, -90) + testing::raw(0.0)};
+    write_bytes(folder_ / "old.las", file.bytes());
+    const auto source = open_scan(folder_ / "old.las");
+    ASSERT_TRUE(source);
+    const auto all = read_all(**source);
+    const auto writer = create_scan(folder_ / "new.laz", (*source)->schema(), (*source)->info(), {});
+    ASSERT_TRUE(writer && (*writer)->write(all->bytes) && (*writer)->finish());
+    const auto copy = open_scan(folder_ / "new.laz");
+    ASSERT_TRUE(copy);
+    EXPECT_EQ(value(**copy, "scan_angle"), -15000);  // units of 0.006 degrees
+    EXPECT_EQ(value(**copy, "scan_angle_rank"), -90);
 }
 
 TEST_F(Writers, ColoursOfAnyTypeAreSpreadOver16BitsInLas) {

@@ -13,6 +13,7 @@
 #include "io/formats/text.h"
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
+#include "io/formats/value_range.h"
 
 namespace lucarne::io {
 namespace {
@@ -216,7 +217,7 @@ class PtxSource final : public PointSource {
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
         info_.metres_per_unit = options.metres_per_unit.value_or(1.0);
-        info_.details = nlohmann::json{{"color_bits", info_.color_bits}}.dump();
+        info_.details = nlohmann::json{{"color_bits", info_.color_bits}, {kIntensityLimits, {0, 1}}}.dump();
         size_t values = 3;
         for (const Scan& scan : scans) values = std::max(values, scan.values);
         if (values >= 4) schema_.add(std::string(names::intensity), ScalarType::f32);

@@ -13,6 +13,7 @@
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
 #include "io/formats/text/writer.h"
+#include "io/formats/value_range.h"
 
 namespace lucarne::io {
 namespace {
@@ -206,7 +207,11 @@ class TextSource final : public PointSource {
         info_.modified = file_->modified();
         if (schema().find(names::color))
             info_.color_bits = remarks.color_bits.value_or(color_bits(columns, sampled.sample));
-        info_.details = nlohmann::json{{"color_bits", info_.color_bits}}.dump();
+        nlohmann::json details{{"color_bits", info_.color_bits}};
+        const Attribute* intensity = schema().find(names::intensity);
+        if (name == "PTS" && intensity && intensity->type == ScalarType::i32)
+            details[kIntensityLimits] = {-2048, 2047};  // Leica's whole numbers of 12 bits
+        info_.details = details.dump();
         for (size_t i = 0; i < columns.size(); ++i)
             if (sections_[0].layout.fields[i].kind == Field::Kind::skip)
                 add_loss(info_.losses, "columns that are left out", 1);

@@ -1,0 +1,180 @@
+#include "io/formats/las_extras.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "io/formats/format.h"
+
+namespace lucarne::io::las {
+namespace {
+
+constexpr std::string_view kOriginalPrefix = "original_", kOriginalDescription = "lucarne: of its own type";
+constexpr size_t kNameBytes = 32, kDescriptionAt = 160;
+
+bool is_float(ScalarType t) {
+    return t == ScalarType::f32 || t == ScalarType::f64;
+}
+bool is_signed(ScalarType t) {
+    return t == ScalarType::i8 || t == ScalarType::i16 || t == ScalarType::i32 || t == ScalarType::i64;
+}
+/// Whether `wide` can hold every value of `narrow`.
+bool holds(ScalarType wide, ScalarType narrow) {
+    if (wide == narrow) return true;
+    const size_t w = scalar_bytes(wide), n = scalar_bytes(narrow);
+    if (is_float(wide)) return w > n;  // f64 holds f32 and integers up to 32 bits, f32 those up to 16
+    if (is_float(narrow)) return false;
+    return w > n && (is_signed(wide) || !is_signed(narrow));
+}
+
+Schema fields_of(const Header& header) {
+    Header bare;
+    bare.point_format = header.point_format;
+    bare.record_length = record_bytes(header.point_format);
+    return make_schema(bare);
+}
+
+/// Whether a field of a point format takes the attribute as it is.
+bool has_field(const Schema& fields, const Attribute& attribute) {
+    const Attribute* field = fields.find(attribute.name);
+    return field && field->components == attribute.components && holds(field->type, attribute.type);
+}
+
+/// Names that LAS readers give the fields of a record, in any case, and those that we give them. Colour is
+/// three to others and one to us.
+bool is_reserved(const Schema& fields, std::string_view name) {
+    constexpr std::array<std::string_view, 24> kDimensions = {"x",
+                                                              "y",
+                                                              "z",
+                                                              "intensity",
+                                                              "bit_fields",
+                                                              "raw_classification",
+                                                              "classification_flags",
+                                                              "return_number",
+                                                              "number_of_returns",
+                                                              "synthetic",
+                                                              "key_point",
+                                                              "withheld",
+                                                              "overlap",
+                                                              "scanner_channel",
+                                                              "scan_direction_flag",
+                                                              "edge_of_flight_line",
+                                                              "classification",
+                                                              "user_data",
+                                                              "scan_angle",
+                                                              "point_source_id",
+                                                              "gps_time",
+                                                              "red",
+                                                              "green",
+                                                              "blue"};
+    std::string lower(name);
+    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return lower == names::nir ||
+           std::find(kDimensions.begin(), kDimensions.end(), lower) != kDimensions.end() ||
+           (name != names::color && fields.find(name));
+}
+
+/// The source's own entry of the extra bytes record for an attribute of this name; empty where it had none.
+std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribute, const std::string& name) {
+    for (size_t at = 0; kept && kept->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
+        const auto entry = std::span(kept->data).subspan(at, kDescriptorBytes);
+        const auto type = extra_type(entry);
+        if (printable(extra_name(entry)) == name && type && type->type == attribute.type &&
+            type->components == attribute.components)
+            return entry;
+    }
+    return {};
+}
+
+/// The entry of the extra bytes record for an attribute: the source's own where it had one.
+Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attribute& attribute,
+                                             const Schema& fields, const Vlr* kept) {
+    auto own = kept_entry(kept, attribute, attribute.name);
+    const bool original = is_reserved(fields, attribute.name) && (own.empty() || fields.find(attribute.name));
+    const std::string name = original ? std::string(kOriginalPrefix) + attribute.name : attribute.name;
+    if (original) own = kept_entry(kept, attribute, name);
+    if (!own.empty()) return std::vector<std::byte>(own.begin(), own.end());
+    std::vector<std::byte> entry(kDescriptorBytes);
+    const size_t bytes = attribute.bytes();
+    if (attribute.components <= 3) {
+        store(&entry[2],
+              static_cast<uint8_t>(static_cast<unsigned>(attribute.type) + 10 * (attribute.components - 1)));
+    } else if (bytes <= 255) {
+        store(&entry[3], static_cast<uint8_t>(bytes));  // undocumented: its size instead of its type
+    } else {
+        return failed(path,
+                      fmt::format("LAS cannot hold the attribute {} of {} bytes", attribute.name, bytes),
+                      "choose PLY");
+    }
+    std::memcpy(&entry[4], name.data(), std::min(kNameBytes, name.size()));
+    if (original)
+        std::memcpy(&entry[kDescriptionAt], kOriginalDescription.data(), kOriginalDescription.size());
+    return entry;
+}
+
+/// The record, made if it is not there yet.
+Vlr& extra_record(Header& header) {
+    const auto found = std::find_if(header.vlrs.begin(), header.vlrs.end(),
+                                    [](const Vlr& v) { return v.is(kSpecUser, kExtraBytesRecord); });
+    if (found != header.vlrs.end()) return *found;
+    header.vlrs.push_back({std::string(kSpecUser), kExtraBytesRecord, "", false, {}});
+    return header.vlrs.back();
+}
+
+}  // namespace
+
+ExtraName name_of_extra(const Schema& fields, std::span<const std::byte> descriptor) {
+    const std::string name = extra_name(descriptor);
+    const std::string_view description(reinterpret_cast<const char*>(&descriptor[kDescriptionAt]),
+                                       kOriginalDescription.size());
+    if (!name.starts_with(kOriginalPrefix) || description != kOriginalDescription) return {name};
+    std::string own = name.substr(kOriginalPrefix.size());
+    return is_reserved(fields, own) ? ExtraName{std::move(own), true} : ExtraName{name};
+}
+
+const Attribute* field_of(const Schema& schema, std::string_view name) {
+    const Attribute* near = schema.find(std::string(kNearPrefix) + std::string(name));
+    const Attribute* plain = schema.find(name);
+    return near && plain && near->offset < plain->offset ? near : plain;
+}
+
+std::vector<Attribute> extra_attributes(const Header& header, const Schema& schema) {
+    const Schema fields = fields_of(header);
+    std::vector<Attribute> extra;
+    for (const Attribute& a : schema.attributes) {
+        Attribute plain = a;
+        if (a.name.starts_with(kNearPrefix)) {
+            plain.name = a.name.substr(kNearPrefix.size());
+            const Attribute* original = schema.find(plain.name);
+            if (original && !has_field(fields, *original) && has_field(fields, plain)) continue;
+        }
+        if (!has_field(fields, a)) extra.push_back(a);
+    }
+    std::stable_partition(extra.begin(), extra.end(),
+                          [](const Attribute& a) { return a.name != "extra_bytes"; });
+    return extra;
+}
+
+Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra) {
+    const Schema fields = fields_of(header);
+    std::vector<std::byte> described;
+    size_t bytes = record_bytes(header.point_format);
+    for (const Attribute& a : extra) {
+        bytes += a.bytes();
+        if (a.name == "extra_bytes" && a.type == ScalarType::u8) continue;
+        LUCARNE_ASSIGN(const auto entry,
+                       descriptor_of(path, a, fields, header.find(kSpecUser, kExtraBytesRecord)));
+        described.insert(described.end(), entry.begin(), entry.end());
+    }
+    if (bytes > 0xffff || described.size() > 0xffff)
+        return failed(path, "has more attributes than a LAS record can hold", "choose PLY");
+    header.record_length = static_cast<uint16_t>(bytes);
+    if (described.empty())
+        std::erase_if(header.vlrs, [](const Vlr& v) { return v.is(kSpecUser, kExtraBytesRecord); });
+    else
+        extra_record(header).data = std::move(described);
+    return {};
+}
+
+}  // namespace lucarne::io::las

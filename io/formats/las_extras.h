@@ -1,0 +1,30 @@
+#pragma once
+
+#include "io/formats/las_layout.h"
+
+// What a point format has no field for, or none of its type: the extra bytes of a record, and what they are
+// called. An attribute whose field cannot hold it (an intensity of floats) stands there whole, while the
+// field has what comes near. Other tools cannot tell two dimensions of one name apart, so the whole one is
+// called original_NAME in the file; our schema calls it NAME and the field las_NAME.
+namespace lucarne::io::las {
+
+inline constexpr std::string_view kNearPrefix = "las_";
+
+/// What make_schema calls an extra: NAME of an original_NAME of ours, else the entry's own name. `fields` are
+/// those of the point format.
+struct ExtraName {
+    std::string name;
+    bool original = false;
+};
+ExtraName name_of_extra(const Schema& fields, std::span<const std::byte> descriptor);
+
+/// The field of a schema of make_schema, also where an extra has taken its name.
+const Attribute* field_of(const Schema& schema, std::string_view name);
+
+/// The attributes of `schema` that go to extra bytes, in record order; bytes that nobody described come last.
+std::vector<Attribute> extra_attributes(const Header& header, const Schema& schema);
+
+/// Sets the header's record length and its record of extra bytes. Errors: more than LAS can hold.
+Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra);
+
+}  // namespace lucarne::io::las
