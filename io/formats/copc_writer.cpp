@@ -11,7 +11,6 @@ namespace lucarne::io::copc {
 namespace {
 
 constexpr uint64_t kEvlrHeader = 60;
-constexpr uint16_t kWktBit = 1 << 4;  ///< must be set with point formats 6 and up; copclib insists
 /// A page holds so many levels of a subtree: at most 585 nodes and 4096 references, 150 KB.
 constexpr uint32_t kPageLevels = 4;
 
@@ -94,7 +93,6 @@ Result<std::unique_ptr<NodeWriter>> NodeWriter::create(const std::filesystem::pa
                                                        const Schema& schema, const ScanInfo& info,
                                                        const WriteOptions& options, const Info& cube) {
     LUCARNE_ASSIGN(auto target, las::make_target(path.string(), schema, info, options, true));
-    target.header.global_encoding |= kWktBit;
     auto& records = target.header.vlrs;
     std::erase_if(records, [](const las::Vlr& vlr) { return vlr.user_id == kUser; });
     records.insert(records.begin(), info_record(cube));

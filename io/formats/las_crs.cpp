@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include "io/core/log.h"
 
 namespace lucarne::io::las {
@@ -121,6 +124,52 @@ CoordinateSystem coordinate_system(const Header& header) {
         if (system.name.empty()) system.name = keys.names[i];
     system.epsg = code == kUserDefined ? 0 : code;
     return system;
+}
+
+std::vector<Vlr> projection_records(const nlohmann::json& details) {
+    if (!details.is_object()) return {};
+    const bool merged = details.contains("projection");
+    if (merged || details.value("format", nlohmann::json()) == "las") {
+        auto records =
+            records_from_json(details.value(merged ? "projection" : "records", nlohmann::json::array()));
+        if (!records) return {};
+        std::erase_if(*records, [](const Vlr& v) { return v.user_id != kProjectionUser; });
+        return std::move(*records);
+    }
+    const auto text = details.value("coordinate_system", nlohmann::json());
+    if (!text.is_string() || wkt_system(text.get<std::string>()).name.empty()) return {};
+    return {wkt_record(text.get<std::string>())};
+}
+
+void set_projection(Header& header, std::vector<Vlr> records) {
+    std::erase_if(header.vlrs, [](const Vlr& v) { return v.user_id == kProjectionUser; });
+    for (Vlr& record : records) header.vlrs.push_back(std::move(record));
+    if (!header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) return;
+    header.global_encoding |= kWktBit;
+    header.minor = 4;
+}
+
+Vlr wkt_record(const std::string& wkt) {
+    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // with its final zero
+    return {std::string(kProjectionUser), kWktRecord, "coordinate system", bytes.size() > 0xffff,
+            std::vector<std::byte>(bytes.begin(), bytes.end())};
+}
+
+void prefer_wkt(const std::string& file, Header& header) {
+    header.global_encoding |= kWktBit;
+    const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
+    if (!keys || header.find(kProjectionUser, kWktRecord)) return;
+    const CoordinateSystem system = coordinate_system(header);
+    const auto unit = geotiff_metres_per_unit(keys->data, {});
+    const auto wkt = unit.value_or(1.0) == 1.0 ? utm_wkt(system.epsg) : std::nullopt;
+    if (wkt)
+        header.vlrs.push_back(wkt_record(*wkt));
+    else
+        log::warn(
+            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read nothing but well-known "
+            "text do "
+            "not see it",
+            file, system.epsg ? fmt::format("EPSG:{}", system.epsg) : system.name);
 }
 
 }  // namespace lucarne::io::las

@@ -8,14 +8,33 @@
 
 namespace lucarne::io::las {
 
-nlohmann::json to_details(const Header& h) {
+nlohmann::json records_to_json(const std::vector<Vlr>& vlrs) {
     nlohmann::json records = nlohmann::json::array();
-    for (const Vlr& vlr : h.vlrs)
+    for (const Vlr& vlr : vlrs)
         records.push_back({{"user_id", vlr.user_id},
                            {"record_id", vlr.record_id},
                            {"description", vlr.description},
                            {"extended", vlr.extended},
                            {"data", to_base64(vlr.data)}});
+    return records;
+}
+
+std::optional<std::vector<Vlr>> records_from_json(const nlohmann::json& records) try {
+    std::vector<Vlr> vlrs;
+    for (const auto& record : records) {
+        auto data = from_base64(record.at("data").get<std::string>());
+        const auto id = record.at("record_id").get<uint64_t>();
+        if (!data || id > 0xffff) return std::nullopt;
+        vlrs.push_back({record.at("user_id").get<std::string>(), static_cast<uint16_t>(id),
+                        record.at("description").get<std::string>(), record.at("extended").get<bool>(),
+                        std::move(*data)});
+    }
+    return vlrs;
+} catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+}
+
+nlohmann::json to_details(const Header& h) {
     return {{"format", "las"},
             {"minor_version", h.minor},
             {"point_format", h.point_format},
@@ -29,7 +48,7 @@ nlohmann::json to_details(const Header& h) {
             {"creation_year", h.creation_year},
             {"scale", {h.scale.x, h.scale.y, h.scale.z}},
             {"offset", {h.offset.x, h.offset.y, h.offset.z}},
-            {"records", std::move(records)}};
+            {"records", records_to_json(h.vlrs)}};
 }
 
 Result<Header> from_details(const std::string& file, const nlohmann::json& details) try {
@@ -52,14 +71,9 @@ Result<Header> from_details(const std::string& file, const nlohmann::json& detai
     const auto guid = from_base64(details.at("guid").get<std::string>());
     if (!guid || guid->size() != h.guid.size()) throw std::out_of_range("guid");
     std::memcpy(h.guid.data(), guid->data(), h.guid.size());
-    for (const auto& record : details.at("records")) {
-        auto data = from_base64(record.at("data").get<std::string>());
-        const auto id = record.at("record_id").get<uint64_t>();
-        if (!data || id > 0xffff) throw std::out_of_range("records");
-        h.vlrs.push_back({record.at("user_id").get<std::string>(), static_cast<uint16_t>(id),
-                          record.at("description").get<std::string>(), record.at("extended").get<bool>(),
-                          std::move(*data)});
-    }
+    auto records = records_from_json(details.at("records"));
+    if (!records) throw std::out_of_range("records");
+    h.vlrs = std::move(*records);
     if (record_bytes(h.point_format) == 0 || h.record_length < record_bytes(h.point_format))
         throw std::out_of_range("point_format");
     return h;

@@ -93,6 +93,9 @@ inline constexpr uint64_t kMostPointsAByte = 1000;
 /// `info.details`: what a later export needs to write the same header again.
 nlohmann::json to_details(const Header& header);
 Result<Header> from_details(const std::string& file, const nlohmann::json& details);
+/// Of `details`: the records. Empty where it is none of ours.
+nlohmann::json records_to_json(const std::vector<Vlr>& vlrs);
+std::optional<std::vector<Vlr>> records_from_json(const nlohmann::json& records);
 /// Where the integers of a scan's file stood; empty where it was no LAS.
 std::optional<Lattice> lattice_of(const ScanInfo& scan);
 

@@ -11,6 +11,7 @@
 #include "io/formats/format.h"
 #include "io/formats/las_crs.h"
 #include "io/formats/las_extras.h"
+#include "io/formats/merged_info.h"
 #include "io/formats/stations.h"
 #include "io/formats/value_range.h"
 
@@ -18,7 +19,6 @@ namespace lucarne::io::las {
 namespace {
 
 constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
-constexpr uint16_t kWktBit = 1 << 4;
 
 /// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
 void choose_format(Header& header, const Schema& schema, bool from_las, bool compress) {
@@ -33,7 +33,6 @@ void choose_format(Header& header, const Schema& schema, bool from_las, bool com
     const bool color = has(names::color) || (from_las && has_color(header.point_format));
     const bool nir = has(names::nir) || (from_las && header.point_format == 8);
     if (extended) {
-        if (!from_las) header.global_encoding |= kWktBit;
         header.minor = 4;
         header.point_format = nir ? 8 : color ? 7 : 6;
     } else {
@@ -104,6 +103,13 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
     if (record.extended) header.minor = 4;
 }
 
+/// The coordinate system of what is no LAS, or of several scans.
+void state_system(const std::string& path, Header& header, const nlohmann::json& details, bool from_las) {
+    if (const auto note = details.value(kSystemNote, nlohmann::json()); note.is_string())
+        log::warn("{}: {}", path, note.get<std::string>());
+    if (!from_las || details.contains("projection")) set_projection(header, projection_records(details));
+}
+
 /// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
 /// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
 void state_unit(const std::string& path, Header& header, double metres) {
@@ -116,12 +122,7 @@ void state_unit(const std::string& path, Header& header, double metres) {
     }
     const std::string wkt = fmt::format(
         R"(LOCAL_CS["local",LOCAL_DATUM["local",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres);
-    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // with its final zero
-    Vlr& record = record_of(header, kProjectionUser, kWktRecord);
-    record.description = "coordinate system";
-    record.data.assign(bytes.begin(), bytes.end());
-    header.global_encoding |= kWktBit;
-    header.minor = 4;
+    set_projection(header, {wkt_record(wkt)});
 }
 
 /// What a field gets that nothing of its name and type is for: what comes near, or follows from another.
@@ -223,10 +224,13 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
         header.software = "Lucarne";
     }
     header.compressed = compress;
+    const bool was_extended = from_las && extended_format(header.point_format);
     choose_format(header, schema, from_las, compress);
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
+    if (details.is_object()) state_system(path, header, details, from_las);
     state_unit(path, header, info.metres_per_unit);
+    if (extended_format(header.point_format) && (compress || !was_extended)) prefer_wkt(path, header);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <span>
 
+#include <fmt/format.h>
+
 namespace lucarne::io {
 namespace {
 
@@ -109,6 +111,38 @@ CoordinateSystem wkt_system(std::string_view wkt) {
     const bool compound = wkt.find("COMPD_CS") != wkt.npos || wkt.find("COMPOUNDCRS") != wkt.npos;
     if (system.epsg == 0 && compound) system.epsg = horizontal;
     return system;
+}
+
+std::optional<std::string> utm_wkt(uint32_t epsg) {
+    struct Datum {
+        uint32_t first, zone, zones;  ///< code of the first zone, its number, how many
+        char half;                    ///< N or S of the equator
+        const char *name, *datum, *spheroid;
+        uint32_t code, datum_code;
+    };
+    constexpr const char* kWgs = R"("WGS 84",6378137,298.257223563,AUTHORITY["EPSG","7030"])";
+    constexpr const char* kGrs = R"("GRS 1980",6378137,298.257222101,AUTHORITY["EPSG","7019"])";
+    constexpr std::array kDatums = {
+        Datum{32601, 1, 60, 'N', "WGS 84", "WGS_1984", kWgs, 4326, 6326},
+        Datum{32701, 1, 60, 'S', "WGS 84", "WGS_1984", kWgs, 4326, 6326},
+        Datum{25828, 28, 11, 'N', "ETRS89", "European_Terrestrial_Reference_System_1989", kGrs, 4258, 6258},
+        Datum{26901, 1, 23, 'N', "NAD83", "North_American_Datum_1983", kGrs, 4269, 6269}};
+    for (const Datum& d : kDatums) {
+        if (epsg < d.first || epsg >= d.first + d.zones) continue;
+        const uint32_t zone = d.zone + epsg - d.first;
+        return fmt::format(
+            R"(PROJCS["{0} / UTM zone {1}{2}",GEOGCS["{0}",DATUM["{3}",SPHEROID[{4}],AUTHORITY["EPSG","{5}"]],)"
+            R"(PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],)"
+            R"(UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","{6}"]],)"
+            R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
+            R"(PARAMETER["central_meridian",{7}],PARAMETER["scale_factor",0.9996],)"
+            R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",{8}],)"
+            R"(UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["Easting",EAST],AXIS["Northing",NORTH],)"
+            R"(AUTHORITY["EPSG","{9}"]])",
+            d.name, zone, d.half, d.datum, d.spheroid, d.datum_code, d.code, 6 * static_cast<int>(zone) - 183,
+            d.half == 'S' ? 10'000'000 : 0, epsg);
+    }
+    return std::nullopt;
 }
 
 }  // namespace lucarne::io

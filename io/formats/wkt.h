@@ -20,4 +20,8 @@ struct CoordinateSystem {
 /// part.
 CoordinateSystem wkt_system(std::string_view wkt);
 
+/// The text (WKT 1) of the UTM zones of WGS 84 (EPSG 32601 to 32660 and 32701 to 32760), ETRS89 (25828 to 25838) and
+/// NAD83 (26901 to 26923), whose parameters follow from their number. Empty for other codes.
+std::optional<std::string> utm_wkt(uint32_t epsg);
+
 }  // namespace lucarne::io

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/formats/merged_info.h"
 #include "io/formats/scan.h"
 
 namespace lucarne::octree {
@@ -71,6 +72,12 @@ void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit) {
     if (metres_per_unit != 1.0 && scan.declared_points > 0 && !io::states_unit(scan))
         log::warn("{}: does not say its unit; that of the others is assumed, {} m (--unit can say otherwise)",
                   scan.path, metres_per_unit);
+}
+
+void warn_of_systems(const Unifier& inputs) {
+    std::vector<io::ScanInfo> scans;
+    for (size_t i = 0; i < inputs.inputs(); ++i) scans.push_back(inputs.source(i).info());
+    if (const std::string differ = io::different_systems(scans); !differ.empty()) log::warn("{}", differ);
 }
 
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {

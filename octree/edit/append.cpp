@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 
 #include "io/core/log.h"
+#include "io/formats/merged_info.h"
 #include "io/formats/scan.h"
 #include "octree/attributes.h"
 #include "octree/build/build_inputs.h"
@@ -127,10 +128,13 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     const auto& before = opened.cache->header();
     const CacheSchema cache(*opened.cache);
     std::vector<const io::PointSource*> sources{&cache};
+    std::vector<io::ScanInfo> all = before.scans;
     for (const auto* scan : scans) {
         LUCARNE_TRY(check_unit(scan->info(), before.metres_per_unit, "the cache has"));
         sources.push_back(scan);
+        all.push_back(scan->info());
     }
+    if (const std::string differ = io::different_systems(all); !differ.empty()) log::warn("{}", differ);
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
     for (const auto* scan : scans) warn_of_assumed_unit(scan->info(), before.metres_per_unit);

@@ -5,6 +5,7 @@
 
 #include "io/core/progress.h"
 #include "io/formats/copc_writer.h"
+#include "io/formats/merged_info.h"
 #include "octree/attributes.h"
 #include "octree/build/node_sampler.h"
 #include "octree/build/unify.h"
@@ -48,12 +49,7 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : sou
     if (options.normals) estimated_ = header.schema.find(io::names::normal_oct);
     if (estimated_) schema_.add(std::string(io::names::normal), io::ScalarType::f32, 3);
 
-    if (!header.scans.empty()) info_ = header.scans[0];
-    const auto same = [&](const io::ScanInfo& scan) { return scan.format == info_.format; };
-    if (!std::all_of(header.scans.begin(), header.scans.end(), same)) info_.details = "{}";
-    info_.stations.clear();
-    for (const auto& scan : header.scans)
-        info_.stations.insert(info_.stations.end(), scan.stations.begin(), scan.stations.end());
+    info_ = io::merged_info(header.scans);
     info_.declared_points = header.points;
     info_.metres_per_unit = header.metres_per_unit;
 }

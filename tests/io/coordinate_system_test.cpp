@@ -29,6 +29,20 @@ TEST(CoordinateSystem, OfACompoundWithoutACodeHasThatOfItsHorizontalPart) {
     EXPECT_EQ(wkt_system(R"(PROJCS["mine",GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]]])").epsg, 0u);
 }
 
+TEST(CoordinateSystem, OfUtmZonesIsTextThatSaysTheirCodeAndMeridian) {
+    for (const uint32_t code : {32601u, 32633u, 32660u, 32701u, 32760u, 25828u, 25838u, 26901u, 26923u}) {
+        const auto wkt = utm_wkt(code);
+        ASSERT_TRUE(wkt) << code;
+        EXPECT_EQ(wkt_system(*wkt).epsg, code);
+        EXPECT_EQ(wkt_metres_per_unit(*wkt), 1.0);
+    }
+    EXPECT_NE(utm_wkt(32633)->find(R"(["central_meridian",15])"), std::string::npos);
+    EXPECT_NE(utm_wkt(32733)->find(R"(["false_northing",10000000])"), std::string::npos);
+    EXPECT_EQ(wkt_system(*utm_wkt(25832)).name, "ETRS89 / UTM zone 32N");
+    for (const uint32_t code : {0u, 2903u, 32600u, 32661u, 32700u, 32761u, 25827u, 25839u, 26900u, 26924u})
+        EXPECT_FALSE(utm_wkt(code)) << code;
+}
+
 TEST(CoordinateSystem, OfAnyBytesIsNoHarm) {
     for (std::string text = kUtm; !text.empty(); text.pop_back()) {
         wkt_system(text);

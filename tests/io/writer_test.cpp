@@ -232,6 +232,32 @@ TEST_F(Writers, ScanAnglesInWholeDegreesFillTheFieldOfNewerFormatsAndStay) {
     EXPECT_EQ(value(**copy, "scan_angle_rank"), -90);
 }
 
+TEST_F(Writers, GeoTiffKeysOfUtmBecomeWellKnownTextInNewerFormatsAndOthersStay) {
+    for (const uint16_t code : {uint16_t{32633}, uint16_t{2903}}) {
+        LasFile file;
+        file.records = {record0(1, 2, 3)};
+        std::string keys;
+        for (const uint16_t n : {1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, static_cast<int>(code)})
+            testing::append(keys, n);
+        file.add_vlr("LASF_Projection", 34735, keys);
+        write_bytes(folder_ / "old.las", file.bytes());
+        const auto source = open_scan(folder_ / "old.las");
+        ASSERT_TRUE(source);
+        for (const std::string name : {"new.laz", "same.las"}) {
+            const auto all = read_all(**source);
+            const auto writer =
+                create_scan(folder_ / name, (*source)->schema(), (*source)->info(), {.overwrite = true});
+            ASSERT_TRUE(writer && (*writer)->write(all->bytes) && (*writer)->finish());
+            const std::string bytes = read_bytes(folder_ / name);
+            EXPECT_EQ(bytes.find("PROJCS[") != bytes.npos, code == 32633 && name == "new.laz") << name;
+            EXPECT_EQ((bytes[6] & 16) != 0, name == "new.laz");
+            const auto copy = open_scan(folder_ / name);
+            ASSERT_TRUE(copy);
+            EXPECT_EQ((*copy)->info().epsg, code);
+        }
+    }
+}
+
 TEST_F(Writers, ColoursOfAnyTypeAreSpreadOver16BitsInLas) {
     struct Case {
         ScalarType type;

@@ -6,7 +6,7 @@
 
 Every value of every attribute is compared, as sorted sets of points; of copclib's, node by node, whether all
 points lie in their voxel and the nodes are a tree; of laspy's CopcReader, queries by level and by box. The last
-file has enough levels for several pages of hierarchy.
+file has enough levels for several pages of hierarchy. What was no LAS is checked as laz_written.py does.
 """
 import pathlib
 import subprocess
@@ -16,7 +16,7 @@ import tempfile
 import copclib
 import laspy
 import numpy as np
-from laz_written import points
+from laz_written import check_foreign, points
 
 FILES = ["1.2-with-color.copc.laz", "autzen_trim.laz", "lone-star.copc.laz", "statue_lion_takanawa.copc.laz",
          "extrabytes.las", "test1_4.las", "autzen_trim_7.las", "4_6_crop.las"]
@@ -82,6 +82,9 @@ def check_copc_reader(path, original, names):
 
 program, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
 good = True
+for what, same in check_foreign(program, folder.resolve().parent, ".copc.laz"):
+    print(f"{what}: {'the same' if same else 'DIFFERENT'}", flush=True)
+    good &= bool(same)
 with tempfile.TemporaryDirectory() as scratch:
     deep = pathlib.Path(scratch) / "survey.las"
     run(program, "generate", "survey", "--points", "2M", "-o", deep)

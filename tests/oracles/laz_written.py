@@ -4,7 +4,9 @@
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install laspy==2.7.0 laszip lazrs numpy
     /tmp/oracle/bin/python tests/oracles/laz_written.py build/release/lucarne ../shared/data/las
 
-Every value of every attribute is compared, as sorted sets of points: a cache keeps no order.
+Every value of every attribute is compared, as sorted sets of points: a cache keeps no order. Of files that were no
+LAS: whether laspy opens them at all, their coordinates to the last digit of the text, their intensities, and the
+coordinate system of several.
 """
 import pathlib
 import subprocess
@@ -28,8 +30,50 @@ def points(las, names):
     return table[np.lexsort(table.T[::-1])]
 
 
+def convert_and_export(program, inputs, written, scratch, *options):
+    cache = f"{scratch}/foreign.luc"
+    for command in (["convert", *inputs, "-o", cache, "--normals", "none", "--overwrite", *options],
+                    ["export", cache, "-o", written, "--overwrite"]):
+        subprocess.run([str(part) for part in [program, *command]], check=True, stderr=subprocess.DEVNULL)
+    return laspy.read(written)
+
+
+def sorted_rows(table):
+    return table[np.lexsort(table.T[::-1])]
+
+
+def check_foreign(program, data, extension):
+    """What is no LAS, or several; yields what was checked and whether it is right."""
+    with tempfile.TemporaryDirectory() as scratch:
+        written = f"{scratch}/written{extension}"
+        rows = np.array([[500000.123, 5400000.456, 100.789], [500100.001, 5400250.25, 99.999]])
+        for offset in ([0, 0, 0], [2100000, -4200000, 300], [7150000, -4750000, 1e4]):  # UTM, Swiss, feet
+            text = f"{scratch}/rows.xyz"
+            np.savetxt(text, rows + offset, fmt="%.3f")
+            las = convert_and_export(program, [text], written, scratch)
+            same = np.array_equal(sorted_rows(np.rint(las.xyz * 1000)), sorted_rows(np.rint((rows + offset) * 1000)))
+            yield f"text at {offset}", same
+        for name, low, high in (("ptx_pts/test.pts", -2048, 2047), ("ptx_pts/no-color.ptx", 0, 1),
+                                ("e57/pump_155k_rgb_with_image.e57", 0, 1)):
+            las = convert_and_export(program, [data / name], written, scratch)
+            whole, near = np.asarray(las["original_intensity"], float), np.asarray(las.intensity, float)
+            wanted = (whole - low) / (high - low) * 65535
+            yield f"{name}, intensity", abs(wanted - near).max() < 0.501 and np.ptp(near) > 1000
+        pair = [data / "las/autzen_trim.las", data / "las/autzen_trim.laz"]
+        las = convert_and_export(program, pair, written, scratch)
+        records = {type(record).__name__ for record in las.header.vlrs}
+        yield "two files of one system", "WktCoordinateSystemVlr" in records and las.header.global_encoding.wkt
+        originals = np.concatenate([laspy.read(path).xyz for path in pair])
+        yield "two files, coordinates", np.array_equal(sorted_rows(np.rint(las.xyz * 100)), sorted_rows(np.rint(originals * 100)))
+        angles = np.asarray(las.scan_angle, int), np.rint(np.asarray(las["scan_angle_rank"], float) / 0.006).astype(int)
+        yield "scan angles in whole degrees", np.array_equal(*angles) and np.ptp(angles[0]) > 0
+
+
 def main(program, folder):
     good = True
+    for what, same in check_foreign(program, folder.parent, ".laz"):
+        print(f"{what}: {'the same' if same else 'DIFFERENT'}")
+        good &= bool(same)
     with tempfile.TemporaryDirectory() as scratch:
         for name in FILES:
             cache, written = scratch + "/cache.luc", scratch + "/written.laz"

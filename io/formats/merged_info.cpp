@@ -1,0 +1,105 @@
+#include "io/formats/merged_info.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/formats/las_crs.h"
+#include "io/formats/value_range.h"
+
+namespace lucarne::io {
+namespace {
+
+using json = nlohmann::json;
+
+/// Files without points decide nothing.
+bool says_system(const ScanInfo& scan) {
+    return scan.declared_points > 0 && (scan.epsg != 0 || !scan.coordinate_system.empty());
+}
+/// Codes tell more than names, which everybody writes otherwise.
+bool same_system(const ScanInfo& a, const ScanInfo& b) {
+    if (a.epsg && b.epsg) return a.epsg == b.epsg;
+    return a.coordinate_system == b.coordinate_system;
+}
+
+bool is_las(const json& details) {
+    return details.is_object() && details.value("format", json()) == "las";
+}
+
+json details_of(const ScanInfo& scan) {
+    return json::parse(scan.details, nullptr, false);
+}
+
+/// What is said of the system of all, into `details`, those of the first or none.
+void merge_systems(std::span<const ScanInfo> scans, json& details, ScanInfo& info) {
+    const auto giver = std::find_if(scans.begin(), scans.end(), says_system);
+    if (giver == scans.end()) return;
+    if (const std::string differ = different_systems(scans); !differ.empty()) {
+        details["projection"] = json::array();
+        details[kSystemNote] = differ + "; the file written says none";
+        info.coordinate_system.clear();
+        info.epsg = 0;
+        return;
+    }
+    if (giver != scans.begin() || !is_las(details))
+        details["projection"] = las::records_to_json(las::projection_records(details_of(*giver)));
+    info.coordinate_system = giver->coordinate_system;
+    info.epsg = giver->epsg;
+    const auto silent = std::find_if(scans.begin(), scans.end(), [](const ScanInfo& scan) {
+        return scan.declared_points > 0 && !says_system(scan);
+    });
+    if (silent != scans.end())
+        details[kSystemNote] = fmt::format("{} says no coordinate system and is taken to be in that of {}",
+                                           silent->path, giver->path);
+}
+
+}  // namespace
+
+std::string system_text(const ScanInfo& scan) {
+    if (!scan.epsg) return scan.coordinate_system;
+    const std::string code = fmt::format("EPSG:{}", scan.epsg);
+    return scan.coordinate_system.empty() ? code : fmt::format("{} ({})", code, scan.coordinate_system);
+}
+
+std::string different_systems(std::span<const ScanInfo> scans) {
+    const ScanInfo* first = nullptr;
+    for (const ScanInfo& scan : scans) {
+        if (!says_system(scan)) continue;
+        if (!first) first = &scan;
+        if (!same_system(*first, scan))
+            return fmt::format("coordinate systems differ: {} is in {}, {} in {}", first->path,
+                               system_text(*first), scan.path, system_text(scan));
+    }
+    return {};
+}
+
+ScanInfo merged_info(std::span<const ScanInfo> scans) {
+    if (scans.empty()) return {};
+    ScanInfo info = scans[0];
+    if (scans.size() == 1) return info;
+    json details = details_of(scans[0]);
+    bool all_las = is_las(details), same = details.is_object();
+    std::optional<Range> limits = stated_range(details);  // that hold for all, or none
+    for (const ScanInfo& scan : scans.subspan(1)) {
+        const json each = details_of(scan);
+        all_las = all_las && is_las(each);
+        same = same && scan.format == info.format && each.is_object();
+        const auto range = stated_range(each);
+        limits =
+            limits && range
+                ? std::optional(Range{std::min(limits->low, range->low), std::max(limits->high, range->high)})
+                : std::nullopt;
+    }
+    if (!all_las && !same) details = json::object();
+    details.erase(kIntensityLimits);
+    if (limits) details[kIntensityLimits] = {limits->low, limits->high};
+    merge_systems(scans, details, info);
+    info.details = details.dump(-1, ' ', false, json::error_handler_t::replace);
+    info.stations.clear();
+    for (const auto& scan : scans)
+        info.stations.insert(info.stations.end(), scan.stations.begin(), scan.stations.end());
+    return info;
+}
+
+}  // namespace lucarne::io

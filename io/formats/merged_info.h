@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "io/points.h"
+
+// What a file that holds the points of several scans can say of them all.
+namespace lucarne::io {
+
+/// In the details of merged_info: what a user has to know of its coordinate system.
+inline constexpr const char* kSystemNote = "system_note";
+
+/// "EPSG:2903, NAD83 / ..." as far as the scan says it; empty where it says nothing.
+std::string system_text(const ScanInfo& scan);
+
+/// One line that names the first two scans whose coordinate systems differ; empty where none do. A scan that
+/// says nothing differs from none.
+std::string different_systems(std::span<const ScanInfo> scans);
+
+/// The stations of all scans; the first's details (header, types) where all are of one format, LAS and LAZ
+/// being one; their coordinate system where they agree. Scans that differ in it leave none, those that say
+/// nothing are taken to be in that of the others; a note tells so.
+ScanInfo merged_info(std::span<const ScanInfo> scans);
+
+}  // namespace lucarne::io

@@ -1,0 +1,119 @@
+// What a file of several scans' points says of its coordinate system, types and stations.
+#include "io/formats/merged_info.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/io/io_testing.h"
+#include "tests/io/las_builder.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string system(int epsg) {
+    return "PROJCS[\"system " + std::to_string(epsg) + "\",UNIT[\"foot\",0.3048],AUTHORITY[\"EPSG\",\"" +
+           std::to_string(epsg) + "\"]]";
+}
+
+class MergedInfo : public ::testing::Test {
+ protected:
+    /// A LAS file of one point, in a system or none.
+    ScanInfo las(const std::string& name, int epsg) const {
+        testing::LasFile file;
+        file.minor = 4;
+        file.encoding = 16;
+        file.format = 6;
+        file.records = {testing::record6(1, 2, 3, 0, 0x11, 0, 0, 0, 0, 0, 0)};
+        if (epsg) file.add_vlr("LASF_Projection", 2112, system(epsg));
+        return read(name, file.bytes());
+    }
+    ScanInfo text(const std::string& name) const { return read(name, "1 2 3\n4 5 6\n"); }
+    /// What a file says that is written with what is merged.
+    ScanInfo written(std::span<const ScanInfo> scans, const std::string& name) const {
+        Schema schema;
+        schema.position = PositionType::i32_scaled;
+        schema.stride = 12;
+        ScanInfo info = merged_info(scans);
+        const auto writer = create_scan(folder_ / name, schema, info, {.overwrite = true});
+        EXPECT_TRUE(writer) << writer.error().line();
+        EXPECT_TRUE((*writer)->write(std::vector<std::byte>(12)) && (*writer)->finish());
+        const auto scan = open_scan(folder_ / name);
+        return scan ? (*scan)->info() : ScanInfo{};
+    }
+
+ private:
+    ScanInfo read(const std::string& name, const std::string& bytes) const {
+        testing::write_bytes(folder_ / name, bytes);
+        const auto scan = open_scan(folder_ / name);
+        if (!scan) ADD_FAILURE() << scan.error().line();
+        return scan ? (*scan)->info() : ScanInfo{};
+    }
+    const testing::TemporaryFolder folder_;
+};
+
+TEST_F(MergedInfo, ASystemThatAllScansHaveIsKept) {
+    const std::array scans = {las("a.las", 2903), las("b.las", 2903)};
+    EXPECT_EQ(different_systems(scans), "");
+    EXPECT_FALSE(merged_info(scans).details.find(kSystemNote) != std::string::npos);
+    for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u);
+}
+
+TEST_F(MergedInfo, SystemsThatDifferLeaveNoneAndAreNamedWithTheirFiles) {
+    const std::array scans = {las("a.las", 2903), las("b.las", 2904)};
+    const std::string differ = different_systems(scans);
+    for (const char* part : {"a.las", "b.las", "EPSG:2903", "EPSG:2904"})
+        EXPECT_THAT(differ, HasSubstr(part));
+    EXPECT_THAT(merged_info(scans).details, HasSubstr(kSystemNote));
+    const ScanInfo merged = written(scans, "m.las");
+    EXPECT_EQ(merged.epsg, 0u);
+    EXPECT_DOUBLE_EQ(merged.metres_per_unit, 0.3048);  // the unit they agree in
+}
+
+TEST_F(MergedInfo, AScanThatSaysNothingTakesTheSystemOfTheOthersWithANote) {
+    for (const bool first : {false, true}) {
+        std::array scans = {las("a.las", 2903), text("b.xyz")};
+        scans[1].metres_per_unit = 0.3048;  // as --unit ft
+        if (first) std::swap(scans[0], scans[1]);
+        EXPECT_EQ(different_systems(scans), "");
+        EXPECT_THAT(merged_info(scans).details, HasSubstr("b.xyz says no coordinate system"));
+        for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u) << first;
+    }
+}
+
+TEST_F(MergedInfo, TheSystemOfAnE57IsWellKnownTextInLas) {
+    ScanInfo e57;
+    e57.format = "E57 1.0, 1 scan";
+    e57.details = nlohmann::json{{"coordinate_system", system(25832)}}.dump();
+    e57.metres_per_unit = 0.3048;
+    const std::array one = {e57};
+    for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(one, name).epsg, 25832u) << name;
+    e57.details = R"({"coordinate_system":"nothing that is well known"})";
+    const std::array none = {e57};
+    EXPECT_EQ(written(none, "m.las").epsg, 0u);
+}
+
+TEST_F(MergedInfo, LimitsOfIntensitiesHoldForAllScansOrForNone) {
+    const auto limits = [](const char* text) {
+        ScanInfo info;
+        info.details = text;
+        return info;
+    };
+    const std::array both = {limits(R"({"intensity_limits":[0,1]})"),
+                             limits(R"({"intensity_limits":[-5,0.5]})")};
+    EXPECT_EQ(nlohmann::json::parse(merged_info(both).details)["intensity_limits"],
+              nlohmann::json({-5.0, 1.0}));
+    const std::array one = {both[0], limits("{}")};
+    EXPECT_FALSE(nlohmann::json::parse(merged_info(one).details).contains("intensity_limits"));
+}
+
+TEST_F(MergedInfo, StationsOfAllScansAreKept) {
+    std::array scans = {text("a.xyz"), text("b.xyz")};
+    for (ScanInfo& scan : scans) scan.stations = {{1, {1, 2, 3}}};
+    EXPECT_EQ(merged_info(scans).stations.size(), 2u);
+    EXPECT_TRUE(merged_info({}).stations.empty());
+}
+
+}  // namespace
+}  // namespace lucarne::io
