@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 #include <span>
 
 #include <fmt/format.h>
@@ -401,7 +400,7 @@ RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample) 
 std::string columns_text(const std::vector<Column>& columns) {
     constexpr size_t kShown = 40;
     std::string text;
-    for (const Column& c : columns | std::views::take(kShown)) {
+    for (const Column& c : std::span(columns).first(std::min(columns.size(), kShown))) {
         if (!text.empty()) text += ' ';
         text += c.name;
         if (c.type) text += fmt::format(":{}", scalar_name(*c.type));
