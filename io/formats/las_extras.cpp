@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 
 #include "io/formats/format.h"
+#include "io/formats/text.h"
 
 namespace lucarne::io::las {
 namespace {
 
 constexpr std::string_view kOriginalPrefix = "original_", kOriginalDescription = "lucarne: of its own type";
-constexpr size_t kNameBytes = 32, kDescriptionAt = 160;
+constexpr size_t kNameAt = 4, kNameBytes = 32, kDescriptionAt = 160;
 
 bool is_float(ScalarType t) {
     return t == ScalarType::f32 || t == ScalarType::f64;
@@ -75,27 +76,45 @@ bool is_reserved(const Schema& fields, std::string_view name) {
            (name != names::color && fields.find(name));
 }
 
-/// The source's own entry of the extra bytes record for an attribute of this name; empty where it had none.
-std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribute, const std::string& name) {
+/// The source's own entry of the extra bytes record for an attribute of this name, the `nth` of that name; empty where it
+/// had none.
+std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribute, std::string_view name,
+                                      size_t nth = 1) {
     for (size_t at = 0; kept && kept->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
         const auto entry = std::span(kept->data).subspan(at, kDescriptorBytes);
         const auto type = extra_type(entry);
-        if (printable(extra_name(entry)) == name && type && type->type == attribute.type &&
-            type->components == attribute.components)
-            return entry;
+        if (printable(extra_name(entry)) != name || --nth > 0) continue;
+        const bool same = type && type->type == attribute.type && type->components == attribute.components;
+        return same ? entry : std::span<const std::byte>();
     }
     return {};
+}
+
+/// That of an attribute whose name was numbered when it was read, as another or a field had it before: see unique_name.
+std::span<const std::byte> numbered_entry(const Vlr* kept, const Attribute& attribute, const Schema& fields) {
+    const size_t bar = attribute.name.rfind('_');
+    if (bar == std::string::npos) return {};
+    const auto name = std::string_view(attribute.name).substr(0, bar);
+    const auto number = parse_number<size_t>(std::string_view(attribute.name).substr(bar + 1));
+    if (!number || *number < 2) return {};
+    return kept_entry(kept, attribute, name, fields.find(name) ? *number - 1 : *number);
 }
 
 /// The entry of the extra bytes record for an attribute: the source's own where it had one.
 Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attribute& attribute,
                                              const Schema& fields, const Vlr* kept) {
     auto own = kept_entry(kept, attribute, attribute.name);
+    if (own.empty()) own = numbered_entry(kept, attribute, fields);
     const bool original = is_reserved(fields, attribute.name) && (own.empty() || fields.find(attribute.name));
     const std::string name = original ? std::string(kOriginalPrefix) + attribute.name : attribute.name;
     if (original) own = kept_entry(kept, attribute, name);
-    if (!own.empty()) return std::vector<std::byte>(own.begin(), own.end());
-    std::vector<std::byte> entry(kDescriptorBytes);
+    std::vector<std::byte> entry(own.begin(), own.end());
+    entry.resize(kDescriptorBytes);
+    if (own.empty() || printable(extra_name(own)) != name) {
+        std::fill_n(entry.begin() + kNameAt, kNameBytes, std::byte{0});
+        std::memcpy(&entry[kNameAt], name.data(), std::min(kNameBytes, name.size()));
+    }
+    if (!own.empty()) return entry;
     const size_t bytes = attribute.bytes();
     if (attribute.components <= 3) {
         store(&entry[2],
@@ -107,7 +126,6 @@ Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attr
                       fmt::format("LAS cannot hold the attribute {} of {} bytes", attribute.name, bytes),
                       "choose PLY");
     }
-    std::memcpy(&entry[4], name.data(), std::min(kNameBytes, name.size()));
     if (original)
         std::memcpy(&entry[kDescriptionAt], kOriginalDescription.data(), kOriginalDescription.size());
     return entry;

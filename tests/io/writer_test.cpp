@@ -258,6 +258,34 @@ TEST_F(Writers, GeoTiffKeysOfUtmBecomeWellKnownTextInNewerFormatsAndOthersStay) 
     }
 }
 
+TEST_F(Writers, ExtraBytesWhoseNamesWereTakenKeepTheirScales) {
+    testing::LasFile las;
+    const auto scaled = [](const char* name, double scale) {
+        std::string entry = extra_descriptor(3, name, 8);  // u16, whose scale counts
+        put(entry, 112, scale);
+        return entry;
+    };
+    las.add_vlr("LASF_Spec", 4, scaled("Amp", 0.01) + scaled("Amp", 0.5) + scaled("intensity", 0.25));
+    las.records = {record0(1, 2, 3) + raw<uint16_t>(10) + raw<uint16_t>(20) + raw<uint16_t>(30)};
+    write_bytes(folder_ / "in.las", las.bytes());
+    const auto in = open_scan(folder_ / "in.las");
+    ASSERT_TRUE(in) << in.error().line();
+    Points points(PositionType::i32_scaled);
+    points.schema = (*in)->schema();
+    points.bytes = read_all(**in)->bytes;
+    for (const char* name : {"out.las", "out.laz"}) {
+        const auto out = written(name, points, (*in)->info());
+        EXPECT_EQ(value(*out, "Amp_2"), 20);
+        EXPECT_EQ(value(*out, "intensity_2"), 30);
+        const std::string bytes = read_bytes(folder_ / name);
+        for (const auto& [entry, scale] : {std::pair("Amp", 0.01), {"Amp_2", 0.5}, {"intensity_2", 0.25}}) {
+            const size_t at = bytes.find(extra_descriptor(3, entry, 8).substr(0, 36));
+            ASSERT_NE(at, std::string::npos) << entry;
+            EXPECT_EQ(load<double>(reinterpret_cast<const std::byte*>(&bytes[at + 112])), scale) << entry;
+        }
+    }
+}
+
 TEST_F(Writers, ColoursOfAnyTypeAreSpreadOver16BitsInLas) {
     struct Case {
         ScalarType type;
