@@ -12,7 +12,6 @@
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 #include "io/formats/mesh/sampler.h"
-#include "io/formats/mesh/triangulate.h"
 #include "io/image/image.h"
 #include "tests/io/scan_text.h"
 
@@ -529,62 +528,6 @@ TEST_F(MeshScan, ChangedBytesNeverCrash) {
             bytes[mix64(round, k) % bytes.size()] = "0123456789-/. \nefvx"[mix64(round, k + 9) % 19];
         (void)try_read(bytes, about(500));
     }
-}
-
-TEST(Triangulate, EarsCoverPolygonsWithHolesJoinedByABridge) {
-    // A square of 4 with a square hole of 1, the bridge walked twice.
-    const std::vector<glm::dvec3> polygon = {{0, 0, 7},    {2, 0, 7},   {2, 2, 7},    {0, 2, 7},
-                                             {0, 0, 7},    {.5, .5, 7}, {.5, 1.5, 7}, {1.5, 1.5, 7},
-                                             {1.5, .5, 7}, {.5, .5, 7}};
-    std::vector<std::array<uint32_t, 3>> triangles;
-    ASSERT_TRUE(mesh::triangulate(polygon, triangles));
-    double area = 0;
-    for (const auto& [a, b, c] : triangles) {
-        const double twice = glm::cross(polygon[b] - polygon[a], polygon[c] - polygon[a]).z;
-        EXPECT_GE(twice, 0);
-        area += twice / 2;
-    }
-    EXPECT_NEAR(area, 3, 1e-12);
-}
-
-TEST(Triangulate, EarsCoverAnyPolygonThatDoesNotCrossItself) {
-    Random random(5);
-    for (int round = 0; round < 200; ++round) {
-        // Around the origin, in order of direction, at any distance.
-        const int corners = 4 + static_cast<int>(random.next() % 253);
-        std::vector<glm::dvec3> polygon;
-        double area = 0;
-        for (int i = 0; i < corners; ++i) {
-            const double angle = 2 * std::acos(-1.0) * i / corners, far = 0.05 + random.uniform();
-            polygon.emplace_back(far * std::cos(angle), far * std::sin(angle), 0);
-        }
-        for (size_t i = 0; i < polygon.size(); ++i)
-            area += glm::cross(polygon[i], polygon[(i + 1) % polygon.size()]).z / 2;
-        std::vector<std::array<uint32_t, 3>> triangles;
-        ASSERT_TRUE(mesh::triangulate(polygon, triangles));
-        ASSERT_EQ(triangles.size(), polygon.size() - 2);
-        double covered = 0;
-        for (const auto& [a, b, c] : triangles) {
-            const double twice = glm::cross(polygon[b] - polygon[a], polygon[c] - polygon[a]).z;
-            ASSERT_GE(twice, 0) << "turned over";
-            covered += twice / 2;
-        }
-        ASSERT_NEAR(covered, area, 1e-9);
-    }
-}
-
-TEST(Triangulate, APolygonThatCrossesItselfGetsATriangleACornerStill) {
-    Random random(7);
-    std::vector<glm::dvec3> polygon;
-    for (size_t i = 0; i < mesh::kMostEarCorners; ++i)
-        polygon.emplace_back(random.uniform(), random.uniform(), random.uniform());
-    std::vector<std::array<uint32_t, 3>> triangles;
-    EXPECT_TRUE(mesh::triangulate(polygon, triangles));
-    EXPECT_EQ(triangles.size(), polygon.size() - 2);
-    std::vector<int> used(polygon.size());
-    for (const auto& triangle : triangles)
-        for (const uint32_t corner : triangle) ++used[corner];
-    EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0);
 }
 
 class SharedMeshes : public MeshScan {};
