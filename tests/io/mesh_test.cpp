@@ -177,6 +177,20 @@ TEST_F(MeshScan, SamplesAreSpreadByAreaWhateverTheTrianglesSize) {
     EXPECT_LT(chi, 200);
 }
 
+TEST_F(MeshScan, ASliverIsSampledAlongItsLength) {
+    // As wide as a hundredth of the spacing, slanting through blocks that are empty but for it.
+    read("v 0 0 0\nv 1 1 1\nv 1 1 1.00001\nf 1 2 3\n", every(1e-3));
+    std::vector<glm::dvec3> at;
+    for (size_t i = 0; i < points(); ++i) at.push_back(position(i));
+    // What area it has is that of 7 samples; they stand anywhere along it, each at its distance from the others.
+    EXPECT_GT(at.size(), 7u);
+    EXPECT_LT(at.size(), 8 * 8u);
+    for (size_t i = 0; i < at.size(); ++i) {
+        EXPECT_LT(std::max(std::abs(at[i].x - at[i].y), std::abs(at[i].x - at[i].z)), 2e-5);
+        for (size_t k = 0; k < i; ++k) EXPECT_GT(glm::distance(at[i], at[k]), .75e-3);
+    }
+}
+
 TEST_F(MeshScan, BothSidesOfAThinWallAreSampledInFull) {
     const std::string wall = kSquare + "v 0 0 0.001\nv 1 0 0.001\nv 1 1 0.001\nv 0 1 0.001\nf 8 7 6 5\n";
     read(wall, every(0.02));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <unordered_map>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,11 +30,13 @@ constexpr uint64_t kSeed = 0x6d657368;
 
 bool overlap(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& box_low,
              const glm::dvec3& box_high) {
-    return glm::all(glm::lessThanEqual(low, box_high)) && glm::all(glm::greaterThanEqual(high, box_low));
+    return low.x <= box_high.x && low.y <= box_high.y && low.z <= box_high.z && high.x >= box_low.x &&
+           high.y >= box_low.y && high.z >= box_low.z;
 }
 bool inside(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& box_low,
             const glm::dvec3& box_high) {
-    return glm::all(glm::greaterThanEqual(low, box_low)) && glm::all(glm::lessThanEqual(high, box_high));
+    return low.x >= box_low.x && low.y >= box_low.y && low.z >= box_low.z && high.x <= box_high.x &&
+           high.y <= box_high.y && high.z <= box_high.z;
 }
 using Points = std::array<glm::dvec3, 3>;
 glm::dvec3 low_of(const Points& p) {
@@ -48,17 +51,24 @@ size_t widest(double a, double b, double c) {
     return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
 }
 
-/// Whether a triangle may reach into a box: never wrongly not.
+/// Whether a triangle reaches into a box, or misses it by less than rounding tells: they do not where an axis parts
+/// them, one of the box, the normal, or across an edge of each (Akenine-Moeller 2001, "Fast 3D triangle-box overlap
+/// testing").
 bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
-    const glm::dvec3 from = low_of(p), to = high_of(p);
-    if (!overlap(from, to, low, high)) return false;
-    if (inside(from, to, low, high) || glm::all(glm::lessThan(to - from, (high - low) * 0.25))) return true;
-    const auto squared = [](const glm::dvec3& v) { return glm::dot(v, v); };
-    const size_t tip = widest(squared(p[2] - p[1]), squared(p[0] - p[2]), squared(p[1] - p[0]));
-    const size_t next = (tip + 1) % 3, last = (tip + 2) % 3;
-    const glm::dvec3 middle = (p[next] + p[last]) * 0.5;
-    if (middle == p[next] || middle == p[last]) return true;
-    return touches({p[tip], p[next], middle}, low, high) || touches({p[tip], middle, p[last]}, low, high);
+    if (!overlap(low_of(p), high_of(p), low, high)) return false;
+    const glm::dvec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
+    const Points q = {p[0] - middle, p[1] - middle, p[2] - middle};
+    const auto parts = [&](const glm::dvec3& axis) {
+        const double a = glm::dot(axis, q[0]), b = glm::dot(axis, q[1]), c = glm::dot(axis, q[2]);
+        const double reach = glm::dot(glm::abs(axis), half);
+        const double rounded = 1e-12 * (std::abs(a) + std::abs(b) + std::abs(c));
+        return std::min({a, b, c}) > reach + rounded || std::max({a, b, c}) < -reach - rounded;
+    };
+    const Points edges = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
+    if (parts(glm::cross(edges[0], edges[1]))) return false;
+    for (const glm::dvec3& e : edges)
+        if (parts({0, -e.z, e.y}) || parts({e.z, 0, -e.x}) || parts({-e.y, e.x, 0})) return false;
+    return true;
 }
 
 /// Sorts numbers that are spread evenly over 64 bits: into as many buckets first.
@@ -74,6 +84,19 @@ void spread_sort(std::vector<uint64_t>& numbers) {
         std::sort(&sorted[0] + begin, &sorted[0] + end[i]);
     numbers = std::move(sorted);
 }
+
+/// Numbers of a region's cells, 0 at first. Slivers leave nearly all cells empty: then only those that are used are kept.
+template <class T>
+class CellNumbers {
+ public:
+    CellNumbers(size_t cells, size_t candidates) : dense_(candidates * kCrowded < cells ? 0 : cells) {}
+    T& operator[](uint32_t cell) { return dense_.empty() ? sparse_[cell] : dense_[cell]; }
+
+ private:
+    static constexpr size_t kCrowded = 32;  ///< cells that are cleared in the time that a candidate takes
+    std::vector<T> dense_;
+    std::unordered_map<uint32_t, T> sparse_;
+};
 
 }  // namespace
 
@@ -104,7 +127,7 @@ struct Sampler::Candidates {
     /// Sorts by order, and leaves out what is too many in a cell.
     void sort(const Region& region) {
         spread_sort(order);
-        std::vector<uint8_t> seen(region.cells());
+        CellNumbers<uint8_t> seen(region.cells(), order.size());
         std::erase_if(order, [&](uint64_t o) {
             uint8_t& count = seen[list[o & kIndex].cell];
             if (count == kMostInCell) return true;
@@ -297,11 +320,10 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
     struct Kept {
         glm::dvec3 at;
         glm::vec3 normal;
-        uint32_t next;
+        uint32_t next;  ///< in its cell, counted from 1
         bool unsure;
     };
-    constexpr uint32_t kEnd = ~uint32_t{0};
-    std::vector<uint32_t> first(region.cells(), kEnd);
+    CellNumbers<uint32_t> first(region.cells(), candidates.order.size());
     std::vector<Kept> kept;
     kept.reserve(candidates.order.size() / 8);
     const double near = radius_ * radius_;
@@ -314,8 +336,8 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         bool unsure = false;
         /// Whether one that stays in this cell drives the candidate out.
         const auto taken = [&](uint32_t cell) {
-            for (uint32_t entry = first[cell]; entry != kEnd; entry = kept[entry].next) {
-                const Kept& other = kept[entry];
+            for (uint32_t entry = first[cell]; entry != 0; entry = kept[entry - 1].next) {
+                const Kept& other = kept[entry - 1];
                 const glm::dvec3 apart = other.at - candidate.at;
                 if (glm::dot(apart, apart) >= near || glm::dot(other.normal, normal) < kSameSide) continue;
                 if (!other.unsure) return true;
@@ -342,7 +364,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         if (out) continue;
         unsure = unsure && surely;
         kept.push_back({candidate.at, normal, first[candidate.cell], unsure});
-        first[candidate.cell] = static_cast<uint32_t>(kept.size() - 1);
+        first[candidate.cell] = static_cast<uint32_t>(kept.size());
         const glm::ivec3 whole = at + region.low;
         if (glm::any(glm::lessThan(whole, block.low)) || glm::any(glm::greaterThanEqual(whole, block.high)))
             continue;
