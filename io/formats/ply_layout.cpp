@@ -89,6 +89,8 @@ class LayoutMaker {
     bool group(size_t first, const std::array<Triple, N>& spellings, std::string_view name) {
         if (layout_.schema.find(name)) return false;
         for (const Triple& triple : spellings) {
+            // Of thousands of properties few are looked for among all.
+            if (std::find(triple.begin(), triple.end(), properties_[first].name) == triple.end()) continue;
             const std::array<size_t, 3> members = {index(triple[0]), index(triple[1]), index(triple[2])};
             if (std::find(members.begin(), members.end(), first) == members.end()) continue;
             if (*std::max_element(members.begin(), members.end()) == properties_.size()) continue;

@@ -137,10 +137,11 @@ std::string unique_name(const Schema& schema, std::string_view name) {
     for (const Attribute& a : schema.attributes) {
         if (!a.name.starts_with(clean)) continue;
         const auto rest = std::string_view(a.name).substr(clean.size());
-        const auto number = rest.starts_with('_') ? parse_number<size_t>(rest.substr(1)) : std::nullopt;
+        const bool numbered = rest.size() > 1 && rest[0] == '_' && rest[1] >= '1' && rest[1] <= '9';
+        const auto number = numbered ? parse_number<size_t>(rest.substr(1)) : std::nullopt;
         if (rest.empty())
             taken[1] = true;
-        else if (number && *number < taken.size() && rest == fmt::format("_{}", *number))
+        else if (number && *number < taken.size())
             taken[*number] = true;
     }
     if (!taken[1]) return clean;

@@ -1,6 +1,7 @@
 // A file's format is told by its content, whatever stands before it; where that says nothing, by its name.
 #include <gmock/gmock.h>
 
+#include "io/formats/format.h"
 #include "tests/io/scan_text.h"
 
 namespace lucarne::io {
@@ -75,6 +76,20 @@ TEST_F(Registry, TheErrorIsThatOfTheFormatThatTheExtensionNames) {
     EXPECT_THAT(open("a.obj", zeros).error().line(), HasSubstr("is no OBJ"));
     EXPECT_THAT(open("a.obj", "1 2 3\n4 5 6\n").error().line(),
                 HasSubstr("if it holds rows of numbers, say what they are with --columns"));
+}
+
+TEST(UniqueName, HasTheFirstNumberThatIsFree) {
+    Schema schema;
+    EXPECT_EQ(unique_name(schema, "a"), "a");
+    for (const char* name : {"a", "a_2", "a_4", "a_03", "a_+3", "a_3x", "a_", "ab"})
+        schema.add(name, ScalarType::u8);
+    EXPECT_EQ(unique_name(schema, "a"), "a_3");
+    EXPECT_EQ(unique_name(schema, "b"), "b");
+    EXPECT_EQ(unique_name(schema, "a_2"), "a_2_2");
+    // Thousands of one name.
+    Schema many;
+    for (int i = 0; i < 3000; ++i) many.add(unique_name(many, std::string(64, 'n')), ScalarType::u8);
+    EXPECT_EQ(many.attributes.back().name, std::string(64, 'n') + "_3000");
 }
 
 }  // namespace
