@@ -191,6 +191,18 @@ TEST_F(MeshScan, ASliverIsSampledAlongItsLength) {
     }
 }
 
+TEST_F(MeshScan, RoundingLosesNoPartOfAThinSliver) {
+    // Too thin for its plane to be known well; the samples still lie all along it.
+    read("v 0 0 0\nv .7 .9 1\nv .7000000001 .9 1.0000000001\nf 1 2 3\n", every(2e-6));
+    ASSERT_GT(points(), 50u);
+    std::vector<double> at;
+    for (size_t i = 0; i < points(); ++i) at.push_back(position(i).z);
+    std::ranges::sort(at);
+    for (size_t i = 1; i < at.size(); ++i) ASSERT_LT(at[i] - at[i - 1], 0.12) << at[i];
+    EXPECT_LT(at.front(), 0.2);  // it begins with its tip, which has no area
+    EXPECT_GT(at.back(), 0.95);
+}
+
 TEST_F(MeshScan, BothSidesOfAThinWallAreSampledInFull) {
     const std::string wall = kSquare + "v 0 0 0.001\nv 1 0 0.001\nv 1 1 0.001\nv 0 1 0.001\nf 8 7 6 5\n";
     read(wall, every(0.02));

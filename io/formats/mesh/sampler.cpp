@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <unordered_map>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -58,17 +57,21 @@ bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
     if (!overlap(low_of(p), high_of(p), low, high)) return false;
     const glm::dvec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
     const Points q = {p[0] - middle, p[1] - middle, p[2] - middle};
-    const auto parts = [&](const glm::dvec3& axis) {
+    const double far = glm::length(q[0]) + glm::length(q[1]) + glm::length(q[2]);
+    // `factors`: the product of the lengths that the axis was made from. The normal of a sliver is short beside them,
+    // and rounding turns it.
+    const auto parts = [&](const glm::dvec3& axis, double factors) {
         const double a = glm::dot(axis, q[0]), b = glm::dot(axis, q[1]), c = glm::dot(axis, q[2]);
         const double reach = glm::dot(glm::abs(axis), half);
-        const double rounded = 1e-12 * (std::abs(a) + std::abs(b) + std::abs(c));
+        const double rounded = 1e-14 * factors * far;
         return std::min({a, b, c}) > reach + rounded || std::max({a, b, c}) < -reach - rounded;
     };
     const Points edges = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
-    if (parts(glm::cross(edges[0], edges[1]))) return false;
-    for (const glm::dvec3& e : edges)
-        if (parts({0, -e.z, e.y}) || parts({e.z, 0, -e.x}) || parts({-e.y, e.x, 0})) return false;
-    return true;
+    if (parts(glm::cross(edges[0], edges[1]), glm::length(edges[0]) * glm::length(edges[1]))) return false;
+    return std::ranges::none_of(edges, [&](const glm::dvec3& e) {
+        const double length = glm::length(e);
+        return parts({0, -e.z, e.y}, length) || parts({e.z, 0, -e.x}, length) || parts({-e.y, e.x, 0}, length);
+    });
 }
 
 /// Sorts numbers that are spread evenly over 64 bits: into as many buckets first.
@@ -84,19 +87,6 @@ void spread_sort(std::vector<uint64_t>& numbers) {
         std::sort(&sorted[0] + begin, &sorted[0] + end[i]);
     numbers = std::move(sorted);
 }
-
-/// Numbers of a region's cells, 0 at first. Slivers leave nearly all cells empty: then only those that are used are kept.
-template <class T>
-class CellNumbers {
- public:
-    CellNumbers(size_t cells, size_t candidates) : dense_(candidates * kCrowded < cells ? 0 : cells) {}
-    T& operator[](uint32_t cell) { return dense_.empty() ? sparse_[cell] : dense_[cell]; }
-
- private:
-    static constexpr size_t kCrowded = 32;  ///< cells that are cleared in the time that a candidate takes
-    std::vector<T> dense_;
-    std::unordered_map<uint32_t, T> sparse_;
-};
 
 }  // namespace
 
@@ -127,7 +117,7 @@ struct Sampler::Candidates {
     /// Sorts by order, and leaves out what is too many in a cell.
     void sort(const Region& region) {
         spread_sort(order);
-        CellNumbers<uint8_t> seen(region.cells(), order.size());
+        std::vector<uint8_t> seen(region.cells());
         std::erase_if(order, [&](uint64_t o) {
             uint8_t& count = seen[list[o & kIndex].cell];
             if (count == kMostInCell) return true;
@@ -323,7 +313,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         uint32_t next;  ///< in its cell, counted from 1
         bool unsure;
     };
-    CellNumbers<uint32_t> first(region.cells(), candidates.order.size());
+    std::vector<uint32_t> first(region.cells());  // 0: none
     std::vector<Kept> kept;
     kept.reserve(candidates.order.size() / 8);
     const double near = radius_ * radius_;
