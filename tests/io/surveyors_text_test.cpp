@@ -1,5 +1,6 @@
 // Text as surveyors' programs write it: names and codes beside the numbers, quotes, other languages' headers
 // and decimal commas.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/io/scan_text.h"
@@ -44,12 +45,33 @@ TEST_F(SurveyorsText, NumbersOfPointsAreNoCoordinates) {
               "id x y z intensity");
     EXPECT_EQ(value(2, "id"), 1002);
     EXPECT_EQ(position(2), glm::dvec3(4.7, 5.45, 6.95));
+    EXPECT_EQ(columns_of("1 4.5 5.25 6.75\n2 4.6 5.35 6.85\n2a 4.7 5.45 6.95\n"), "- x y z")
+        << "with a letter";
+    EXPECT_EQ(position(2), glm::dvec3(4.7, 5.45, 6.95));
     // But for those of a grid, whose other coordinates may be whole as well.
     EXPECT_EQ(columns_of("1 4 5.5 0.5\n2 4 5.25 0.75\n"), "x y z intensity");
     EXPECT_EQ(columns_of("1 4.5 5.5 0.5\n1 4.5 5.25 0.75\n"), "x y z intensity");
     read("ID X Y Z\n7 1.5 2.5 3.5\n");
     EXPECT_EQ(position(0), glm::dvec3(1.5, 2.5, 3.5));
     EXPECT_EQ(value(0, "ID"), 7);
+}
+
+TEST_F(SurveyorsText, WhatHoldsNothingIsNoCoordinate) {
+    EXPECT_EQ(columns_of(";1,5;2,5;3,5\n;4,5;5,5;6,5\n"), "- x y z");
+    ASSERT_EQ(points(), 2u);
+    EXPECT_EQ(position(1), glm::dvec3(4.5, 5.5, 6.5));
+    EXPECT_EQ(columns_of("1.5,,2.5,3.5,9\n4.5,,5.5,6.5,8\n"), "x - y z intensity");
+}
+
+TEST_F(SurveyorsText, AStrayWordTakesNoColumnWithIt) {
+    std::string rows;
+    for (int i = 0; i < 300; ++i) rows += fmt::format("{}.5 2.5 3.5 {}\n", i, i == 200 ? "4#" : "4");
+    for (const char* header : {"", "x y z intensity\n"}) {
+        EXPECT_THAT(error_of(header + rows).line(), HasSubstr("'4#' is no value for intensity"));
+        read(header + rows, {.columns = "", .quiet = true, .salvage = true});
+        ASSERT_EQ(points(), 299u);
+        EXPECT_EQ(value(298, names::intensity), 4);
+    }
 }
 
 TEST_F(SurveyorsText, QuotedNumbersAreNumbers) {

@@ -197,17 +197,21 @@ bool counts_up(const Sample& sample, size_t column) {
     return sample.rows() > 1 && look_at(sample, column).whole;
 }
 
-/// The columns of x, y and z. A stray line of words makes no column of words.
+/// The columns of x, y and z. A stray line of words makes no column of words, nothing makes none of numbers.
 std::optional<std::array<size_t, 3>> guess_axes(const Sample& sample) {
     std::vector<size_t> numbers;
     for (size_t column = 0; column < sample.columns && numbers.size() < 4; ++column) {
         size_t count = 0;
         for (size_t row = 0; row < sample.rows(); ++row) count += !std::isnan(sample.at(row, column));
-        if (!sample.words[column] || 2 * count >= sample.rows()) numbers.push_back(column);
+        if (count > 0 && (!sample.words[column] || 2 * count >= sample.rows())) numbers.push_back(column);
     }
     if (numbers.size() < 3) return std::nullopt;
     const auto fractions = [&](size_t column) { return !look_at(sample, column).whole; };
-    const size_t first = numbers.size() == 4 && numbers[0] == 0 && counts_up(sample, 0) &&
+    const auto is_name = [&] {
+        return sample.words[0] && std::none_of(numbers.begin() + 1, numbers.end(),
+                                               [&](size_t column) { return sample.words[column]; });
+    };
+    const size_t first = numbers.size() == 4 && numbers[0] == 0 && (counts_up(sample, 0) || is_name()) &&
                          std::all_of(numbers.begin() + 1, numbers.end(), fractions);
     return std::array{numbers[first], numbers[first + 1], numbers[first + 2]};
 }
@@ -362,7 +366,7 @@ std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts)
     if (!axes) return std::nullopt;
     std::vector<Column> columns((*axes)[2] + 1, Column{"-", std::nullopt});
     for (size_t i = 0; i < 3; ++i) columns[(*axes)[i]].name = kAxes[i];
-    if ((*axes)[0] > 0 && !sample.words[0]) columns[0].name = "id";
+    if ((*axes)[0] > 0 && !sample.words[0] && look_at(sample, 0).numbers) columns[0].name = "id";
     const auto add = [&](const Triple& triple) {
         for (const auto name : triple) columns.push_back({std::string(name), std::nullopt});
     };

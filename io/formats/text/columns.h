@@ -21,7 +21,8 @@ struct Column {
 struct Sample {
     size_t columns = 0;
     std::vector<double> values;  ///< row by row; NaN where there is none
-    std::vector<bool> words;     ///< of each column: holds something that is no number
+    /// Of each column: more than one cell in a hundred is no number. Fewer are damage, and to be told.
+    std::vector<bool> words;
     bool whole = true;           ///< every row is there
     size_t rows() const { return columns ? values.size() / columns : 0; }
     double at(size_t row, size_t column) const { return values[row * columns + column]; }
@@ -37,10 +38,11 @@ std::optional<std::vector<Column>> written_columns(std::string_view text);
 /// them, each once.
 std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words);
 
-/// The first three columns of numbers are x, y, z, but for a first one that counts whole numbers up before
-/// three of fractions ("id"); then what looks like unit normals, colours, an intensity. Of four
-/// columns that may be an intensity and colours either way round, those of 0 to 255 are the colours; else the
-/// colours stand first, but last in PTS. Columns of words are left out. Nothing where there are no three of numbers.
+/// The first three columns of numbers are x, y, z, but for a first one before three of fractions that counts
+/// whole numbers up ("id") or of which some are words ("4a"); then what looks like unit normals, colours, an
+/// intensity. Of four columns that may be an intensity and colours either way round, those of 0 to 255 are
+/// the colours; else the colours stand first, but last in PTS. Columns of words are left out. Nothing where
+/// there are no three of numbers.
 std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts);
 
 /// The records that these columns make: positions double, or float where all three are said to be. Types that

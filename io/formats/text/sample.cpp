@@ -16,7 +16,7 @@ class Sampler {
     /// Of the rows at least `step` bytes lie between the beginnings of two that are kept.
     Sampler(const RowLayout& layout, size_t columns, uint64_t step) : layout_(layout), step_(step) {
         sample_.columns = columns;
-        sample_.words.assign(columns, false);
+        words_.assign(columns, 0);
     }
 
     /// Whole lines.
@@ -39,7 +39,10 @@ class Sampler {
     }
 
     uint64_t rows() const { return rows_; }
-    Sample take() { return std::move(sample_); }
+    Sample take() {
+        for (const uint64_t words : words_) sample_.words.push_back(100 * words > sample_.rows());
+        return std::move(sample_);
+    }
 
  private:
     void keep(const std::vector<std::string_view>& cells) {
@@ -49,13 +52,14 @@ class Sampler {
         }
         for (size_t c = 0; c < cells.size(); ++c) {
             const auto value = cell_number(cells[c]);
-            if (!value && !cells[c].empty()) sample_.words[c] = true;
+            words_[c] += !value && !cells[c].empty();
             sample_.values.push_back(value.value_or(NAN));
         }
     }
 
     const RowLayout& layout_;
     uint64_t step_, rows_ = 0;
+    std::vector<uint64_t> words_;  ///< of each column: cells that are no numbers
     Sample sample_;
 };
 

@@ -193,8 +193,7 @@ class TextSource final : public PointSource {
         const std::string text = columns_text(*columns);
         if (!quiet)
             log::info("{}: its columns are taken as {}{}; --columns can say otherwise",
-                      file_->path().string(), text,
-                      text.find('-') == text.npos ? "" : " (- is words, and left out)");
+                      file_->path().string(), text, text.find('-') == text.npos ? "" : " (- is left out)");
         return std::move(*columns);
     }
 
