@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,13 @@ namespace lucarne::io {
 namespace {
 
 using namespace mesh;
+
+constexpr std::array<std::string_view, 6> kNumbered = {"v", "vn", "vt", "vp", "f", "l"};  ///< numbers follow
+constexpr std::array<std::string_view, 5> kNamed = {"o", "g", "s", "mtllib", "usemtl"};
+
+bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
+    return std::ranges::find(words, word) != words.end();
+}
 
 class ObjParser {
  public:
@@ -108,7 +116,7 @@ class ObjParser {
             material_ = found == materials_.end() ? kNone : found->second;
         } else {
             other_ += word == "l" || word == "p" || word == "curv" || word == "surf" || word == "call";
-            strange_ = strange_ || !(word[0] >= 'a' && word[0] <= 'z');
+            strange_ = strange_ || !(is_one_of(kNumbered, word) || is_one_of(kNamed, word));
         }
         return {};
     }
@@ -273,7 +281,7 @@ class ObjParser {
     std::vector<LateFace> late_faces_;
     Losses losses_;
     uint32_t material_ = kNone;
-    bool strange_ = false;  ///< words that are none of OBJ's
+    bool strange_ = false;  ///< words that an OBJ of vertices need not have
     uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
@@ -307,13 +315,13 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     return sampled(std::move(mesh), std::move(info), std::move(details), parser.state(), options);
 }
 
-/// Text whose first statement is one of OBJ's.
+/// Text whose first statement is one of OBJ's, and no header of rows ("v x y z").
 bool is_obj(std::string_view head) {
-    static constexpr std::array<std::string_view, 11> kWords = {"v", "vn", "vt",     "vp",     "f", "o",
-                                                                "g", "s",  "mtllib", "usemtl", "l"};
     auto line = first_statement(head);
-    const auto word = next_word(line);
-    return std::find(kWords.begin(), kWords.end(), word) != kWords.end() && !next_word(line).empty();
+    const auto word = next_word(line), next = next_word(line);
+    const bool number = !next.empty() && (text::is_digit(next[0]) || next.find_first_of("+-.") == 0);
+    return (is_one_of(kNumbered, word) && number) ||
+           (is_one_of(kNamed, word) && (word == "s" ? number || next == "off" : !next.empty()));
 }
 
 }  // namespace

@@ -50,6 +50,19 @@ TEST_F(Registry, CommentsBeforeAHeaderOfPcdDoNotMatter) {
     }
 }
 
+TEST_F(Registry, AHeaderOfRowsIsNoStatementOfObj) {
+    for (const std::string rows : {"v x y z\n9 1 2 3\n", "s x y z\n9 1 2 3\n", "l x y z\n9 1 2 3\n"}) {
+        const auto scan = open("a.txt", rows);
+        ASSERT_TRUE(scan) << scan.error().line();
+        EXPECT_THAT((*scan)->info().format, StartsWith("XYZ"));
+    }
+    for (const std::string first : {"s off\n", "s 1\n", "o a\n", "vn 0 0 1\n", "vt .5 .5\n", "v -1 0 0\n"}) {
+        const auto scan = open("a", first + kObj);
+        ASSERT_TRUE(scan) << scan.error().line();
+        EXPECT_THAT((*scan)->info().format, StartsWith("OBJ"));
+    }
+}
+
 TEST_F(Registry, WhereTheContentSaysNothingTheExtensionDoes) {
     std::string comments;
     while (comments.size() < 10'000) comments += "# a long licence in front of everything\n";
@@ -74,6 +87,7 @@ TEST_F(Registry, TheErrorIsThatOfTheFormatThatTheExtensionNames) {
     EXPECT_THAT(open("a.dat", zeros).error().line(), HasSubstr("is in no format that can be read"));
     EXPECT_THAT(open("a.las", "\x89PNG" + zeros).error().line(), HasSubstr("is a picture"));
     EXPECT_THAT(open("a.obj", zeros).error().line(), HasSubstr("is no OBJ"));
+    EXPECT_THAT(open("a.obj", "hello, this is no mesh\n").error().line(), HasSubstr("is no OBJ"));
     EXPECT_THAT(open("a.obj", "1 2 3\n4 5 6\n").error().line(),
                 HasSubstr("if it holds rows of numbers, say what they are with --columns"));
 }
