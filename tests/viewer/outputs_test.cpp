@@ -19,10 +19,10 @@ class Outputs : public ::testing::Test {
         before_ = test::bytes_of(scan_);
     }
     /// That `arguments` are refused at once and the scan stays as it is.
-    void refused(const std::string& arguments) const {
+    void refused(const std::string& arguments, const std::string& why = "is an input of this command") const {
         const auto done = test::lucarne(arguments);
         EXPECT_EQ(done.code, 2) << arguments << "\n" << done.output;
-        EXPECT_NE(done.output.find("is an input of this command"), std::string::npos) << done.output;
+        EXPECT_NE(done.output.find(why), std::string::npos) << done.output;
         EXPECT_EQ(test::bytes_of(scan_), before_) << arguments;
     }
 
@@ -73,6 +73,15 @@ TEST_F(Outputs, NoOtherCommandReplacesItsInputEither) {
     const std::string reference = folder_ / "scan.json";
     fs::create_hard_link(scan_, reference);
     refused(fmt::format("compare {} {} --json {} --overwrite", scan_, scan_, reference));
+}
+
+TEST_F(Outputs, NoOutputReplacesAnother) {
+    const std::string cache = folder_ / "x.luc", dotted = folder_ / "./x.luc", link = folder_ / "link";
+    fs::create_directory_symlink(folder_.path(), link);
+    for (const auto& json : {cache, dotted, link + "/x.luc"})
+        refused(fmt::format("convert {} -o {} --json {} --overwrite", scan_, cache, json),
+                "is to be written twice by this command");
+    EXPECT_FALSE(fs::exists(cache));
 }
 
 TEST_F(Outputs, ACacheIsNotReplacedByItsExport) {
