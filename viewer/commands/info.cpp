@@ -151,7 +151,7 @@ void add_info(CLI::App& app, Command& chosen) {
     auto* command = app.add_subcommand("info", "Say what a cache or a scan holds");
     command
         ->add_option("inputs", options->inputs,
-                     "Caches, scan files, folders of them. A broken one of several is left out")
+                     "Caches, scan files, folders of scan files. A broken one of several is left out")
         ->required()
         ->type_name("INPUT");
     command->add_flag("--quick", options->quick,
