@@ -72,6 +72,7 @@ Made everything(PositionType position, size_t points) {
                             ScalarType::i32, ScalarType::u64, ScalarType::i64, ScalarType::f32, ScalarType::f64})
         scan.schema_.add(std::string("a:") + std::string(scalar_name(type)), type);
     scan.schema_.add("Amplitude", ScalarType::f32);  // which others call an intensity
+    scan.schema_.add("Größe", ScalarType::u8);
     scan.info_.color_bits = 16;
     scan.info_.metres_per_unit = 0.3048;
     scan.info_.stations = {{3, {1.25, -2, 1e6}}};

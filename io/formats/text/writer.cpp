@@ -34,7 +34,7 @@ struct Output {
 std::string word_of(std::string_view name) {
     std::string word(name);
     for (char& c : word)
-        if (c <= ' ' || c >= 0x7f || c == ',' || c == ';' || c == '"') c = '_';
+        if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f || c == ',' || c == ';' || c == '"') c = '_';
     return word.empty() ? "unnamed" : word;
 }
 
