@@ -56,6 +56,18 @@ TEST_F(SurveyorsText, NumbersOfPointsAreNoCoordinates) {
     EXPECT_EQ(value(0, "ID"), 7);
 }
 
+TEST_F(SurveyorsText, TextsMayHoldWhatPartsOtherLines) {
+    for (const char* rows :
+         {"x,y,z,note\n1.5,2.5,3.5,\"oak; old\"\n2,3,4,elm\n",
+          "x,y,z,note\n1.5,2.5,3.5,oak; old\n2,3,4,elm\n", "x y z note\n1.5 2.5 3.5 oak;old\n2 3 4 elm\n",
+          "x y z note\n1.5 2.5 3.5 \"oak, old\"\n2 3 4 elm\n",
+          "x;y;z;note\n1,5;2,5;3,5;oak, old\n2;3;4;elm\n"}) {
+        read(rows);
+        ASSERT_EQ(points(), 2u) << rows;
+        EXPECT_EQ(position(0), glm::dvec3(1.5, 2.5, 3.5)) << rows;
+    }
+}
+
 TEST_F(SurveyorsText, WhatHoldsNothingIsNoCoordinate) {
     EXPECT_EQ(columns_of(";1,5;2,5;3,5\n;4,5;5,5;6,5\n"), "- x y z");
     ASSERT_EQ(points(), 2u);

@@ -56,15 +56,15 @@ bool is_row(const std::vector<std::string_view>& cells) {
 }
 
 std::optional<Cut> cut_of(std::string_view line) {
-    const bool commas = line.find(',') != line.npos;
-    if (line.find(';') != line.npos) return Cut{';', commas};
-    if (!commas) return Cut{};
-    if (is_row(split(line, ','))) {
+    const bool commas = line.find(',') != line.npos, semicolons = line.find(';') != line.npos;
+    const Cut usual{semicolons ? ';' : commas ? ',' : ' ', semicolons && commas};
+    if (semicolons && is_row(split(with_points(line), ';'))) return usual;
+    if (commas && is_row(split(line, ','))) {
         if (may_be_decimal(line)) return std::nullopt;
         return Cut{','};
     }
-    if (is_row(split(with_points(line), ' '))) return Cut{' ', true};
-    return Cut{','};
+    if (is_row(split(with_points(line), ' '))) return Cut{' ', commas};
+    return usual;
 }
 
 }  // namespace lucarne::io::text

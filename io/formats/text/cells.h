@@ -15,8 +15,8 @@ struct Cut {
     bool decimal_comma = false;  ///< "12,5", where no comma is a separator
 };
 
-/// Semicolons go before commas, commas before blanks, unless only blanks leave numbers, with decimal commas.
-/// Nothing where commas may be either ("1,5, 2,5, 3,5").
+/// Semicolons go before commas, commas before blanks, the first between which a row stands: what is quoted,
+/// or a text behind the numbers, may hold any of them. Nothing where commas may be either ("1,5, 2,5, 3,5").
 std::optional<Cut> cut_of(std::string_view line);
 
 /// Where the quotes that may begin at `at` end, behind them; `at` where they do not, before `line_end` or
