@@ -204,6 +204,18 @@ TEST_F(MeshSalvage, LinesOfAnObjThatMakeNoSenseKeepTheirNumber) {
     EXPECT_EQ(value(0, "normal", 1), 1) << "the second of its normals";
 }
 
+TEST_F(MeshSalvage, OfAPolygonThatLostACornerNothingIsLeft) {
+    // What is left of its outline would be another: here a triangle over what was outside.
+    const std::string before = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv ", after = " 1 0\nv 0 4 0\nf 1 2 3 4 5\n";
+    for (const char* lost : {"nan", "1e40"}) {
+        read(before + lost + after, kUsual);
+        EXPECT_FALSE(is_mesh()) << lost;
+    }
+    EXPECT_THAT(refusal(before + "x" + after), HasSubstr("4 points can be saved with --salvage"));
+    read(before + "3" + after, kUsual);
+    EXPECT_EQ(triangles(), 3u);
+}
+
 TEST_F(MeshSalvage, ChangedBytesNeverCrash) {
     const std::array<std::string, 3> seeds = {strip("ascii").bytes, strip("binary_big_endian", true).bytes,
                                               kObj + "f 1/1/1 -2//1 3/1 4\nf -1 \\\n 1 2\n"};

@@ -24,7 +24,13 @@ void Mesh::add(std::span<const Corner> polygon, uint32_t material, std::optional
     }
     std::vector<glm::dvec3> outline;
     std::vector<std::array<uint32_t, 3>> cut;
-    for (const Corner& c : polygon) outline.push_back(positions[c.position]);
+    for (const Corner& c : polygon) {
+        const glm::dvec3& p = outline.emplace_back(positions[c.position]);
+        if (usable(p.x) && usable(p.y) && usable(p.z)) continue;
+        // Where its outline went nobody knows, nor what of the rest was inside.
+        not_finite += polygon.size() - 2;
+        return;
+    }
     fanned += !triangulate(outline, cut);
     // What only some triangles have is held from the first that has it on.
     const auto put = [&](auto& list, bool has, const auto& value, const auto& none) {
@@ -66,11 +72,6 @@ void Mesh::finish() {
     size_t kept = 0;
     for (size_t i = 0; i < triangles.size(); ++i) {
         const auto [a, b, c] = points(i);
-        const auto fine = [](const glm::dvec3& p) { return usable(p.x) && usable(p.y) && usable(p.z); };
-        if (!fine(a) || !fine(b) || !fine(c)) {
-            ++not_finite;
-            continue;
-        }
         const double area = glm::length(glm::cross(b - a, c - a)) / 2;
         if (!(area > 0)) {
             ++without_area;

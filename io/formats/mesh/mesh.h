@@ -49,7 +49,7 @@ struct Mesh {
     std::vector<Material> materials;
     std::vector<Image8> textures;
 
-    uint64_t without_area = 0, not_finite = 0;  ///< triangles that finish() left out
+    uint64_t without_area = 0, not_finite = 0;  ///< triangles that are left out
     uint64_t fanned = 0;                        ///< polygons too large to be cut by their ears
     /// The area of the triangles before each, and of all at the end; set by finish().
     std::vector<double> area_before;
@@ -62,10 +62,10 @@ struct Mesh {
         return {positions[c[0]], positions[c[1]], positions[c[2]]};
     }
 
-    /// Cuts a polygon whose indices are right into triangles. Corners that lack a normal or coordinates are
-    /// fine.
+    /// Cuts a polygon whose indices are right into triangles, unless one of its positions is not usable.
+    /// Corners that lack a normal or coordinates are fine.
     void add(std::span<const Corner> polygon, uint32_t material, std::optional<Color8> color);
-    /// Leaves out triangles without area and those with a coordinate that is not usable; sums up areas.
+    /// Leaves out triangles without area; sums up areas.
     void finish();
 };
 
