@@ -84,6 +84,13 @@ TEST_F(SurveyorsText, AStrayWordTakesNoColumnWithIt) {
         ASSERT_EQ(points(), 299u);
         EXPECT_EQ(value(298, names::intensity), 4);
     }
+    // Nor does it change what the others are taken for.
+    rows.clear();
+    for (int i = 0; i < 300; ++i) rows += fmt::format("{}.5 2.5 3.5 1 {} 3\n", i, i == 200 ? "2#" : "2");
+    EXPECT_THAT(error_of(rows).line(), HasSubstr("'2# 3' is no value for green (u8)"));
+    read(rows, {.columns = "", .quiet = true, .salvage = true});
+    ASSERT_EQ(points(), 299u);
+    EXPECT_EQ(value(298, names::color, 1), 2);
 }
 
 TEST_F(SurveyorsText, QuotedNumbersAreNumbers) {

@@ -17,7 +17,7 @@ struct Column {
     std::optional<ScalarType> type;  ///< where it was stated
 };
 
-/// Rows from all over a file as numbers.
+/// Rows from all over a file as numbers, but for those with stray words.
 struct Sample {
     size_t columns = 0;
     std::vector<double> values;  ///< row by row; NaN where there is none

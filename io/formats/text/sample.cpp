@@ -16,7 +16,6 @@ class Sampler {
     /// Of the rows at least `step` bytes lie between the beginnings of two that are kept.
     Sampler(const RowLayout& layout, size_t columns, uint64_t step) : layout_(layout), step_(step) {
         sample_.columns = columns;
-        words_.assign(columns, 0);
     }
 
     /// Whole lines.
@@ -40,7 +39,22 @@ class Sampler {
 
     uint64_t rows() const { return rows_; }
     Sample take() {
-        for (const uint64_t words : words_) sample_.words.push_back(100 * words > sample_.rows());
+        const size_t columns = sample_.columns, rows = sample_.rows();
+        std::vector<uint64_t> words(columns);
+        for (size_t i = 0; i < words_.size(); ++i) words[i % columns] += words_[i];
+        for (const uint64_t count : words) sample_.words.push_back(100 * count > rows);
+        // A row with a stray word says nothing of what the others are.
+        size_t kept = 0;
+        for (size_t row = 0; row < rows; ++row) {
+            bool stray = false;
+            for (size_t c = 0; c < columns; ++c)
+                stray = stray || (words_[row * columns + c] && !sample_.words[c]);
+            if (stray) continue;
+            if (kept < row)
+                std::copy_n(&sample_.values[row * columns], columns, &sample_.values[kept * columns]);
+            ++kept;
+        }
+        if (kept > 0) sample_.values.resize(kept * columns);
         return std::move(sample_);
     }
 
@@ -52,14 +66,14 @@ class Sampler {
         }
         for (size_t c = 0; c < cells.size(); ++c) {
             const auto value = cell_number(cells[c]);
-            words_[c] += !value && !cells[c].empty();
+            words_.push_back(!value && !cells[c].empty());
             sample_.values.push_back(value.value_or(NAN));
         }
     }
 
     const RowLayout& layout_;
     uint64_t step_, rows_ = 0;
-    std::vector<uint64_t> words_;  ///< of each column: cells that are no numbers
+    std::vector<bool> words_;  ///< of each value: it is none, but a word
     Sample sample_;
 };
 
