@@ -107,7 +107,10 @@ Result<void> File::read_box() {
 
 Result<std::vector<std::byte>> File::read(size_t node) const {
     if (nodes_[node].chunk.points == 0) return std::vector<std::byte>();
-    return laz::read_chunk(points_, node, scan_->schema());
+    auto records = laz::read_chunk(points_, node, scan_->schema());
+    if (!records && records.error().kind == ErrorKind::input_rejected)
+        records.error().why += "; only convert can read the rest, as LAZ";
+    return records;
 }
 
 }  // namespace lucarne::io::copc

@@ -140,6 +140,17 @@ TEST_F(Copc, FilesThatEndAnywhereAreRefusedOrRead) {
         EXPECT_NE(refusal(bytes_.substr(0, end)), "opened") << "at " << end;
 }
 
+TEST_F(Copc, OfADamagedNodeItIsSaidHowTheRestIsRead) {
+    const auto sound = open(bytes_);
+    const auto& layers = sound->nodes()[3].chunk;
+    const auto file =
+        open(with(layers.offset + layers.bytes - 12, ~get<uint64_t>(layers.offset + layers.bytes - 12)));
+    ASSERT_TRUE(file) << file.error().line();
+    const auto records = file->read(3);
+    ASSERT_FALSE(records);
+    EXPECT_NE(records.error().line().find("; only convert can read the rest, as LAZ"), std::string::npos);
+}
+
 TEST_F(Copc, ChangedBytesNeverCrashTheReader) {
     std::mt19937 random(5);
     size_t opened = 0;
