@@ -84,6 +84,11 @@ GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte
     return keys;
 }
 
+std::span<const std::byte> doubles_of(const Header& header) {
+    const Vlr* doubles = header.find(kProjectionUser, kGeoDoublesRecord);
+    return doubles ? std::span<const std::byte>(doubles->data) : std::span<const std::byte>{};
+}
+
 }  // namespace
 
 std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directory,
@@ -96,15 +101,13 @@ std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directo
 double metres_per_unit(const std::string& file, const Header& header) {
     const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
     const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
-    const Vlr* doubles = header.find(kProjectionUser, kGeoDoublesRecord);
     if (wkt && ((header.global_encoding & kWktBit) || !keys)) {
         if (const auto unit = wkt_metres_per_unit(wkt->text())) return *unit;
         if (wkt->text().starts_with("GEOGCS"))
             log::warn("{}: its coordinates are degrees, not lengths", file);
     }
     if (!keys) return 1.0;
-    const std::span<const std::byte> numbers =
-        doubles ? std::span<const std::byte>(doubles->data) : std::span<const std::byte>{};
+    const auto numbers = doubles_of(header);
     if (geo_keys(keys->data, numbers).model == kModelGeographic)
         log::warn("{}: its coordinates are degrees, not lengths", file);
     return geotiff_metres_per_unit(keys->data, numbers).value_or(1.0);
@@ -160,7 +163,7 @@ void prefer_wkt(const std::string& file, Header& header) {
     const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
     if (!keys || header.find(kProjectionUser, kWktRecord)) return;
     const CoordinateSystem system = coordinate_system(header);
-    const auto unit = geotiff_metres_per_unit(keys->data, {});
+    const auto unit = geotiff_metres_per_unit(keys->data, doubles_of(header));
     const auto wkt = unit.value_or(1.0) == 1.0 ? utm_wkt(system.epsg) : std::nullopt;
     if (wkt)
         header.vlrs.push_back(wkt_record(*wkt));

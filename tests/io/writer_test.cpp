@@ -258,6 +258,22 @@ TEST_F(Writers, GeoTiffKeysOfUtmBecomeWellKnownTextInNewerFormatsAndOthersStay) 
     }
 }
 
+TEST_F(Writers, GeoTiffKeysOfUtmInAUnitOfTheirOwnStayKeys) {
+    LasFile file;
+    file.records = {record0(1, 2, 3)};
+    std::string keys;
+    for (const uint16_t n : {1, 1, 0, 3, 3072, 0, 1, 32633, 3076, 0, 1, 32767, 3077, 34736, 1, 0})
+        testing::append(keys, n);
+    file.add_vlr("LASF_Projection", 34735, keys);
+    file.add_vlr("LASF_Projection", 34736, raw(0.25));
+    write_bytes(folder_ / "old.las", file.bytes());
+    const auto source = open_scan(folder_ / "old.las");
+    ASSERT_TRUE(source) << source.error().line();
+    const auto writer = create_scan(folder_ / "new.laz", (*source)->schema(), (*source)->info(), {});
+    ASSERT_TRUE(writer && (*writer)->write(read_all(**source)->bytes) && (*writer)->finish());
+    EXPECT_EQ((*open_scan(folder_ / "new.laz"))->info().metres_per_unit, .25);
+}
+
 TEST_F(Writers, ExtraBytesWhoseNamesWereTakenKeepTheirScales) {
     testing::LasFile las;
     const auto scaled = [](const char* name, double scale) {
