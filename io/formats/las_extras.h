@@ -1,5 +1,11 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
 #include "io/formats/las_layout.h"
 
 // What a point format has no field for, or none of its type: the extra bytes of a record, and what they are
@@ -18,11 +24,19 @@ struct ExtraName {
 };
 ExtraName name_of_extra(const Schema& fields, std::span<const std::byte> descriptor);
 
-/// The field of a schema of make_schema, also where an extra has taken its name.
-const Attribute* field_of(const Schema& schema, std::string_view name);
+/// What a record of make_schema(header) begins with, whatever stands in extra bytes and is called by the
+/// names of fields.
+Schema fields_of(const Header& header);
 
 /// The attributes of `schema` that go to extra bytes, in record order; bytes that nobody described come last.
 std::vector<Attribute> extra_attributes(const Header& header, const Schema& schema);
+
+/// The record of extra bytes that a scan's details have: a LAS file's own, or that of merged_info.
+std::optional<Vlr> extras_record(const nlohmann::json& details);
+
+/// Adds what another file's record describes to `record`, unless that does already. Gives the names of those
+/// whose numbers mean another thing there (by scale or offset): they have neither then.
+std::vector<std::string> add_entries(Vlr& record, const Vlr& more);
 
 /// Sets the header's record length and its record of extra bytes. Errors: more than LAS can hold.
 Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra);

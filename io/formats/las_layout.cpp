@@ -140,8 +140,9 @@ void add_extra(Schema& schema, const Header& header) {
     const Schema fields = schema;
     size_t left = header.record_length - record_bytes(header.point_format) - header.wave_bytes;
     if (const Vlr* vlr = header.find(kSpecUser, kExtraBytesRecord)) {
-        for (size_t at = 0; left > 0 && vlr->data.size() - at >= kDescriptorBytes; at += kDescriptorBytes) {
-            const auto descriptor = std::span(vlr->data).subspan(at, kDescriptorBytes);
+        const auto entries = entries_of(vlr->data);
+        for (size_t at = 0; left > 0 && at < entries.size(); at += kDescriptorBytes) {
+            const auto descriptor = entries.subspan(at, kDescriptorBytes);
             if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // of no bytes
             const auto type = extra_type(descriptor);
             if (!type || type->components * scalar_bytes(type->type) > left) break;
@@ -155,6 +156,10 @@ void add_extra(Schema& schema, const Header& header) {
 }
 
 }  // namespace
+
+std::span<const std::byte> entries_of(std::span<const std::byte> record) {
+    return record.first(std::min(record.size() / kDescriptorBytes, kMostEntries) * kDescriptorBytes);
+}
 
 std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor) {
     // LAS 1.4 R15, table 24: 1-10 are scalars, 11-20 and 21-30 (deprecated) the same two and three times.

@@ -10,8 +10,8 @@
 namespace lucarne::io::las {
 
 /// The schema of a point format with its extra bytes. `descriptors` is the data of the extra bytes record
-/// (LASF_Spec 4), 192 bytes each; bytes of the record that it does not describe become `extra_bytes` u8 xN. How extras
-/// are called: las_extras.h.
+/// (LASF_Spec 4), 192 bytes each, the first kMostEntries; bytes that none of them describes become
+/// `extra_bytes` u8 xN. How extras are called: las_extras.h.
 Schema make_schema(const Header& header);
 
 /// An entry of the extra bytes record.
@@ -20,6 +20,9 @@ struct ExtraType {
     ScalarType type = ScalarType::u8;
     uint32_t components = 1;
 };
+/// The whole entries of such a record, and no more than these: three times what an ordinary record can hold.
+inline constexpr size_t kMostEntries = 1000;
+std::span<const std::byte> entries_of(std::span<const std::byte> record);
 /// Empty where the type is not in the specification.
 std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor);
 std::string extra_name(std::span<const std::byte> descriptor);

@@ -103,10 +103,13 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
     if (record.extended) header.minor = 4;
 }
 
-/// The coordinate system of what is no LAS, or of several scans.
-void state_system(const std::string& path, Header& header, const nlohmann::json& details, bool from_las) {
-    if (const auto note = details.value(kSystemNote, nlohmann::json()); note.is_string())
-        log::warn("{}: {}", path, note.get<std::string>());
+/// The coordinate system of what is no LAS, or of several scans, and the extra bytes of these.
+void state_merged(const std::string& path, Header& header, const nlohmann::json& details, bool from_las) {
+    for (const char* key : {kSystemNote, kExtrasNote})
+        if (const auto note = details.value(key, nlohmann::json()); note.is_string())
+            log::warn("{}: {}", path, note.get<std::string>());
+    if (const auto extras = extras_record(details))
+        record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
     if (!from_las || details.contains("projection")) set_projection(header, projection_records(details));
 }
 
@@ -114,7 +117,7 @@ void state_system(const std::string& path, Header& header, const nlohmann::json&
 /// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
 void state_unit(const std::string& path, Header& header, double metres) {
     const double stated = metres_per_unit(path, header);
-    if (std::abs(stated / metres - 1) < 1e-9) return;
+    if (same_unit(stated, metres)) return;
     if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
         log::warn("{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open it",
                   path, stated, metres, metres);
@@ -132,7 +135,7 @@ std::optional<Converter::Field> derived_field(const Schema& from, const Attribut
     const std::string name = near ? field.name.substr(kNearPrefix.size()) : field.name;
     if (const Attribute* a = from.find(name); near && a && a->components == field.components) {
         Converter::Field made{*a, field};
-        made.most = largest_value(extended, name);
+        if (const uint32_t most = largest_value(extended, name); most != UINT32_MAX) made.most = most;
         if (name == names::intensity && intensity) {
             made.factor = 65535.0 / (intensity->high - intensity->low);
             made.shift = -intensity->low * made.factor;
@@ -228,7 +231,7 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     choose_format(header, schema, from_las, compress);
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
-    if (details.is_object()) state_system(path, header, details, from_las);
+    if (details.is_object()) state_merged(path, header, details, from_las);
     state_unit(path, header, info.metres_per_unit);
     if (extended_format(header.point_format) && (compress || !was_extended)) prefer_wkt(path, header);
 

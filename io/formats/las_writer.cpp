@@ -113,10 +113,10 @@ Statistics::Statistics() {
     high.fill(std::numeric_limits<int32_t>::min());
 }
 
-void Statistics::add(const std::byte* records, size_t count, const Schema& schema) {
-    const size_t return_offset = field_of(schema, names::return_number)->offset;
-    const Attribute* time = field_of(schema, names::gps_time);
-    for (; count-- > 0; records += schema.stride) {
+void Statistics::add(const std::byte* records, size_t count, size_t stride, const Schema& fields) {
+    const size_t return_offset = fields.find(names::return_number)->offset;
+    const Attribute* time = fields.find(names::gps_time);
+    for (; count-- > 0; records += stride) {
         for (size_t axis = 0; axis < 3; ++axis) {
             const auto value = load<int32_t>(records + 4 * axis);
             low[axis] = std::min(low[axis], value);
@@ -208,7 +208,7 @@ Result<void> Writer::write_piece(const std::byte* in, size_t count) {
                           "choose PLY, which holds doubles");
         in = converted_.data();
     }
-    statistics_.add(in, count, target_.schema);
+    statistics_.add(in, count, stride, fields_of(header));
     const size_t at = buffer_.size();
     buffer_.resize(at + count * header.record_length);
     if (!encode(header, in, stride, count, buffer_.data() + at))

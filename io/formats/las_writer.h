@@ -16,8 +16,8 @@ struct Statistics {
     double gps_low = std::numeric_limits<double>::infinity(), gps_high = -gps_low;
 
     Statistics();
-    /// Records of a schema of ours.
-    void add(const std::byte* records, size_t count, const Schema& schema);
+    /// Records that begin with these fields.
+    void add(const std::byte* records, size_t count, size_t stride, const Schema& fields);
 };
 
 /// A LAS or LAZ file, as its target has it.

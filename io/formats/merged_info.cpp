@@ -1,11 +1,13 @@
 #include "io/formats/merged_info.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "io/formats/las_crs.h"
+#include "io/formats/las_extras.h"
 #include "io/formats/value_range.h"
 
 namespace lucarne::io {
@@ -29,6 +31,33 @@ bool is_las(const json& details) {
 
 json details_of(const ScanInfo& scan) {
     return json::parse(scan.details, nullptr, false);
+}
+
+/// The extra bytes of all LAS files, and what different_extras says of them.
+struct Extras {
+    las::Vlr record{std::string(las::kSpecUser), las::kExtraBytesRecord, "", false, {}};
+    std::string differ;
+};
+Extras merged_extras(std::span<const ScanInfo> scans) {
+    Extras extras;
+    for (const ScanInfo& scan : scans) {
+        const auto record = scan.declared_points > 0 ? las::extras_record(details_of(scan)) : std::nullopt;
+        if (!record) continue;
+        const auto names = las::add_entries(extras.record, *record);
+        if (!names.empty() && extras.differ.empty())
+            extras.differ = fmt::format(
+                "{}: '{}' has another scale, offset or type here than in a file before it; its numbers are "
+                "put together "
+                "as they stand in the files",
+                scan.path, names.front());
+    }
+    return extras;
+}
+
+void merge_extras(std::span<const ScanInfo> scans, json& details) {
+    const Extras extras = merged_extras(scans);
+    if (!extras.record.data.empty()) details["extras"] = las::records_to_json({extras.record});
+    if (!extras.differ.empty()) details[kExtrasNote] = extras.differ;
 }
 
 /// What is said of the system of all, into `details`, those of the first or none.
@@ -56,6 +85,10 @@ void merge_systems(std::span<const ScanInfo> scans, json& details, ScanInfo& inf
 
 }  // namespace
 
+bool same_unit(double metres, double others) {
+    return std::abs(metres / others - 1) < kSameUnit;
+}
+
 std::string system_text(const ScanInfo& scan) {
     if (!scan.epsg) return scan.coordinate_system;
     const std::string code = fmt::format("EPSG:{}", scan.epsg);
@@ -72,6 +105,10 @@ std::string different_systems(std::span<const ScanInfo> scans) {
                                system_text(*first), scan.path, system_text(scan));
     }
     return {};
+}
+
+std::string different_extras(std::span<const ScanInfo> scans) {
+    return merged_extras(scans).differ;
 }
 
 ScanInfo merged_info(std::span<const ScanInfo> scans) {
@@ -95,6 +132,7 @@ ScanInfo merged_info(std::span<const ScanInfo> scans) {
     details.erase(kIntensityLimits);
     if (limits) details[kIntensityLimits] = {limits->low, limits->high};
     merge_systems(scans, details, info);
+    merge_extras(scans, details);
     info.details = details.dump(-1, ' ', false, json::error_handler_t::replace);
     info.stations.clear();
     for (const auto& scan : scans)

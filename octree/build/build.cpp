@@ -143,7 +143,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                                                            : std::filesystem::path(".");
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs));
     LUCARNE_TRY(check_units(inputs));
-    warn_of_systems(inputs);
+    warn_of_differences(inputs);
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
     const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
     const NodeLimits limits(inputs.schema().stride + added);

@@ -46,10 +46,14 @@ double common_unit(const Unifier& inputs) {
     for (size_t i = 0; i < inputs.inputs(); ++i)
         if (const auto& scan = inputs.source(i).info(); in_stated_unit(scan))
             stated.push_back(scan.metres_per_unit);
-    std::map<double, size_t> count;
-    for (const double unit : stated) ++count[unit];
+    std::map<double, size_t> counts;
+    const auto count = [&](double unit) -> size_t& {  // programs write the digits of a foot as they like
+        const auto near = counts.lower_bound(unit * (1 - io::kSameUnit));
+        return near != counts.end() && io::same_unit(near->first, unit) ? near->second : counts[unit];
+    };
+    for (const double unit : stated) ++count(unit);
     // The first of several largest.
-    const auto most = std::ranges::max_element(stated, {}, [&](double unit) { return count[unit]; });
+    const auto most = std::ranges::max_element(stated, {}, count);
     return most == stated.end() ? 1.0 : *most;
 }
 
@@ -61,7 +65,7 @@ Result<void> check_units(const Unifier& inputs) {
 }
 
 Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::string_view who) {
-    if (!in_stated_unit(scan) || scan.metres_per_unit == metres_per_unit) return {};
+    if (!in_stated_unit(scan) || io::same_unit(scan.metres_per_unit, metres_per_unit)) return {};
     return rejected(
         scan.path,
         fmt::format("has a unit of {} m, {} one of {} m", scan.metres_per_unit, who, metres_per_unit),
@@ -74,10 +78,15 @@ void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit) {
                   scan.path, metres_per_unit);
 }
 
-void warn_of_systems(const Unifier& inputs) {
+void warn_of_differences(const Unifier& inputs) {
     std::vector<io::ScanInfo> scans;
     for (size_t i = 0; i < inputs.inputs(); ++i) scans.push_back(inputs.source(i).info());
-    if (const std::string differ = io::different_systems(scans); !differ.empty()) log::warn("{}", differ);
+    warn_of_differences(scans);
+}
+
+void warn_of_differences(std::span<const io::ScanInfo> scans) {
+    for (const std::string& differ : {io::different_systems(scans), io::different_extras(scans)})
+        if (!differ.empty()) log::warn("{}", differ);
 }
 
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {

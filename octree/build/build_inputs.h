@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "octree/build/build.h"
@@ -21,8 +22,10 @@ Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::s
 /// Where a scan does not state its unit and will not be taken as metres.
 void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit);
 
-/// Says which inputs are in different coordinate systems: their points are put together as they are.
-void warn_of_systems(const Unifier& inputs);
+/// Says which scans are in different coordinate systems, and whose extra bytes are scaled otherwise: their
+/// points are put together as they are.
+void warn_of_differences(const Unifier& inputs);
+void warn_of_differences(std::span<const io::ScanInfo> scans);
 
 /// Of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "io/core/log.h"
-#include "io/formats/merged_info.h"
 #include "io/formats/scan.h"
 #include "octree/attributes.h"
 #include "octree/build/build_inputs.h"
@@ -134,7 +132,7 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
         sources.push_back(scan);
         all.push_back(scan->info());
     }
-    if (const std::string differ = io::different_systems(all); !differ.empty()) log::warn("{}", differ);
+    warn_of_differences(all);
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
     for (const auto* scan : scans) warn_of_assumed_unit(scan->info(), before.metres_per_unit);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "io/formats/las_header.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"
 
@@ -28,6 +29,30 @@ class MergedInfo : public ::testing::Test {
         file.records = {testing::record6(1, 2, 3, 0, 0x11, 0, 0, 0, 0, 0, 0)};
         if (epsg) file.add_vlr("LASF_Projection", 2112, system(epsg));
         return read(name, file.bytes());
+    }
+    /// A LAS file with an extra that is scaled; by 0: not. By less: there is none.
+    ScanInfo scaled(const std::string& name, double scale, uint8_t type = 4) const {
+        testing::LasFile file;
+        file.records = {testing::record0(1, 2, 3)};
+        if (scale < 0) return read(name, file.bytes());
+        std::string entry = testing::extra_descriptor(type, "Amplitude", scale > 0 ? 8 : 0);
+        testing::put(entry, 112, scale);
+        file.add_vlr("LASF_Spec", 4, entry);
+        file.records[0] += std::string(type <= 2 ? 1 : 2, '\1');
+        return read(name, file.bytes());
+    }
+    /// By what a file is scaled that is written with what is merged; 0: by nothing.
+    double scale_of(std::span<const ScanInfo> scans) const {
+        Schema schema;
+        schema.position = PositionType::i32_scaled;
+        schema.stride = 12;
+        schema.add("Amplitude", ScalarType::i16);
+        const auto writer = create_scan(folder_ / "s.las", schema, merged_info(scans), {.overwrite = true});
+        EXPECT_TRUE(writer && (*writer)->write(std::vector<std::byte>(14)) && (*writer)->finish());
+        const auto file = InputFile::open(folder_ / "s.las");
+        const auto header = las::read_header(*file);
+        const auto& entry = header->find(las::kSpecUser, las::kExtraBytesRecord)->data;
+        return (load<uint8_t>(&entry[3]) & 8) ? load<double>(&entry[112]) : 0.0;
     }
     ScanInfo text(const std::string& name) const { return read(name, "1 2 3\n4 5 6\n"); }
     /// What a file says that is written with what is merged.
@@ -92,6 +117,26 @@ TEST_F(MergedInfo, TheSystemOfAnE57IsWellKnownTextInLas) {
     e57.details = R"({"coordinate_system":"nothing that is well known"})";
     const std::array none = {e57};
     EXPECT_EQ(written(none, "m.las").epsg, 0u);
+}
+
+TEST_F(MergedInfo, ExtraBytesKeepTheirScaleWhicheverScanHasThem) {
+    const auto none = scaled("none.las", -1), a = scaled("a.las", .01), b = scaled("b.las", .01),
+               c = text("c.xyz");
+    for (const auto& scans : {std::vector{a, b}, {none, a}, {a, none}, {c, a}, {a, c}, {none, none, b}}) {
+        EXPECT_EQ(different_extras(scans), "");
+        EXPECT_EQ(scale_of(scans), .01) << scans[0].path << " " << scans[1].path;
+    }
+}
+
+TEST_F(MergedInfo, ExtraBytesThatAreScaledInTwoWaysAreNamedAndLeftAsTheyStand) {
+    const auto a = scaled("a.las", .01), b = scaled("b.las", .001), plain = scaled("p.las", 0);
+    for (const auto& scans :
+         {std::vector{a, b}, {a, plain}, {plain, a}, {a, b, a}, {a, scaled("n.las", .01, 2)}}) {
+        EXPECT_THAT(different_extras(scans), HasSubstr("'Amplitude' has another scale"));
+        EXPECT_THAT(different_extras(scans), HasSubstr(scans[1].path));
+        EXPECT_THAT(merged_info(scans).details, HasSubstr(kExtrasNote));
+        EXPECT_EQ(scale_of(scans), 0) << scans[1].path;
+    }
 }
 
 TEST_F(MergedInfo, LimitsOfIntensitiesHoldForAllScansOrForNone) {

@@ -54,6 +54,16 @@ TEST_F(Units, TheMostFilesThatStateOneDecideWhereverTheyStand) {
     EXPECT_NE(checked.error().todo.find("--unit"), std::string::npos);
 }
 
+TEST_F(Units, DigitsOfAFootThatAProgramLeftOutMakeNoOtherUnit) {
+    add("gdal.las", 0.3048006096012192, "a system");
+    add("short.las", 0.3048006096, "a system");
+    EXPECT_TRUE(check_units(unified()));
+    add("feet.las", kFoot, "feet");  // 2e-6 shorter
+    EXPECT_EQ(check_units(unified()).error().what, "feet.las");
+    add("metre.las", 1, "UTM");
+    EXPECT_EQ(common_unit(unified()), 0.3048006096012192) << "both count";
+}
+
 TEST_F(Units, OfTwoUnitsAsOftenStatedTheFirstDecides) {
     add("feet.las", kFoot, "feet");
     add("a.las", 1, "UTM");
