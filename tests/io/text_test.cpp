@@ -3,6 +3,7 @@
 #include <clocale>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "io/core/parallel.h"
@@ -168,11 +169,41 @@ TEST_F(Text, RowsThatNoSampleHasSeenFitAsWell) {
     EXPECT_EQ(source_->info().color_bits, 8u);
 }
 
+TEST_F(Text, NoWholeNumberIsRounded) {
+    // Nanoseconds since 1970: doubles are 256 apart there.
+    const auto times = [&](std::initializer_list<const char*> words, const std::string& more = "") {
+        std::string text = "x,y,z,time\n";
+        for (const char* word : words) text += fmt::format("1,2,3,{}\n", word);
+        read(text + more);
+        const Attribute* time = source_ ? schema().find("time") : nullptr;
+        std::vector<int64_t> got;
+        for (size_t i = 0; time && time->type == ScalarType::i64 && i < words.size(); ++i)
+            got.push_back(load<int64_t>(&records_.bytes[i * schema().stride + time->offset]));
+        return got;
+    };
+    const std::vector<int64_t> exact = {1700000000123456789, 1700000000123456790};
+    EXPECT_EQ(times({"1700000000123456789", "1700000000123456790"}), exact);
+    EXPECT_EQ(times({"1700000000123456789", "\"1700000000123456790\""}), exact);
+    EXPECT_EQ(times({"1.7e18", "1700000000000000001"}),
+              (std::vector<int64_t>{1700000000000000000, 1700000000000000001}));
+    std::string more;  // than a sample looks at
+    while (more.size() < (size_t{5} << 20)) more += "1,2,3,1700000000123456791\n";
+    EXPECT_EQ(times({"1700000000123456789", "1700000000123456790"}, more), exact);
+    // What all doubles hold, and what no 64 bits do, stays a double.
+    for (const char* word : {"9007199254740991", "9300000000000000000", "1e300", "17000000001234567.5e9"}) {
+        EXPECT_TRUE(times({word}).empty()) << word;
+        EXPECT_EQ(value(0, "time"), std::stod(word));
+    }
+    EXPECT_TRUE(times({"1700000000123456789", ""}).empty()) << "a number is missing";
+}
+
 TEST_F(Text, PointsWithoutACoordinateAreDroppedAndCounted) {
     read("x,y,z,w\n1,2,3,0.5\n,2,3,0.5\nnan,2,3,4\n1,inf,3,4\n1,2,1e300,4\n1,2,3,\n");
     EXPECT_EQ(points(), 2u);
     EXPECT_EQ(records_.dropped, 4u);
     EXPECT_TRUE(std::isnan(value(1, "w")));
+    read("x,y,z,w\n1,2,3,7\n1,2,3,\n");
+    EXPECT_TRUE(std::isnan(value(1, "w"))) << "not 0, though the others are whole";
 }
 
 TEST_F(Text, EmptyCellsTakeNoRoomButOfTheirSeparator) {

@@ -226,6 +226,8 @@ ScalarType guessed_type(std::string_view name, const Look& look, bool whole_file
     };
     for (const Known& known : kKnown)
         if (name == known.name && fits(known.type)) return known.type;
+    // Times in nanoseconds and the like, which a double would round.
+    if (look.whole && look.least > 0x1p53 && look.most < 0x1p63) return ScalarType::i64;
     return look.numbers && whole_file && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
 }
 

@@ -47,8 +47,9 @@ std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts)
 
 /// The records that these columns make: positions double, or float where all three are said to be. Types that
 /// are not stated follow from the sample: whole numbers and
-/// colours as small as they are, normals float, anything else double. Rows that the sample has not seen fit as well:
-/// then colours take 16 bits and numbers of no agreed type are double.
+/// colours as small as they are, normals float, anything else double. Rows that the sample has not seen fit
+/// as well: then colours take 16 bits and numbers of no agreed type are double, but for whole ones that all
+/// are over 2^53.
 RowLayout make_layout(const std::vector<Column>& columns, const Sample& sample);
 
 /// "x y z intensity:i32 red green blue"; of very many the first.

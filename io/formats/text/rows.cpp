@@ -63,7 +63,12 @@ bool store_value(ScalarType type, double value, std::byte* at) {
 
 template <class T>
 bool store_exactly(std::string_view word, std::byte* at) {
-    const auto value = parse_number<T>(word);
+    constexpr auto kLeast = static_cast<double>(std::numeric_limits<T>::min()),
+                   kEnd = static_cast<double>(std::numeric_limits<T>::max());  // rounded up: one more
+    auto value = parse_number<T>(word);
+    if (const auto real = value ? std::nullopt : parse_number<double>(word);  // "1.7e18"
+        real && *real >= kLeast && *real < kEnd && *real == std::trunc(*real))
+        value = static_cast<T>(*real);
     if (value) store(at, *value);
     return value.has_value();
 }

@@ -33,7 +33,11 @@ class Sampler {
             ++rows_;
             if (begin < next) continue;
             next += step_;
-            keep(split(line, layout_.separator));
+            auto cells = split(line, layout_.separator);
+            while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+            const bool open = layout_.separator != ' ' && line.ends_with(layout_.separator);
+            if (open && cells.size() + 1 == sample_.columns) cells.emplace_back();  // the last is empty
+            keep(cells);
         }
     }
 
