@@ -252,6 +252,23 @@ std::vector<std::string> add_entries(Vlr& record, const Vlr& more) {
     return differing;
 }
 
+std::string scaled_extras(const ScanInfo& info, const Schema& schema) {
+    const auto details = nlohmann::json::parse(info.details, nullptr, false);
+    const auto record = extras_record(details);
+    if (!record) return {};
+    const auto header = from_details(info.path, details);
+    const Schema fields = header ? fields_of(*header) : Schema{};
+    std::string text;
+    for (const Attribute& a : schema.attributes) {
+        auto entry = kept_entry(&*record, a, a.name);
+        if (entry.empty()) entry = numbered_entry(&*record, a, fields);
+        const auto scales = entry.empty() ? kPlain : scaling(entry);
+        if (scales != kPlain)
+            text += fmt::format("{}'{}' * {} + {}", text.empty() ? "" : ", ", a.name, scales[0], scales[3]);
+    }
+    return text;
+}
+
 Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra) {
     const Schema fields = fields_of(header);
     const Vlr* kept = header.find(kSpecUser, kExtraBytesRecord);

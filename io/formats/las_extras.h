@@ -38,6 +38,10 @@ std::optional<Vlr> extras_record(const nlohmann::json& details);
 /// whose numbers mean another thing there (by scale or offset): they have neither then.
 std::vector<std::string> add_entries(Vlr& record, const Vlr& more);
 
+/// What the attributes of `schema` stand for whose whole numbers LAS files scale: "'Amplitude' * 0.01 + 0".
+/// Empty where there are none.
+std::string scaled_extras(const ScanInfo& info, const Schema& schema);
+
 /// Sets the header's record length and its record of extra bytes. Errors: more than LAS can hold.
 Result<void> describe_extras(const std::string& path, Header& header, const std::vector<Attribute>& extra);
 

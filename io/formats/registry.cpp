@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "io/core/log.h"
 #include "io/formats/copc.h"
 #include "io/formats/format.h"
+#include "io/formats/las_extras.h"
 #include "io/formats/text.h"
 
 namespace lucarne::io {
@@ -103,9 +105,14 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
         return bad_arguments(path.string(), "COPC is an octree, and this is none yet",
                              "convert to a cache and export that");
     const std::string extension = lower_extension(path);
-    for (const Format* format : formats())
-        if (format->create && format->extension == extension)
-            return format->create(path, schema, info, options);
+    for (const Format* format : formats()) {
+        if (!format->create || format->extension != extension) continue;
+        const bool scales = format == &las_format() || format == &laz_format();
+        if (const auto scaled = scales ? std::string() : las::scaled_extras(info, schema); !scaled.empty())
+            log::warn("{}: has whole numbers as LAS stores them, not what they stand for: {}", path.string(),
+                      scaled);
+        return format->create(path, schema, info, options);
+    }
     return bad_arguments(path.string(),
                          fmt::format("the extension '{}' names no format that can be written", extension),
                          "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/las_header.h"
+#include "io/formats/las_extras.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"
 
@@ -41,12 +41,16 @@ class MergedInfo : public ::testing::Test {
         file.records[0] += std::string(type <= 2 ? 1 : 2, '\1');
         return read(name, file.bytes());
     }
-    /// By what a file is scaled that is written with what is merged; 0: by nothing.
-    double scale_of(std::span<const ScanInfo> scans) const {
+    static Schema amplitude() {
         Schema schema;
         schema.position = PositionType::i32_scaled;
         schema.stride = 12;
         schema.add("Amplitude", ScalarType::i16);
+        return schema;
+    }
+    /// By what a file is scaled that is written with what is merged; 0: by nothing.
+    double scale_of(std::span<const ScanInfo> scans) const {
+        const Schema schema = amplitude();
         const auto writer = create_scan(folder_ / "s.las", schema, merged_info(scans), {.overwrite = true});
         EXPECT_TRUE(writer && (*writer)->write(std::vector<std::byte>(14)) && (*writer)->finish());
         const auto file = InputFile::open(folder_ / "s.las");
@@ -125,6 +129,7 @@ TEST_F(MergedInfo, ExtraBytesKeepTheirScaleWhicheverScanHasThem) {
     for (const auto& scans : {std::vector{a, b}, {none, a}, {a, none}, {c, a}, {a, c}, {none, none, b}}) {
         EXPECT_EQ(different_extras(scans), "");
         EXPECT_EQ(scale_of(scans), .01) << scans[0].path << " " << scans[1].path;
+        EXPECT_EQ(las::scaled_extras(merged_info(scans), amplitude()), "'Amplitude' * 0.01 + 0");
     }
 }
 
@@ -136,6 +141,7 @@ TEST_F(MergedInfo, ExtraBytesThatAreScaledInTwoWaysAreNamedAndLeftAsTheyStand) {
         EXPECT_THAT(different_extras(scans), HasSubstr(scans[1].path));
         EXPECT_THAT(merged_info(scans).details, HasSubstr(kExtrasNote));
         EXPECT_EQ(scale_of(scans), 0) << scans[1].path;
+        EXPECT_EQ(las::scaled_extras(merged_info(scans), amplitude()), "");
     }
 }
 
