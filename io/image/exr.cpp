@@ -62,18 +62,17 @@ constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
 
 /// Lines from `line` on into `pixels`, the channels of these names into its components.
-void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int64_t left, int64_t width,
-                int64_t line, int64_t lines, glm::vec4* pixels) {
-    constexpr auto kPixel = static_cast<int64_t>(sizeof(glm::vec4));
-    // Where the pixel (0, 0) would be: the library counts from there.
-    char* origin = reinterpret_cast<char*>(pixels) - left * kPixel - line * width * kPixel;
+void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int left, int64_t width, int line,
+                int64_t lines, glm::vec4* pixels) {
+    constexpr size_t kPixel = sizeof(glm::vec4);
     Imf::FrameBuffer target;
     for (size_t c = 0; c < names.size(); ++c)
         if (!names[c].empty())
-            target.insert(names[c], Imf::Slice(Imf::FLOAT, origin + c * sizeof(float), kPixel,
-                                               static_cast<size_t>(kPixel * width)));
+            target.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &(*pixels)[static_cast<glm::length_t>(c)],
+                                                     {left, line}, width, lines, kPixel,
+                                                     kPixel * static_cast<size_t>(width)));
     exr.setFrameBuffer(target);
-    exr.readPixels(static_cast<int>(line), static_cast<int>(line + lines - 1));
+    exr.readPixels(line, static_cast<int>(line + lines - 1));
 }
 
 Image decode(const InputFile& file, uint64_t most_pixels) {
@@ -108,7 +107,7 @@ Image decode(const InputFile& file, uint64_t most_pixels) {
     for (int64_t line = 0; line < height; line += kLinesAtOnce) {
         const int64_t lines = std::min(kLinesAtOnce, height - line);
         image.pixels.resize(static_cast<size_t>(width * (line + lines)), glm::vec4(0, 0, 0, 1));
-        read_lines(exr, names, window.min.x, width, window.min.y + line, lines,
+        read_lines(exr, names, window.min.x, width, static_cast<int>(window.min.y + line), lines,
                    image.pixels.data() + width * line);
     }
     if (gray)

@@ -178,6 +178,23 @@ TEST_F(ExrHeader, AnAttributeThatDoesNotEndWhereItSaysIsRefused) {
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("contradicts itself"));
 }
 
+/// Such a pixel (0, 0) lies outside of all memory, and so must not be pointed at (fuzz_exr).
+TEST_F(ExrHeader, AWindowFarFromTheOriginIsReadAsAnyOther) {
+    size_t chunk = 8;  // the only one, right behind the table that says where it is
+    while (chunk < bytes_.size() && std::memcmp(&bytes_[chunk - 8], &chunk, 8) != 0) ++chunk;
+    for (const std::array<int32_t, 2> corner :
+         {std::array{-1'000'000'000, 1'000'000'000}, {909'522'486, -7}}) {
+        put(value_of("dataWindow", "box2i"), std::array{corner[0], corner[1], corner[0] + 3, corner[1] + 3});
+        put(chunk, corner[1]);
+        const MemoryFile file;
+        file.set(bytes_);
+        const auto read = read_exr(file.path());
+        ASSERT_TRUE(read) << read.error().line();
+        const Image image = noise(4, 4);
+        for (size_t i = 0; i < 16; ++i) EXPECT_EQ(glm::vec3(read->pixels[i]), glm::vec3(image.pixels[i]));
+    }
+}
+
 TEST_F(ExrHeader, LinesThatTheFileHasNoTableForAreRefused) {
     for (const std::array<int32_t, 2> corner : {std::array{16383, 4000}, {3, 16383}}) {
         put(value_of("dataWindow", "box2i") + 8, corner);
@@ -247,7 +264,8 @@ std::string slopes_jpeg(int width, int height, TJSAMP sampling) {
     const tjhandle encoder = tjInitCompress();
     unsigned char* bytes = nullptr;
     unsigned long size = 0;
-    EXPECT_EQ(tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, sampling, 95, 0), 0);
+    EXPECT_EQ(tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, sampling, 95, 0),
+              0);
     const std::string encoded(reinterpret_cast<const char*>(bytes), size);
     tjFree(bytes);
     tjDestroy(encoder);
@@ -261,7 +279,8 @@ TEST(Jpeg, ColoursComeBackWhateverTheirSubsampling) {
         file.set(slopes_jpeg(kWidth, kHeight, sampling));
         const auto read = read_jpeg(file.path());
         ASSERT_TRUE(read) << read.error().line();
-        ASSERT_TRUE(read->width == kWidth && read->height == kHeight && read->bytes.size() == 3 * kWidth * kHeight);
+        ASSERT_TRUE(read->width == kWidth && read->height == kHeight &&
+                    read->bytes.size() == 3 * kWidth * kHeight);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
                 const uint8_t* pixel = &read->bytes[3 * (static_cast<size_t>(y) * kWidth + x)];
