@@ -89,6 +89,12 @@ void warn_of_differences(std::span<const io::ScanInfo> scans) {
         if (!differ.empty()) log::warn("{}", differ);
 }
 
+void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema) {
+    const io::Attribute *from = own.find(io::names::color), *to = schema.find(io::names::color);
+    if (from && to && from->type == io::ScalarType::u8 && to->type == io::ScalarType::u16)
+        scan.color_bits = 16;
+}
+
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
     SourceHeader header{
         .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
@@ -97,6 +103,7 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
         header.scans.push_back(inputs.source(i).info());
         if (!io::states_unit(header.scans.back()))
             header.scans.back().metres_per_unit = header.metres_per_unit;
+        widen_colour(header.scans.back(), inputs.source(i).schema(), schema);
         if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;
     }
     return header;

@@ -27,6 +27,10 @@ void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit);
 void warn_of_differences(const Unifier& inputs);
 void warn_of_differences(std::span<const io::ScanInfo> scans);
 
+/// What a cache with records of `schema` says of a scan with records of `own`: where colours of 8 bits became
+/// 16, as of another scan, they are spread over these (RecordMap).
+void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema);
+
 /// Of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);
 

@@ -109,8 +109,10 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     header.min = glm::min(before.min, facts.min);
     header.max = glm::max(before.max, facts.max);
     header.points = before.points + facts.points;
+    for (auto& scan : header.scans) widen_colour(scan, before.schema, header.schema);
     for (size_t i = 1; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
+        widen_colour(header.scans.back(), inputs.source(i).schema(), header.schema);
         if (!io::states_unit(header.scans.back())) header.scans.back().metres_per_unit = before.metres_per_unit;
         header.scans.back().losses = facts.inputs[i].losses;
     }

@@ -52,6 +52,20 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : sou
     info_ = io::merged_info(header.scans);
     info_.declared_points = header.points;
     info_.metres_per_unit = header.metres_per_unit;
+    find_narrow_colours();
+}
+
+void Exporter::find_narrow_colours() {
+    const auto& header = source_.header();
+    const auto* color = schema_.find(io::names::color);
+    if (!color || color->type != io::ScalarType::u16 || color->components != 3) return;
+    const auto* scan = header.schema.find(io::names::scan);
+    if (!scan || scan->type != io::ScalarType::u16) return;
+    std::vector<bool> narrow;
+    for (const auto& each : header.scans) narrow.push_back(each.color_bits <= 8);
+    if (std::ranges::count(narrow, true) % std::ssize(narrow) == 0) return;  // all are alike
+    spread_ = {std::move(narrow), scan->offset, color->offset};
+    info_.color_bits = 16;
 }
 
 void Exporter::append(const NodeData& data, size_t first, size_t count,
@@ -63,10 +77,19 @@ void Exporter::append(const NodeData& data, size_t first, size_t count,
         const std::byte* in = &data.records[(first + i) * from];
         std::byte* out = &records[begin + i * schema_.stride];
         for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
+        if (!spread_.narrow.empty()) spread_colour(in, out);
         if (!estimated_) continue;
         const auto normal = decode_normal(io::load<NormalCode>(in + estimated_->offset));
         io::store(out + schema_.attributes.back().offset, normal.value_or(glm::vec3(0.0f)));
     }
+}
+
+void Exporter::spread_colour(const std::byte* in, std::byte* out) const {
+    constexpr uint32_t kFactor = 65535 / 255;
+    const auto scan = io::load<uint16_t>(in + spread_.scan);
+    if (scan >= spread_.narrow.size() || !spread_.narrow[scan]) return;
+    for (std::byte* color = out + spread_.color; color < out + spread_.color + 6; color += 2)
+        io::store(color, static_cast<uint16_t>(std::min(io::load<uint16_t>(color) * kFactor, 65535u)));
 }
 
 io::WriteOptions Exporter::write_options(bool overwrite) const {

@@ -35,6 +35,9 @@ class Exporter {
     struct Copy {
         uint32_t from = 0, to = 0, bytes = 0;
     };
+    /// Where scans have colours of 8 bits in 16 beside such of all 16: a file has one white for all.
+    void find_narrow_colours();
+    void spread_colour(const std::byte* in, std::byte* out) const;
     /// Appends `count` of a node's points in our schema, from `first` on.
     void append(const NodeData& data, size_t first, size_t count, std::vector<std::byte>& records) const;
     /// Shows every point, node by node, until `visit` is false.
@@ -46,6 +49,10 @@ class Exporter {
     io::Schema schema_;
     io::ScanInfo info_;
     std::vector<Copy> copies_;
+    struct Spread {
+        std::vector<bool> narrow;      ///< scans whose colours are spread over 16 bits; empty: none
+        uint32_t scan = 0, color = 0;  ///< where these stand, in the cache's records and in ours
+    } spread_;
     const io::Attribute* estimated_ = nullptr;  ///< in the cache's schema, where normals are wanted
 };
 

@@ -82,6 +82,20 @@ TEST_F(Units, FilesThatStateNoneAreInThatOfTheOthers) {
         EXPECT_EQ(scan.metres_per_unit, kFoot);
 }
 
+TEST_F(Units, ColoursOf8BitsAmongOthersOf16HaveTheirWhite) {
+    for (const auto type : {io::ScalarType::u8, io::ScalarType::u16, io::ScalarType::u16}) {
+        io::Schema schema;
+        schema.add(std::string(io::names::color), type, 3);
+        auto& source = sources_.emplace_back(schema, 10, [](uint64_t, std::byte*) {});
+        source.info().color_bits = sources_.size() == 2 ? 16 : 8;
+    }
+    const Unifier inputs = unified();
+    const auto header = header_of(inputs, {}, inputs.schema());
+    EXPECT_EQ(header.scans[0].color_bits, 16u) << "were made so";
+    EXPECT_EQ(header.scans[1].color_bits, 16u);
+    EXPECT_EQ(header.scans[2].color_bits, 8u) << "stay as they are in their 16 bits";
+}
+
 TEST_F(Units, WhereNoneStatesOneItIsTheMetre) {
     add("rows.xyz", 1);
     add("mesh.obj", 1);

@@ -123,6 +123,49 @@ TEST(Export, KeepsTheScanOfEachPointOfSeveral) {
     EXPECT_EQ(second, 40'000u);
 }
 
+/// Points of one colour, all components alike.
+test::ComputedSource of_colour(io::ScalarType type, double value, uint32_t bits) {
+    io::Schema schema;
+    schema.add(std::string(io::names::color), type, 3);
+    test::ComputedSource source(schema, 100, [schema, value](uint64_t index, std::byte* record) {
+        for (size_t axis = 0; axis < 3; ++axis)
+            io::store(record + 8 * axis, static_cast<double>(index * (axis + 1) % 10));
+        const auto& color = schema.attributes[0];
+        for (size_t c = 0; c < 3; ++c)
+            io::store_scalar(color.type, record + color.offset + c * io::scalar_bytes(color.type), value);
+    });
+    source.info().color_bits = bits;
+    return source;
+}
+
+TEST(Export, SpreadsColoursOf8BitsAmongOthersOf16) {
+    const auto bytes = of_colour(io::ScalarType::u8, 200, 8), narrow = of_colour(io::ScalarType::u16, 200, 8),
+               wide = of_colour(io::ScalarType::u16, 51400, 16);
+    for (const auto& inputs : {std::vector<const io::PointSource*>{&bytes, &narrow, &wide},
+                               {&wide, &narrow},
+                               {&narrow, &wide, &bytes},
+                               {&bytes, &narrow}}) {
+        const TempFolder folder;
+        ASSERT_TRUE(convert(inputs, folder / "a.luc"));
+        ASSERT_TRUE(export_to(folder / "a.luc", folder / "b.las"));
+        const auto after = io::open_scan(folder / "b.las");
+        ASSERT_TRUE(after) << after.error().line();
+        EXPECT_EQ((*after)->info().color_bits, 16u);
+        const auto& schema = (*after)->schema();
+        const auto records = io::testing::read_all(**after);
+        for (size_t at = 0; at < records->bytes.size(); at += schema.stride)
+            ASSERT_EQ(io::load<uint16_t>(&records->bytes[at + schema.find(io::names::color)->offset]), 51400);
+    }
+}
+
+TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreWhereAllAreSo) {
+    const auto a = of_colour(io::ScalarType::u16, 200, 8), b = of_colour(io::ScalarType::u16, 100, 8);
+    const TempFolder folder;
+    ASSERT_TRUE(convert({&a, &b}, folder / "a.luc"));
+    ASSERT_TRUE(export_to(folder / "a.luc", folder / "b.las"));
+    EXPECT_EQ((*io::open_scan(folder / "b.las"))->info().color_bits, 8u);
+}
+
 TEST(Export, GivesEverySharedLasAndPlyBackAsItWas) {
     const auto data = io::testing::shared_data();
     if (data.empty()) GTEST_SKIP() << "no shared scans here";

@@ -54,23 +54,28 @@ std::vector<uint32_t> nodes_in(const octree::NodeSource& source, const Frame& fr
 
 class ColorReader {
  public:
-    explicit ColorReader(const octree::SourceHeader& header) : color_(header.schema.find(io::names::color)) {
+    explicit ColorReader(const octree::SourceHeader& header)
+        : color_(header.schema.find(io::names::color)), scan_(header.schema.find(io::names::scan)) {
         if (color_ && color_->components != 3) color_ = nullptr;
-        white_ = io::color_white(header.scans.empty() ? 8 : header.scans.front().color_bits);
+        if (scan_ && scan_->type != io::ScalarType::u16) scan_ = nullptr;  // a damaged cache's
+        for (const auto& scan : header.scans) white_.push_back(io::color_white(scan.color_bits));
+        if (white_.empty()) white_.push_back(255);
     }
     std::array<uint8_t, 3> at(const std::byte* record) const {
         std::array<uint8_t, 3> rgb{200, 200, 200};
+        const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
+        const double white = white_[std::min(scan, white_.size() - 1)];
         for (size_t c = 0; color_ && c < 3; ++c) {
             const double value =
                 io::scalar_at(color_->type, record + color_->offset + c * io::scalar_bytes(color_->type));
-            rgb[c] = static_cast<uint8_t>(std::clamp(value / white_ * 255, 0.0, 255.0));
+            rgb[c] = static_cast<uint8_t>(std::clamp(value / white * 255, 0.0, 255.0));
         }
         return rgb;
     }
 
  private:
-    const io::Attribute* color_;
-    double white_ = 255;
+    const io::Attribute *color_, *scan_;
+    std::vector<double> white_;  ///< of each scan
 };
 
 Result<void> add_node(const octree::NodeSource& source, uint32_t node, const Frame& frame, Section& section) {
