@@ -23,6 +23,9 @@ constexpr size_t kMostCandidates = size_t{1} << 18;
 /// Of the candidates in a cell only the first count, or sheets upon sheets would fill the memory. A plane
 /// gives up to 50.
 constexpr uint8_t kMostInCell = 200;
+/// So few candidates are faster compared with each other than the cells of a block are cleared, of which a
+/// sliver crosses thousands.
+constexpr size_t kFew = 64;
 /// Sides that turn this far from each other do not see each other: a thin wall has samples on both.
 constexpr float kSameSide = -0.5f;
 constexpr uint64_t kSeed = 0x6d657368;
@@ -117,6 +120,7 @@ struct Sampler::Candidates {
     /// Sorts by order, and leaves out what is too many in a cell.
     void sort(const Region& region) {
         spread_sort(order);
+        if (order.size() <= kMostInCell) return;
         std::vector<uint8_t> seen(region.cells());
         std::erase_if(order, [&](uint64_t o) {
             uint8_t& count = seen[list[o & kIndex].cell];
@@ -313,7 +317,8 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         uint32_t next;  ///< in its cell, counted from 1
         bool unsure;
     };
-    std::vector<uint32_t> first(region.cells());  // 0: none
+    const bool few = candidates.order.size() <= kFew;       // all in one list
+    std::vector<uint32_t> first(few ? 1 : region.cells());  // 0: none
     std::vector<Kept> kept;
     kept.reserve(candidates.order.size() / 8);
     const double near = radius_ * radius_;
@@ -326,7 +331,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         bool unsure = false;
         /// Whether one that stays in this cell drives the candidate out.
         const auto taken = [&](uint32_t cell) {
-            for (uint32_t entry = first[cell]; entry != 0; entry = kept[entry - 1].next) {
+            for (uint32_t entry = first[few ? 0 : cell]; entry != 0; entry = kept[entry - 1].next) {
                 const Kept& other = kept[entry - 1];
                 const glm::dvec3 apart = other.at - candidate.at;
                 if (glm::dot(apart, apart) >= near || glm::dot(other.normal, normal) < kSameSide) continue;
@@ -353,8 +358,9 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         }
         if (out) continue;
         unsure = unsure && surely;
-        kept.push_back({candidate.at, normal, first[candidate.cell], unsure});
-        first[candidate.cell] = static_cast<uint32_t>(kept.size());
+        uint32_t& newest = first[few ? 0 : candidate.cell];
+        kept.push_back({candidate.at, normal, newest, unsure});
+        newest = static_cast<uint32_t>(kept.size());
         const glm::ivec3 whole = at + region.low;
         if (glm::any(glm::lessThan(whole, block.low)) || glm::any(glm::greaterThanEqual(whole, block.high)))
             continue;
