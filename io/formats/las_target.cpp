@@ -37,6 +37,7 @@ void choose_format(Header& header, const Schema& schema, bool from_las, bool com
         header.point_format = nir ? 8 : color ? 7 : 6;
     } else {
         header.point_format = static_cast<uint8_t>((gps ? 1 : 0) + (color ? 2 : 0));
+        if (color) header.minor = std::max<uint8_t>(header.minor, 2);  // an older one knows none
     }
 }
 

@@ -500,6 +500,21 @@ TEST_F(Writers, DamagedDetailsAreAnErrorOrIgnoredButNeverACrash) {
     }
 }
 
+TEST_F(Writers, ColoursBesideAnOldHeaderTakeAVersionThatHasThem) {
+    for (const uint8_t minor : {uint8_t{0}, uint8_t{1}}) {
+        LasFile old;
+        old.minor = minor;
+        old.records = {record0(1, 2, 3)};
+        write_bytes(folder_ / "old.las", old.bytes());
+        Points points(PositionType::i32_scaled);
+        points.schema.add(std::string(names::color), ScalarType::u16, 3);
+        points.add();
+        const auto source = open_scan(folder_ / "old.las");
+        const auto copy = written("new.las", points, (*source)->info(), {.overwrite = true});
+        EXPECT_EQ(copy->info().format, "LAS 1.2, point format 2");
+    }
+}
+
 TEST_F(Writers, HeadersOfEveryLasVersionComeBack) {
     for (const int minor : {0, 1, 2, 3, 4}) {
         LasFile file;
