@@ -129,6 +129,14 @@ void state_unit(const std::string& path, Header& header, double metres) {
     set_projection(header, {wkt_record(wkt)});
 }
 
+/// An angle out of the whole degrees that older formats have instead.
+std::optional<Converter::Field> angle_of_rank(const Schema& from, const Attribute& field) {
+    constexpr double kAngleUnit = 0.006;  // degrees (LAS 1.4 R15, table 16)
+    const Attribute* rank = from.find(names::scan_angle_rank);
+    if (!rank || rank->components != 1) return std::nullopt;
+    return Converter::Field{.from = *rank, .to = field, .factor = 1 / kAngleUnit, .fills = true};
+}
+
 /// What a field gets that nothing of its name and type is for: what comes near, or follows from another.
 std::optional<Converter::Field> derived_field(const Schema& from, const Attribute& field, bool extended,
                                               const std::optional<Range>& intensity) {
@@ -143,11 +151,7 @@ std::optional<Converter::Field> derived_field(const Schema& from, const Attribut
         }
         return made;
     }
-    const Attribute* rank = from.find(names::scan_angle_rank);
-    constexpr double kAngleUnit = 0.006;  // degrees (LAS 1.4 R15, table 16); the rank counts whole degrees
-    if (name == names::scan_angle && rank && rank->components == 1)
-        return Converter::Field{*rank, field, 1 / kAngleUnit};
-    return std::nullopt;
+    return name == names::scan_angle ? angle_of_rank(from, field) : std::nullopt;
 }
 
 Converter make_converter(const Schema& from, const Schema& to, const std::vector<Attribute>& extra,
@@ -164,6 +168,9 @@ Converter make_converter(const Schema& from, const Schema& to, const std::vector
         // Colours of 16 bits stay as they are; the specification wants all others spread over 16 bits.
         const bool spread = field.name == names::color && a->type != ScalarType::u16;
         converter.map({*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0});
+        if (field.name != names::scan_angle) continue;
+        // Of scans of both kinds each point has one of the two.
+        if (const auto angle = angle_of_rank(from, field)) converter.map(*angle);
     }
     for (size_t k = 0; k < extra.size(); ++k) {
         const Attribute& target = to.attributes[fields + k];  // the same bytes, but maybe without their type
@@ -205,6 +212,7 @@ bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
                 std::memcpy(out + f.to.offset, in + f.from.offset, f.to.bytes());
                 continue;
             }
+            if (f.fills && scalar_at(f.to.type, out + f.to.offset) != 0) continue;
             const size_t step = scalar_bytes(f.from.type), out_step = scalar_bytes(f.to.type);
             for (size_t c = 0; c < f.to.components; ++c)
                 store_scalar(

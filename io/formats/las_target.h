@@ -18,6 +18,7 @@ class Converter {
     struct Field {
         Attribute from, to;
         double factor = 1.0, shift = 0.0, most = std::numeric_limits<double>::infinity();
+        bool fills = false;  ///< only what is 0 so far
     };
     void map(const Field& field) { fields_.push_back(field); }
     /// False where a position does not fit 32-bit integers with the target's scale and offset.

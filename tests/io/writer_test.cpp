@@ -232,6 +232,18 @@ TEST_F(Writers, ScanAnglesInWholeDegreesFillTheFieldOfNewerFormatsAndStay) {
     EXPECT_EQ(value(**copy, "scan_angle_rank"), -90);
 }
 
+TEST_F(Writers, ScanAnglesOfOlderAndNewerFormatsFillOneField) {
+    Points points(PositionType::f64);  // as where two scans were put together
+    points.schema.add(std::string(names::scan_angle_rank), ScalarType::i8);
+    points.schema.add(std::string(names::scan_angle), ScalarType::i16);
+    points.add();
+    points.set(names::scan_angle_rank, int8_t{12});
+    EXPECT_EQ(value(*written("a.las", points), "scan_angle"), 2000);
+    points.set(names::scan_angle_rank, int8_t{0});
+    points.set(names::scan_angle, int16_t{-501});
+    EXPECT_EQ(value(*written("b.las", points), "scan_angle"), -501);
+}
+
 TEST_F(Writers, GeoTiffKeysOfUtmBecomeWellKnownTextInNewerFormatsAndOthersStay) {
     for (const uint16_t code : {uint16_t{32633}, uint16_t{2903}}) {
         LasFile file;
