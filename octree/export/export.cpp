@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 #include "io/core/progress.h"
 #include "io/formats/copc_writer.h"
@@ -63,7 +64,7 @@ void Exporter::find_narrow_colours() {
     if (!scan || scan->type != io::ScalarType::u16) return;
     std::vector<bool> narrow;
     for (const auto& each : header.scans) narrow.push_back(each.color_bits <= 8);
-    if (std::ranges::count(narrow, true) % std::ssize(narrow) == 0) return;  // all are alike
+    if (std::ranges::adjacent_find(narrow, std::not_equal_to{}) == narrow.end()) return;  // all are alike
     spread_ = {std::move(narrow), scan->offset, color->offset};
     info_.color_bits = 16;
 }

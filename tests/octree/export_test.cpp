@@ -158,6 +158,27 @@ TEST(Export, SpreadsColoursOf8BitsAmongOthersOf16) {
     }
 }
 
+/// What a damaged cache may say: points have the number of a scan, but there is none.
+class WithoutScans final : public NodeSource {
+ public:
+    WithoutScans() {
+        header_.schema.stride = static_cast<uint32_t>(io::position_bytes(header_.schema.position));
+        header_.schema.add(std::string(io::names::color), io::ScalarType::u16, 3);
+        header_.schema.add(std::string(io::names::scan), io::ScalarType::u16);
+    }
+    const SourceHeader& header() const override { return header_; }
+    std::span<const NodeInfo> nodes() const override { return {}; }
+    Result<NodeData> load(uint32_t) const override { return rejected("nothing", "has no node"); }
+
+ private:
+    SourceHeader header_;
+};
+
+TEST(Export, KnowsNoWhiteOfScansThatAreNotThere) {
+    const WithoutScans source;
+    EXPECT_EQ(Exporter(source, {}).info().color_bits, io::ScanInfo{}.color_bits);
+}
+
 TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreWhereAllAreSo) {
     const auto a = of_colour(io::ScalarType::u16, 200, 8), b = of_colour(io::ScalarType::u16, 100, 8);
     const TempFolder folder;
