@@ -19,6 +19,9 @@ std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directo
 /// From whichever the header has; 1 where neither says. Warns when the coordinates are angles.
 double metres_per_unit(const std::string& file, const Header& header);
 
+/// What a system is called that says a unit of length and nothing else: of files that have none, but are no metres.
+inline constexpr const char* kLocalSystem = "local";
+
 /// Its name and code from whichever the header has. GeoTIFF keys: 3072 ProjectedCRS or 2048 GeodeticCRS, and
 /// their citations 3073, 1026, 2049.
 CoordinateSystem coordinate_system(const Header& header);

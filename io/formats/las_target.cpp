@@ -125,7 +125,8 @@ void state_unit(const std::string& path, Header& header, double metres) {
         return;
     }
     const std::string wkt = fmt::format(
-        R"(LOCAL_CS["local",LOCAL_DATUM["local",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres);
+        R"(LOCAL_CS["{1}",LOCAL_DATUM["{1}",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres,
+        kLocalSystem);
     set_projection(header, {wkt_record(wkt)});
 }
 

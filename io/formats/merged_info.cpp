@@ -15,9 +15,10 @@ namespace {
 
 using json = nlohmann::json;
 
-/// Files without points decide nothing.
+/// Files without points decide nothing, and those that only say a unit leave it to others.
 bool says_system(const ScanInfo& scan) {
-    return scan.declared_points > 0 && (scan.epsg != 0 || !scan.coordinate_system.empty());
+    const bool named = !scan.coordinate_system.empty() && scan.coordinate_system != las::kLocalSystem;
+    return scan.declared_points > 0 && (scan.epsg != 0 || named);
 }
 /// Codes tell more than names, which everybody writes otherwise.
 bool same_system(const ScanInfo& a, const ScanInfo& b) {

@@ -111,6 +111,17 @@ TEST_F(MergedInfo, AScanThatSaysNothingTakesTheSystemOfTheOthersWithANote) {
     }
 }
 
+TEST_F(MergedInfo, AScanThatWasWrittenWithItsUnitAloneTakesTheSystemOfTheOthers) {
+    auto feet = text("f.xyz");
+    feet.metres_per_unit = 0.3048;
+    const auto unit_only = written(std::array{feet}, "f.las");
+    EXPECT_EQ(unit_only.metres_per_unit, 0.3048);
+    const std::array scans = {unit_only, las("a.las", 2903)};
+    EXPECT_EQ(different_systems(scans), "");
+    for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u);
+    EXPECT_EQ(written(std::array{unit_only, feet}, "m.las").metres_per_unit, 0.3048);
+}
+
 TEST_F(MergedInfo, TheSystemOfAnE57IsWellKnownTextInLas) {
     ScanInfo e57;
     e57.format = "E57 1.0, 1 scan";
