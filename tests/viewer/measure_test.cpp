@@ -226,6 +226,50 @@ TEST_F(MeasuredCloud, ASectionHoldsExactlyThePointsOfItsSlice) {
     for (const auto& dot : raster.dots) EXPECT_TRUE(dot.x < 200 && dot.y < 100);
 }
 
+/// Two points of the same half bright gray: of a scan with colours of 8 bits in 16, and of one of all 16.
+class TwoWhites final : public octree::NodeSource {
+ public:
+    TwoWhites() : nodes_(1) {
+        io::Schema& schema = header_.schema;
+        schema.stride = static_cast<uint32_t>(io::position_bytes(schema.position));
+        schema.add(std::string(io::names::color), io::ScalarType::u16, 3);
+        schema.add(std::string(io::names::scan), io::ScalarType::u16);
+        header_.root = {dvec3(0.0), 1.0};
+        header_.max = dvec3(1.0);
+        header_.scans.resize(2);
+        header_.scans[0].color_bits = 8;
+        header_.scans[1].color_bits = 16;
+        nodes_[0].count = 2;
+    }
+    const octree::SourceHeader& header() const override { return header_; }
+    std::span<const octree::NodeInfo> nodes() const override { return nodes_; }
+    Result<octree::NodeData> load(uint32_t) const override {
+        const io::Schema& schema = header_.schema;
+        octree::NodeData data{2, std::vector<std::byte>(size_t{2} * schema.stride)};
+        for (uint16_t i = 0; i < 2; ++i) {
+            std::byte* record = &data.records[size_t{i} * schema.stride];
+            for (size_t axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, 0.5);
+            for (size_t c = 0; c < 3; ++c)
+                io::store(record + schema.find(io::names::color)->offset + 2 * c,
+                          static_cast<uint16_t>(i == 0 ? 128 : 128 * 257));
+            io::store(record + schema.find(io::names::scan)->offset, i);
+        }
+        return data;
+    }
+
+ private:
+    octree::SourceHeader header_;
+    std::vector<octree::NodeInfo> nodes_;
+};
+
+TEST(Section, ColoursHaveTheWhiteOfTheirScan) {
+    const auto section = read_section(TwoWhites(), {{0, 0.5, 0}, {1, 0.5, 0}, 1}, 100,
+                                      [](const Section&, bool) { return true; });
+    ASSERT_TRUE(section) << section.error().line();
+    ASSERT_EQ(section->points.size(), 2u);
+    for (const SectionPoint& point : section->points) EXPECT_EQ(point.color[0], 128);
+}
+
 TEST_F(MeasuredCloud, TheCommandMeasuresWhatTheWindowSaved) {
     const std::string cache = scan_->file(), json = scan_->folder / "m.json";
     const std::vector<Measurement> all = {
