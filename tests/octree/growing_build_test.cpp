@@ -136,7 +136,8 @@ TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
     ASSERT_TRUE(build) << build.error().line();
     const auto sources = all_sources(**build);
     ASSERT_TRUE((*build)->error()) << (*build)->error().error().line();
-    EXPECT_GT(sources.size(), 5u) << "pieces come one by one";
+    // How many depends on how long each takes to be made: they get a twentieth of the time.
+    EXPECT_GT(sources.size(), 2u) << "something comes between the first and the cache";
     size_t last = 0;
     for (const auto& source : sources) {
         ASSERT_TRUE(is_directory(source->nodes()));
