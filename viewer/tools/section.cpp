@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 #include <glm/vec2.hpp>
@@ -55,16 +56,16 @@ std::vector<uint32_t> nodes_in(const octree::NodeSource& source, const Frame& fr
 class ColorReader {
  public:
     explicit ColorReader(const octree::SourceHeader& header)
-        : color_(header.schema.find(io::names::color)), scan_(header.schema.find(io::names::scan)) {
+        : color_(header.schema.find(io::names::color)),
+          scan_(header.schema.find(io::names::scan)),
+          scans_(header.scans) {
         if (color_ && color_->components != 3) color_ = nullptr;
         if (scan_ && scan_->type != io::ScalarType::u16) scan_ = nullptr;  // a damaged cache's
-        for (const auto& scan : header.scans) white_.push_back(io::color_white(scan.color_bits));
-        if (white_.empty()) white_.push_back(255);
     }
     std::array<uint8_t, 3> at(const std::byte* record) const {
         std::array<uint8_t, 3> rgb{200, 200, 200};
         const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
-        const double white = white_[std::min(scan, white_.size() - 1)];
+        const double white = io::color_white(scan < scans_.size() ? scans_[scan].color_bits : 8);
         for (size_t c = 0; color_ && c < 3; ++c) {
             const double value =
                 io::scalar_at(color_->type, record + color_->offset + c * io::scalar_bytes(color_->type));
@@ -75,7 +76,7 @@ class ColorReader {
 
  private:
     const io::Attribute *color_, *scan_;
-    std::vector<double> white_;  ///< of each scan
+    std::span<const io::ScanInfo> scans_;
 };
 
 Result<void> add_node(const octree::NodeSource& source, uint32_t node, const Frame& frame, Section& section) {
