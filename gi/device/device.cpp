@@ -228,6 +228,7 @@ const std::string& Device::shader_problem() const {
 }
 
 void Device::note_shader_problem(const Error& error) {
+    log::warn("{}", error.line());
     if (state_->shader_problem.empty()) state_->shader_problem = error.line();
 }
 

@@ -133,8 +133,8 @@ class Device {
     Result<const Program*> program(std::string_view path, const Defines& defines = {});
 
     /// Programs are made of the files in a folder that stands for the project's root, for who writes shaders;
-    /// LUCARNE_SHADERS names it for every device. What does not compile is the program's own, see
-    /// shader_problem().
+    /// LUCARNE_SHADERS names it for every device. A file that does not compile is reported by a warning and
+    /// shader_problem(); the program's own is used instead.
     void use_shader_folder(const std::filesystem::path& folder);
     /// Reads the folder again. Programs whose text has changed are compiled anew; where that fails the last good
     /// one stays. Not while one that program() gave is in use.

@@ -9,15 +9,16 @@ enum Binding : uint32_t { kCameraTexels = 3, kLightTexels = 4, kMaterials = 5, k
 
 }  // namespace
 
+std::vector<Material> device_materials(std::vector<Material> materials) {
+    if (materials.empty()) materials.push_back({glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)});
+    materials.resize(LUCARNE_DEVICE_MATERIALS, materials.front());
+    return materials;
+}
+
 Result<void> upload_materials(Device& device, const std::vector<Material>& materials, Buffer& target) {
-    static const std::vector<Material> kWhite = {{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)}};
-    const auto& used = materials.empty() ? kWhite : materials;
-    // Shaders take the buffer's length for the number of materials.
-    if (target.bytes() != used.size() * sizeof(Material)) {
-        target = Buffer();
-        LUCARNE_ASSIGN(target, device.buffer(used.size() * sizeof(Material), "materials"));
-    }
-    target.upload_all(used);
+    const auto held = device_materials(materials);
+    LUCARNE_TRY(device.reserve(target, held.size() * sizeof(Material), "materials"));
+    target.upload_all(held);
     return {};
 }
 
@@ -35,14 +36,14 @@ Result<void> upload_sky(const Frame& frame, Sky& sky) {
 }
 
 Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/own_light.comp"));
+    const Defines defines = add ? Defines{{"LUCARNE_ADD", "1"}} : Defines{};
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/gbuffer/own_light.comp", defines));
     frame.gbuffer.texels.bind(kCameraTexels);
     materials.bind(kMaterials);
     frame.radiance.bind(kRadiance);
     sky.texels.bind(kSky);
     const uint32_t pixels = frame.gbuffer.width * frame.gbuffer.height;
     set(*program, "camera", frame.camera);
-    program->set("add", add ? 1u : 0u);
     program->set("sky_width", frame.environment ? frame.environment->width : 1u);
     program->set("sky_height", frame.environment ? frame.environment->height : 1u);
     program->set("sky_rotation", frame.environment ? frame.environment->rotation : 0.0f);

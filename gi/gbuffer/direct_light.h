@@ -10,7 +10,11 @@ namespace lucarne::gi {
 /// The direct light of a picture, in parts that engines put together. `materials` is what upload_materials
 /// made; all of them work on frame.radiance. Errors: the shader's, no device memory.
 
-/// A white diffuse material where there is none.
+/// As many materials as a surfel can name (LUCARNE_DEVICE_MATERIALS). Surfels packed for an earlier scene may name some
+/// that no longer exist: these become the default material, or a white diffuse one where `materials` is empty.
+std::vector<Material> device_materials(std::vector<Material> materials);
+
+/// Uploads device_materials().
 Result<void> upload_materials(Device& device, const std::vector<Material>& materials, Buffer& target);
 
 /// What the camera sees where nothing is, on the device, and the light that comes from there.

@@ -24,8 +24,7 @@ void main() {
     if (irradiance == vec3(0.0)) return;
     if (light_face(light, position - light.position.xyz) != face) return;
     float visible = spot_visibility(position, normal, texel_radius(texel));
-    uint material = min(texel_material(texel), uint(materials.length()) - 1u);
-    Reflectance reflectance = make_reflectance(materials[material], texel_albedo(texel));
+    Reflectance reflectance = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
     vec3 to_eye = toward_viewer(camera, position);
     radiance[at].rgb += visible * irradiance * brdf(reflectance, normal, to_light, to_eye);
 }

@@ -13,7 +13,6 @@ uniform CameraView camera;
 uniform uint sky_width;
 uniform uint sky_height;
 uniform float sky_rotation;
-uniform uint add;  // 0: in the place of what the picture held
 
 vec3 background(uint at) {
     vec3 ray = view_ray(camera, vec2(at % camera.width, at / camera.width) + 0.5);
@@ -27,7 +26,9 @@ void main() {
     uint at = thread_number();
     if (at >= camera.width * camera.height) return;
     GBufferTexel texel = texels[at];
-    uint material = min(texel_material(texel), uint(materials.length()) - 1u);
-    vec3 light = texel.depth > 0.0 ? materials[material].emission.xyz : background(at);
-    radiance[at] = vec4(add != 0u ? radiance[at].rgb + light : light, 1.0);
+    vec3 light = texel.depth > 0.0 ? materials[texel_material(texel)].emission.xyz : background(at);
+#ifdef LUCARNE_ADD  // to what the picture holds, instead of replacing it
+    light += radiance[at].rgb;
+#endif
+    radiance[at] = vec4(light, 1.0);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "gi/gbuffer/direct_light.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 
@@ -20,7 +21,7 @@ glm::vec3 emission_of(const Material& material) {
 
 Illumination::Illumination(const SurfelTracer& surfels, std::vector<Material> materials,
                            std::vector<Light> lights, std::shared_ptr<const Environment> environment)
-    : surfels_(surfels), materials_(std::move(materials)), emitters_(surfels, {}), lit_(surfels, {}) {
+    : surfels_(surfels), materials_(device_materials(std::move(materials))), emitters_(surfels, {}), lit_(surfels, {}) {
     std::ranges::partition_copy(lights, std::back_inserter(sharp_), std::back_inserter(soft_), is_sharp);
     if (environment) environment_.emplace(std::move(environment));
     if (environment_ && environment_->dark()) environment_.reset();
@@ -41,8 +42,7 @@ SurfelSampler Illumination::sampler_of(const std::function<double(uint32_t)>& we
 }
 
 const Material& Illumination::material(uint32_t index) const {
-    static const Material plain{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)};
-    return index < materials_.size() ? materials_[index] : plain;
+    return materials_[std::min<size_t>(index, materials_.size() - 1)];
 }
 
 bool Illumination::arrives(const Light& sharp, const glm::vec3& origin, const glm::vec3& in) const {

@@ -12,6 +12,9 @@ using vec4 = glm::vec4;
 
 // BRDF: kd/pi + ks (n+2)/(2 pi) cos^n(angle to the mirror direction), kd + ks <= 1 in every channel.
 // kd = min(albedo * diffuse, .95), scaled down where kd + ks would exceed 1.
+// Surfels and G-buffers name a material by eight bits. Devices hold this many, so that every name is valid.
+#define LUCARNE_DEVICE_MATERIALS 256
+
 struct Material {
     vec4 diffuse;   // rgb scale of the scan's colour; w: ks, specular intensity
     vec4 emission;  // rgb radiance, W/(sr m^2); w: n, Phong exponent

@@ -8,12 +8,13 @@ layout(local_size_x = 256) in;
 #include "gi/vpl/thinning.glsl"
 
 uniform uint first_block, first_map;
+uniform uint places;  // of pairs[]: drivers differ in the length of a runtime array behind a header
 
 void queue_pairs(uint id, uint first, uint entered) {
     if (entered == 0u) return;
     uint place = atomicAdd(pair_count, uint(bitCount(entered)));
     do {
-        if (place < uint(pairs.length())) pairs[place] = uvec2(id, first + uint(findLSB(entered)));
+        if (place < places) pairs[place] = uvec2(id, first + uint(findLSB(entered)));
         ++place;
         entered &= entered - 1u;
     } while (entered != 0u);

@@ -88,6 +88,7 @@ void splat_range(const SplatPrograms& splat, Range blocks, Range maps, uint32_t 
     splat.meet->set("block_end", blocks.end);
     splat.meet->set("map_end", maps.end);
     splat.enter->set("first_block", blocks.first);
+    splat.enter->set("places", places);
     for (const Program* program : {splat.meet, splat.enter}) program->set("first_map", maps.first);
     splat.meet->dispatch(blocks.end - blocks.first, kRunMaps / 32);
     splat.enter->dispatch((blocks.end - blocks.first) * kBlockSurfels);

@@ -76,7 +76,6 @@ TEST_F(FlippedBit, InANodeMakesRenderVerifyExportAndCompactFailWithItsName) {
           "compact " + quoted(damaged_),
           "render " + quoted(damaged_) + " --size 64x64 -o " + quoted(folder_ / "c.png")}) {
         const auto outcome = lucarne(command);
-        if (outcome.text.find("EGL") != std::string::npos) GTEST_SKIP() << "no device to render on";
         EXPECT_EQ(outcome.code, 3) << command << '\n' << outcome.text;
         EXPECT_NE(outcome.text.find("does not match its checksum"), std::string::npos) << outcome.text;
     }

@@ -81,6 +81,7 @@ struct AnalyticScene {
     CameraView camera;
     EngineSettings settings;
     std::shared_ptr<const Environment> environment = nullptr;
+    size_t packed_materials = 0;  ///< materials of the scene that the surfels were packed for, where it had more
 };
 
 /// A square picture seen from `eye` toward `target`, `tangent` of half its field.
@@ -122,7 +123,7 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
                                uint64_t index = 0) {
     const OneNode source(scene.surfels);
     Scene assignments;
-    assignments.materials.resize(std::max<size_t>(scene.materials.size(), 1));
+    assignments.materials.resize(std::max({scene.materials.size(), scene.packed_materials, size_t{1}}));
     for (size_t i = 1; i < assignments.materials.size(); ++i)
         assignments.materials[i].classification = static_cast<int>(i);
     LUCARNE_ASSIGN(SurfelPool pool, SurfelPool::create(device, static_cast<uint32_t>(scene.surfels.size())));

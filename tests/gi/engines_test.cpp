@@ -134,6 +134,16 @@ TEST_P(Engines, EmissionIsSeenAsItIs) {
     for (const glm::vec4& pixel : render(scene).radiance) ASSERT_NEAR(pixel.x, 0.75f, 1e-4f);
 }
 
+// While a scene with fewer materials takes the place of another, surfels still carry the old names.
+TEST_P(Engines, MaterialThatNoLongerExistsIsTheDefault) {
+    AnalyticScene scene;
+    scenes::add_rectangle(scene.surfels, kO, 2.0f * kX, 2.0f * kY, 160, glm::vec3(0.5f), 200);
+    scene.camera = look(glm::vec3(1, 1, 3), glm::vec3(1, 1, 0), 0.25f, 32);
+    scene.materials = {material(1, 0, 1, 0.75f), material(1, 0, 1, 0.25f)};
+    scene.packed_materials = 201;
+    for (const glm::vec4& pixel : render(scene).radiance) ASSERT_NEAR(pixel.x, 0.75f, 1e-4f);
+}
+
 /// A wall x = 0 that a spot lights, and a floor z = 0 that only the wall lights.
 AnalyticScene lit_corner() {
     AnalyticScene scene;

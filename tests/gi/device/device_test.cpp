@@ -19,6 +19,12 @@ TEST_F(DeviceTest, HeadlessContextOffersWhatTheShadersNeed) {
     EXPECT_GE(device->info().max_buffer_bytes, uint64_t{1} << 27);
 }
 
+TEST_F(DeviceTest, DriverIsTheOneThatTheRunAskedFor) {
+    const char* renderer = std::getenv("LUCARNE_TEST_RENDERER");
+    if (!renderer) GTEST_SKIP() << "LUCARNE_TEST_RENDERER names no driver";
+    EXPECT_NE(device->info().renderer.find(renderer), std::string::npos) << device->info().renderer;
+}
+
 TEST_F(DeviceTest, BufferReturnsWhatWasUploaded) {
     std::vector<uint32_t> words(1000);
     std::iota(words.begin(), words.end(), 7u);
