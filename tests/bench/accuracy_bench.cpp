@@ -1,10 +1,10 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
 // with its preset, its figure and its target. A program and no test: `./run accuracy` takes some minutes, and
-// misses are printed, not hidden. Pictures go into FOLDER (default: a temporary one that is removed).
+// misses are printed, not hidden. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go into FOLDER (default: a
+// temporary one that is removed).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gi/compare/metrics.h"
+#include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "tests/gi/analytic_frame.h"
 #include "tests/gi/surfel_scenes.h"
@@ -24,7 +25,7 @@
 namespace lucarne {
 namespace {
 
-using bench::Scan;
+using bench::BenchRun, bench::Scan;
 
 void row(const std::string& scene, const std::string& measure, double value, double target, bool percent) {
     const double scale = percent ? 100 : 1;
@@ -35,6 +36,13 @@ void row(const std::string& scene, const std::string& measure, double value, dou
 
 gi::EngineSettings high() {
     return viewer::find_preset("high")->engine;
+}
+
+std::string samples(const BenchRun& run, uint64_t full) {
+    return fmt::format(" --samples {}", run.count(full));
+}
+std::string seconds(const BenchRun& run, double full) {
+    return fmt::format(" --seconds {}", run.seconds(full));
 }
 
 double brightest(const std::vector<glm::vec4>& picture) {
@@ -118,14 +126,14 @@ Result<void> judge(const std::string& what, const std::vector<glm::vec4>& pictur
 
 /// Lights with a size, direct and with one bounce: one frame, and the average of `frames`.
 Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera,
-                         const std::string& frames, double rel_mse) {
+                         const BenchRun& run, double rel_mse) {
     scan.light_by(bench::scene_file(scene));
     const std::string common = "--size 128x128 --preset interactive --camera " + camera + " ";
     for (const std::string bounce : {"0", "1"}) {
         const std::string only = common + "--only-bounce " + bounce + " ";
-        LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + "--samples 512"));
-        for (const std::string& count : {std::string("1"), frames}) {
-            LUCARNE_ASSIGN(const auto picture, scan.picture("soft-vpl", only + "--frames " + count));
+        LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + samples(run, 512)));
+        for (const uint64_t count : {uint64_t{1}, run.count(16)}) {
+            LUCARNE_ASSIGN(const auto picture, scan.picture("soft-vpl", fmt::format("{} --frames {}", only, count)));
             LUCARNE_TRY(judge(fmt::format("{}, bounce {}, {} frames", scene, bounce, count), picture, truth,
                               rel_mse, .03));
         }
@@ -133,28 +141,28 @@ Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string
     return {};
 }
 
-Result<void> cornell(const std::filesystem::path& folder) {
-    Scan scan("cornell", "2M", folder);
+Result<void> cornell(const BenchRun& run) {
+    LUCARNE_ASSIGN(Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
     const std::string size = "--size 256x256 --preset high ";
     Scan::Truth first;
     for (const std::string preset : {"interactive", "high"}) {
         const std::string common = "--size 256x256 --only-bounce 1 --preset " + preset;
-        LUCARNE_ASSIGN(first, scan.truth("b1", common + " --samples 256"));
+        LUCARNE_ASSIGN(first, scan.truth("b1", common + samples(run, 256)));
         LUCARNE_ASSIGN(const auto picture, scan.picture(preset, common));
         LUCARNE_TRY(
             judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
     }
     for (const int bounce : {2, 3, 4}) {
         const std::string only = fmt::format("--only-bounce {} ", bounce);
-        LUCARNE_ASSIGN(const auto truth, scan.truth("b", size + only + "--samples 128"));
+        LUCARNE_ASSIGN(const auto truth, scan.truth("b", size + only + samples(run, 128)));
         LUCARNE_ASSIGN(const auto picture, scan.picture("p", size + only));
         LUCARNE_TRY(judge(fmt::format("cornell, bounce {}, high", bounce), picture, truth, 0, .05));
     }
-    LUCARNE_ASSIGN(const auto all, scan.truth("all", size + "--bounces 4 --samples 128"));
+    LUCARNE_ASSIGN(const auto all, scan.truth("all", size + "--bounces 4" + samples(run, 128)));
     LUCARNE_ASSIGN(const auto together, scan.picture("all-vpl", size + "--bounces 4"));
     LUCARNE_TRY(judge("cornell, bounces 0 to 4, high", together, all, 0, .03));
     LUCARNE_ASSIGN(const auto minute,
-                   scan.picture("minute", "--size 256x256 --preset high --only-bounce 1 --seconds 60"));
+                   scan.picture("minute", size + "--only-bounce 1" + seconds(run, 60)));
     LUCARNE_TRY(judge("cornell, bounce 1, high, 60 s", minute, first, .001, .01));
 
     double whole = 0;
@@ -175,11 +183,11 @@ Result<void> cornell(const std::filesystem::path& folder) {
         row("cornell, bounce 1, interactive, atlas " + atlas, "mean against atlas 1024", mean / small - 1,
             .01, true);
     }
-    return soft_lights(scan, "cornell-area", "front", "16", .0125);
+    return soft_lights(scan, "cornell-area", "front", run, .0125);
 }
 
 /// The same VPLs over points in another order, and over half and twice as many points.
-Result<void> invariance(gi::Device& device, const std::filesystem::path& folder) {
+Result<void> invariance(gi::Device& device, const BenchRun& run) {
     gi::scenes::AnalyticScene scene;
     scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
     scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
@@ -191,25 +199,25 @@ Result<void> invariance(gi::Device& device, const std::filesystem::path& folder)
     row("closed furnace, points shuffled, high", "mean against in order",
         gi::mean_luminance(shuffled.radiance) / gi::mean_luminance(in_order.radiance) - 1, .01, true);
     double usual = 0;
-    for (const std::string points : {"2M", "1M", "4M"}) {
-        const Scan scan("cornell", points, folder);
+    for (const int millions : {2, 1, 4}) {
+        LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(millions * 1'000'000ull), run.folder));
         LUCARNE_ASSIGN(const auto picture, scan.picture("n", "--size 256x256 --preset high --only-bounce 1"));
         const double mean = gi::mean_luminance(picture);
-        if (points == "2M") usual = mean;
-        row("cornell, bounce 1, high, " + points + " points", "mean against 2M points", mean / usual - 1, .01,
+        if (millions == 2) usual = mean;
+        row(fmt::format("cornell, bounce 1, high, {}M points", millions), "mean against 2M points", mean / usual - 1, .01,
             true);
     }
     return {};
 }
 
 /// A second of either engine, after the cloud is loaded.
-Result<void> equal_time(const std::filesystem::path& folder) {
-    const Scan scan("cornell", "2M", folder);
+Result<void> equal_time(const BenchRun& run) {
+    LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
     const std::string common = "--size 256x256 --preset interactive --only-bounce 1 ";
-    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + "--samples 1024"));
-    LUCARNE_ASSIGN(const auto by_vpl, scan.picture("second", common + "--seconds 1"));
+    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + samples(run, 1024)));
+    LUCARNE_ASSIGN(const auto by_vpl, scan.picture("second", common + seconds(run, 1)));
     LUCARNE_ASSIGN(const auto by_paths,
-                   scan.picture("second", common + "--engine reference --samples 1 --seconds 1"));
+                   scan.picture("second", common + "--engine reference --samples 1" + seconds(run, 1)));
     LUCARNE_ASSIGN(const auto vpl, gi::compare_with_halves(by_vpl, truth.first, truth.second));
     LUCARNE_ASSIGN(const auto paths, gi::compare_with_halves(by_paths, truth.first, truth.second));
     row("cornell, bounce 1, interactive, 1 s", "relMSE over reference's in 1 s", vpl.rel_mse / paths.rel_mse,
@@ -217,31 +225,31 @@ Result<void> equal_time(const std::filesystem::path& folder) {
     return {};
 }
 
-Result<void> nave(const std::filesystem::path& folder) {
-    Scan scan("nave", "8M", folder);
+Result<void> nave(const BenchRun& run) {
+    LUCARNE_ASSIGN(Scan scan, Scan::create("nave", run.points(8'000'000), run.folder));
     for (const std::string camera : {"nave", "carpet", "aisle", "altar", "vault"}) {
         const std::string common = "--size 192x192 --preset high --bounces 3 --camera " + camera + " ";
-        LUCARNE_ASSIGN(const auto truth, scan.truth(camera, common + "--samples 256"));
+        LUCARNE_ASSIGN(const auto truth, scan.truth(camera, common + samples(run, 256)));
         LUCARNE_ASSIGN(const auto picture, scan.picture(camera + "-vpl", common));
         LUCARNE_TRY(judge("nave, " + camera + ", bounces 0 to 3, high", picture, truth, .03, .03));
     }
-    return soft_lights(scan, "nave-sky", "nave", "16", .03);
+    return soft_lights(scan, "nave-sky", "nave", run, .03);
 }
 
 /// One bounce in the Cornell box, all of it glossy, averaged for a minute. A path tracer finds lobes by
 /// chance: the picture is small, so that the reference can have many paths a pixel.
-Result<void> glossy(const std::filesystem::path& folder) {
-    Scan scan("cornell", "2M", folder);
+Result<void> glossy(const BenchRun& run) {
+    LUCARNE_ASSIGN(Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
     const std::string common = "--size 64x64 --preset high --only-bounce 1 ";
-    for (const auto& [exponent, samples] : {std::pair{10, 4096}, {100, 8192}, {1000, 32768}}) {
+    for (const auto& [exponent, paths] : {std::pair{10, 4096}, {100, 8192}, {1000, 32768}}) {
         std::ifstream file(bench::scene_file("cornell-glossy"));
         auto scene = nlohmann::json::parse(file);
         scene["materials"][0]["shininess"] = exponent;
-        const std::filesystem::path shiny = folder / fmt::format("shininess-{}.json", exponent);
+        const std::filesystem::path shiny = run.folder / fmt::format("shininess-{}.json", exponent);
         std::ofstream(shiny) << scene;
         scan.light_by(shiny);
-        LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + fmt::format("--samples {}", samples)));
-        for (const std::string time : {"", "--seconds 60"}) {
+        LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + samples(run, static_cast<uint64_t>(paths))));
+        for (const std::string& time : {std::string(), seconds(run, 60)}) {
             LUCARNE_ASSIGN(const auto picture, scan.picture("glossy", common + time));
             const std::string what =
                 fmt::format("cornell, shininess {}, high, {}", exponent, time.empty() ? "a frame" : "60 s");
@@ -255,30 +263,23 @@ Result<void> glossy(const std::filesystem::path& folder) {
     return {};
 }
 
-Result<void> measure(const std::filesystem::path& folder) {
+Result<void> measure(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_TRY(furnace(*device));
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
     LUCARNE_TRY(form_factor(*device, "parallel at 1", z, y, x, .199825));
     LUCARNE_TRY(form_factor(*device, "parallel at .5", .5f * z, y, x, .415253));
     LUCARNE_TRY(form_factor(*device, "at a right angle", o, y, z, .200044));
-    LUCARNE_TRY(cornell(folder));
-    LUCARNE_TRY(invariance(*device, folder));
-    LUCARNE_TRY(equal_time(folder));
-    LUCARNE_TRY(glossy(folder));
-    return nave(folder);
+    LUCARNE_TRY(cornell(run));
+    LUCARNE_TRY(invariance(*device, run));
+    LUCARNE_TRY(equal_time(run));
+    LUCARNE_TRY(glossy(run));
+    return nave(run);
 }
 
 }  // namespace
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    std::string name = (std::filesystem::temp_directory_path() / "lucarne-accuracy-XXXXXX").string();
-    const bool own = argc < 2;
-    if (own && !mkdtemp(name.data())) return 1;
-    const std::filesystem::path folder = own ? name : argv[1];
-    const auto done = lucarne::measure(folder);
-    if (own) std::filesystem::remove_all(folder);
-    if (!done) fmt::print(stderr, "lucarne_accuracy: {}\n", done.error().line());
-    return done ? 0 : 1;
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "octree/cache.h"
+#include "tests/bench/bench_run.h"
 #include "tests/bench/first_picture.h"
 #include "tests/bench/rows.h"
 
@@ -60,8 +61,9 @@ inline Result<void> bench_conversion_of(const std::filesystem::path& scan, doubl
 }
 
 /// The survey converted without and with normals.
-inline Result<void> bench_conversion(const std::filesystem::path& folder, uint64_t points) {
-    const auto scan = folder / "survey.las";
+inline Result<void> bench_conversion(const bench::BenchRun& run) {
+    const uint64_t points = run.points(20'000'000);
+    const auto scan = run.folder / "survey.las";
     LUCARNE_TRY(run_lucarne(
         {"generate", "survey", "-o", scan.string(), "--points", std::to_string(points), "--overwrite"}));
     LUCARNE_TRY(bench_first_picture(scan));

@@ -1,12 +1,11 @@
 // The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, made anew:
 // the light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
-// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `./run figures [FOLDER]` prints tables and
-// leaves scans and pictures in FOLDER (default: figures). A program and no test; about ten minutes on two
-// cores.
+// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [--scale S] [--only N]`
+// prints tables and leaves scans and pictures in FOLDER (./run figures: figures). A program and no test; about ten
+// minutes on two cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <string>
@@ -16,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "gi/compare/metrics.h"
+#include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/input.h"
@@ -24,7 +24,7 @@
 namespace lucarne {
 namespace {
 
-using bench::Scan;
+using bench::BenchRun, bench::Scan;
 
 void heading(const std::string& text) {
     fmt::print("\n{}\n", text);
@@ -128,7 +128,7 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesyste
 /// Figs 10 (a box) and 11, 12 (a cathedral). The interleaved pictures of the paper's fig. 12 lack their
 /// factor n^2; here the indirect light must be the same for every n.
 Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scene, const std::string& figure,
-                   const std::filesystem::path& folder) {
+                   const BenchRun& run) {
     Stage stage(device, scan);
     LUCARNE_TRY(stage.open(scene, {256, 256}));
     gi::EngineSettings settings = stage.settings();
@@ -142,6 +142,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
     fmt::print("{:>6} {:>12} {:>22} {:>22} {:>22}\n", "VPLs", "interleave", "1 bounce", "2 bounces",
                "3 bounces");
     for (const uint32_t vpls : {64u, 128u, 256u, 1024u}) {
+        if (vpls > std::max<uint64_t>(run.count(1024), 64)) break;
         double whole[4] = {};
         for (const uint32_t interleave : {1u, 2u, 4u}) {
             set_vpls(settings, vpls);
@@ -150,7 +151,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
             for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
                 settings.bounces = bounces;
                 // A thousand VPLs take seconds, which vary less.
-                LUCARNE_ASSIGN(const auto measured, stage.frames(settings, vpls < 1024 ? 3 : 1));
+                LUCARNE_ASSIGN(const auto measured, stage.frames(settings, vpls < 1024 ? static_cast<int>(run.count(3)) : 1));
                 const double indirect = measured.luminance - direct.luminance;
                 if (interleave == 1) whole[bounces] = indirect;
                 fmt::print(" {:>22}", fmt::format("{:.0f} / {:.0f} ({:.3f})", measured.milliseconds,
@@ -158,7 +159,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
                 std::fflush(stdout);
                 const std::string name =
                     fmt::format("fig-12-{}-bounces-{}-interleave-{}.png", scene, bounces, interleave);
-                if (vpls == 256 && interleave != 2) LUCARNE_TRY(stage.write(folder / name));
+                if (vpls == 256 && interleave != 2) LUCARNE_TRY(stage.write(run.folder / name));
             }
             fmt::print("\n");
         }
@@ -210,22 +211,22 @@ void judge(const std::string& what, const std::vector<glm::vec4>& picture, const
     std::fflush(stdout);
 }
 
-Result<void> figure_13(const std::filesystem::path& folder) {
+Result<void> figure_13(const BenchRun& run) {
     heading(
         "fig. 13: caustics, the first bounce alone, preset high, means of 4 x 4 of 128 x 128 pixels, against "
         "the reference");
     constexpr size_t kSide = 128;
     for (const std::string scene : {"ring", "paraboloid"}) {
-        const Scan scan(scene, "2M", folder);
+        LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(2'000'000), run.folder));
         const std::string common = fmt::format("--size {0}x{0} --preset high --only-bounce 1 ", kSide);
-        LUCARNE_ASSIGN(Scan::Truth truth, scan.truth("truth", common + "--samples 2048"));
+        LUCARNE_ASSIGN(Scan::Truth truth, scan.truth("truth", common + fmt::format("--samples {}", run.count(2048))));
         for (auto* picture : {&truth.whole, &truth.first, &truth.second}) *picture = coarse(*picture, kSide);
         // The caustic: what is brighter than a third of the brightest.
         std::vector<bool> mask;
         const double limit = brightest(truth.whole) / 3;
         for (const glm::vec4& pixel : truth.whole) mask.push_back(gi::luminance(pixel) > limit);
         const Spot right = spot_within(truth.whole, mask, kSide / 4);
-        for (const int frames : {1, 16}) {
+        for (const uint64_t frames : {uint64_t{1}, run.count(16)}) {
             LUCARNE_ASSIGN(const auto picture, scan.picture(fmt::format("frames-{}", frames),
                                                             common + fmt::format("--frames {}", frames)));
             const auto means = coarse(picture, kSide);
@@ -235,52 +236,49 @@ Result<void> figure_13(const std::filesystem::path& folder) {
                        100 * (spot.light / right.light - 1),
                        4 * std::hypot(spot.x - right.x, spot.y - right.y));
         }
-        scan.render("fig-13.png", "--size 512x512 --preset high --bounces 2");
+        LUCARNE_TRY(scan.render("fig-13.png", "--size 512x512 --preset high --bounces 2"));
     }
     return {};
 }
 
-Result<void> figure_14(Scan& scan) {
+Result<void> figure_14(Scan& scan, const BenchRun& run) {
     heading("fig. 14: cornell, .5 diffuse, .45 specular, shininess 1000, the first bounce alone, 64 x 64");
     scan.light_by(bench::scene_file("cornell-glossy"));
     const std::string common = "--size 64x64 --only-bounce 1 --preset ";
-    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + "high --samples 16384"));
+    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + fmt::format("high --samples {}", run.count(16384))));
     LUCARNE_ASSIGN(const auto interactive, scan.picture("interactive", common + "interactive"));
     judge("256 VPLs, 4 x 4 interleaved, one frame", interactive, truth);
     LUCARNE_ASSIGN(const auto high, scan.picture("high", common + "high"));
     judge("1024 VPLs, one frame", high, truth);
-    LUCARNE_ASSIGN(const auto averaged, scan.picture("averaged", common + "high --seconds 30"));
+    LUCARNE_ASSIGN(const auto averaged, scan.picture("averaged", common + fmt::format("high --seconds {}", run.seconds(30))));
     judge("1024 VPLs, averaged for 30 s", averaged, truth);
     for (const std::string preset : {"interactive", "high"})
-        scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset);
+        LUCARNE_TRY(scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset));
     return {};
 }
 
-/// `only`: 9, 10, 11 (with 12), 13 or 14; 0: all.
-Result<void> make_figures(const std::filesystem::path& folder, int only) {
-    std::filesystem::create_directories(folder);
+/// --only: 9, 10, 11 (with 12), 13 or 14; 0: all.
+Result<void> make_figures(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     fmt::print("{}; {} hardware threads\n", device->info().renderer, std::thread::hardware_concurrency());
+    const double only = run.option("only", 0);
     const auto wanted = [&](int figure) { return only == 0 || only == figure; };
     if (wanted(9) || wanted(10) || wanted(14)) {
-        Scan cornell("cornell", "2M", folder);
-        if (wanted(9)) LUCARNE_TRY(figure_9(*device, cornell, folder));
-        if (wanted(10)) LUCARNE_TRY(sweep(*device, cornell, "cornell", "fig. 10", folder));
-        if (wanted(14)) LUCARNE_TRY(figure_14(cornell));
+        LUCARNE_ASSIGN(Scan cornell, Scan::create("cornell", run.points(2'000'000), run.folder));
+        if (wanted(9)) LUCARNE_TRY(figure_9(*device, cornell, run.folder));
+        if (wanted(10)) LUCARNE_TRY(sweep(*device, cornell, "cornell", "fig. 10", run));
+        if (wanted(14)) LUCARNE_TRY(figure_14(cornell, run));
     }
     if (wanted(11)) {
-        const Scan nave("nave", "4M", folder);
-        LUCARNE_TRY(sweep(*device, nave, "nave", "figs 11 and 12", folder));
+        LUCARNE_ASSIGN(const Scan nave, Scan::create("nave", run.points(4'000'000), run.folder));
+        LUCARNE_TRY(sweep(*device, nave, "nave", "figs 11 and 12", run));
     }
-    return wanted(13) ? figure_13(folder) : Result<void>{};
+    return wanted(13) ? figure_13(run) : Result<void>{};
 }
 
 }  // namespace
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    const auto done =
-        lucarne::make_figures(argc < 2 ? "figures" : argv[1], argc < 3 ? 0 : std::atoi(argv[2]));
-    if (!done) fmt::print(stderr, "lucarne_figures: {}\n", done.error().line());
-    return done ? 0 : 1;
+    return lucarne::bench::bench_main(argc, argv, lucarne::make_figures, {"only"});
 }

@@ -1,5 +1,5 @@
-// Out of core and global illumination together at full size, as a table: `./run headline [FOLDER]`. A virtual
-// scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB) and flown
+// Out of core and global illumination together at full size, as a table: `lucarne_headline [FOLDER] [--scale S]`.
+// A virtual scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB) and flown
 // through with three bounces under caps of 128 MiB, a twelfth of the cache; then with the whole cloud on the
 // device, at the same places; then slowly, for the flicker. A program and no test: misses are printed.
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "tests/bench/bench_run.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/input.h"
@@ -33,10 +34,11 @@ void figure(const std::string& what, double value, const std::string& unit) {
     std::fflush(stdout);
 }
 
-Result<std::string> cache_in(const std::filesystem::path& folder) {
-    const std::string scan = folder / "nave40m.ply", cache = folder / "nave40m.luc";
+Result<std::string> cache_in(const bench::BenchRun& run) {
+    const uint64_t points = run.points(40'000'000);
+    const std::string cache = run.folder / fmt::format("nave-{}.luc", points), scan = cache + ".ply";
     if (std::filesystem::exists(cache)) return cache;
-    for (const std::string& arguments : {"generate nave --even --normals --points 40M --overwrite -o " + scan,
+    for (const std::string& arguments : {fmt::format("generate nave --even --normals --points {} --overwrite -o {}", points, scan),
                                          "convert " + scan + " -o " + cache})
         if (std::system((LUCARNE_BINARY " " + arguments).c_str()) != 0) return failed(arguments, "failed");
     std::filesystem::remove(scan);
@@ -96,11 +98,11 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     return Flown{std::move(flight.frames)};
 }
 
-Result<void> energy(const std::string& cache) {
+Result<void> energy(const std::string& cache, double seconds) {
     const auto as_is = [](viewer::Preset&) {};
     const double bytes = static_cast<double>(std::filesystem::file_size(cache));
     const viewer::PipelineOptions caps{kCap, kCap, 2};
-    LUCARNE_ASSIGN(const Flown capped, fly(cache, {}, caps, as_is));
+    LUCARNE_ASSIGN(const Flown capped, fly(cache, {.seconds = seconds}, caps, as_is));
     figure("the cache over each of the caps of 128 MiB", bytes / static_cast<double>(kCap), "times");
     row("memory of the stream on the host", capped.most(&viewer::MemoryUse::host), "MiB", 128);
     row("memory of the device, all buffers", capped.most(&viewer::MemoryUse::device), "MiB", 128);
@@ -112,7 +114,7 @@ Result<void> energy(const std::string& cache) {
                           capped.most(&viewer::MemoryUse::resident, 0, half)),
         "MiB", 16);
     const viewer::PipelineOptions all{uint64_t{4} << 30, uint64_t{16} << 30, 2};
-    LUCARNE_ASSIGN(const Flown same, fly(cache, {}, all, as_is));
+    LUCARNE_ASSIGN(const Flown same, fly(cache, {.seconds = seconds}, all, as_is));
     row("energy against the same budgets without caps", 100 * (capped.luminance() / same.luminance() - 1),
         "%", 3);
     // As fine as this device's buffers let it: what casts light and shadow is held in one of 16 bytes a
@@ -121,20 +123,20 @@ Result<void> energy(const std::string& cache) {
         preset.budgets = {
             .view = 16'000'000, .light_view = 16'000'000, .light = 7'000'000, .pixel_spacing = 0.5};
     };
-    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5}, all, fine));
+    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5, .seconds = seconds}, all, fine));
     double of_capped = 0;
-    for (size_t i = 0; i < whole.frames.size(); ++i) of_capped += *capped.frames[2 * i].luminance;
+    for (size_t i = 0; i < whole.frames.size() && 2 * i < frames; ++i) of_capped += *capped.frames[2 * i].luminance;
     row("energy against the whole cloud resident, cuts of 16M, 16M and 7M points",
         100 * (of_capped / static_cast<double>(whole.frames.size()) / whole.luminance() - 1), "%", 3);
     return {};
 }
 
-Result<void> flicker(const std::string& cache) {
+Result<void> flicker(const std::string& cache, double seconds) {
     const viewer::PipelineOptions caps{kCap, kCap, 2};
     for (const bool wait : {true, false})
         for (const bool reuse : {false, true})
             for (const int32_t only : {-1, 1}) {
-                const Way slowly{.frames_per_second = 12, .seconds = 3, .wait = wait};
+                const Way slowly{.frames_per_second = 12, .seconds = seconds, .wait = wait};
                 LUCARNE_ASSIGN(const Flown flown, fly(cache, slowly, caps, [&](viewer::Preset& preset) {
                                    preset.engine.reuse = reuse;
                                    preset.engine.only_bounce = only;
@@ -148,22 +150,15 @@ Result<void> flicker(const std::string& cache) {
     return {};
 }
 
-Result<void> measure(const std::filesystem::path& folder) {
-    LUCARNE_ASSIGN(const std::string cache, cache_in(folder));
-    LUCARNE_TRY(energy(cache));
-    return flicker(cache);
+Result<void> measure(const bench::BenchRun& run) {
+    LUCARNE_ASSIGN(const std::string cache, cache_in(run));
+    LUCARNE_TRY(energy(cache, run.seconds(13)));
+    return flicker(cache, run.seconds(3));
 }
 
 }  // namespace
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    std::string name = (std::filesystem::temp_directory_path() / "lucarne-headline-XXXXXX").string();
-    const bool own = argc < 2;
-    if (own && !mkdtemp(name.data())) return 1;
-    const std::filesystem::path folder = own ? name : argv[1];
-    const auto done = lucarne::measure(folder);
-    if (own) std::filesystem::remove_all(folder);
-    if (!done) fmt::print(stderr, "lucarne_headline: {}\n", done.error().line());
-    return done ? 0 : 1;
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
 }

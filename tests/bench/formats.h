@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "io/formats/scan.h"
+#include "tests/bench/bench_run.h"
 #include "tests/bench/rows.h"
 #include "tests/io/e57_builder.h"
 
@@ -107,11 +108,11 @@ inline Result<void> write_e57(const io::PointSource& source, const std::filesyst
 }
 
 /// Reading 4M points of the nave in every format that has a target. Page cache: only the processor counts.
-inline Result<void> bench_formats(const std::filesystem::path& folder) {
-    const std::string scan = folder / "formats.las";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "4M", "--overwrite"}));
+inline Result<void> bench_formats(const BenchRun& run) {
+    const std::string scan = run.folder / "formats.las";
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(run.points(4'000'000)), "--overwrite"}));
     LUCARNE_ASSIGN(const auto source, io::open_scan(scan));
-    const auto path = [&](const char* name) { return folder / name; };
+    const auto path = [&](const char* name) { return run.folder / name; };
     LUCARNE_ASSIGN(const auto laz, io::create_scan(path("formats.laz"), source->schema(), source->info(),
                                                    {.overwrite = true}));
     const uint32_t stride = source->schema().stride;

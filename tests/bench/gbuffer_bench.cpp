@@ -1,6 +1,6 @@
 // How long the G-buffer takes: a nave seen from inside, its surfels at a constant spacing in the picture as a
-// view cut has them. Prints the median of several runs, and the processor
-// time of all cores, which other work on the machine changes less.
+// view cut has them. Prints the median of several runs, and the processor time of all cores, which other work on the
+// machine changes less. `bench_gbuffer [--scale S]`.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -9,6 +9,7 @@
 
 #include "gi/gbuffer/gbuffer.h"
 #include "io/core/random.h"
+#include "tests/bench/bench_run.h"
 #include "tests/gi/surfel_cloud.h"
 
 namespace lucarne::gi {
@@ -110,22 +111,19 @@ double now(clockid_t clock) {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-int run(size_t points, uint32_t width, uint32_t height) {
-    auto device = Device::headless();
-    if (!device) return std::fprintf(stderr, "%s\n", device.error().line().c_str()), 1;
+Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
+    LUCARNE_ASSIGN(const auto device, Device::headless());
     const CameraView view = look({0.3f, 1, 3}, {0, 50, 5}, width, height, 1.0f);
     std::vector<Surfel> surfels = sample(view, points);
     const SurfelCloud cloud(std::move(surfels), {{-16, -1, -1}, 64}, 1024, kThinned);
-    auto packed = load_cloud(**device, cloud);
-    if (!packed) return std::fprintf(stderr, "%s\n", packed.error().line().c_str()), 1;
+    LUCARNE_ASSIGN(const auto packed, load_cloud(*device, cloud));
     GBuffer gbuffer;
     std::vector<double> wall, cpu;
     for (int i = 0; i < 9; ++i) {
-        (*device)->finish();
+        device->finish();
         const double wall_start = now(CLOCK_MONOTONIC), cpu_start = now(CLOCK_PROCESS_CPUTIME_ID);
-        if (auto done = rasterize(**device, (*packed)->cut, view, gbuffer); !done)
-            return std::fprintf(stderr, "%s\n", done.error().line().c_str()), 1;
-        (*device)->finish();
+        LUCARNE_TRY(rasterize(*device, packed->cut, view, gbuffer));
+        device->finish();
         wall.push_back(now(CLOCK_MONOTONIC) - wall_start);
         cpu.push_back(now(CLOCK_PROCESS_CPUTIME_ID) - cpu_start);
     }
@@ -133,17 +131,21 @@ int run(size_t points, uint32_t width, uint32_t height) {
     std::sort(cpu.begin(), cpu.end());
     const auto ids = gbuffer.ids.download_all<uint32_t>(size_t{width} * height);
     const auto empty = std::count(ids.begin(), ids.end(), kNoSurfel);
-    fmt::print("{} surfels in {} nodes, {}x{}: {} pixels empty\n", (*packed)->cut.surfels(),
+    fmt::print("{} surfels in {} nodes, {}x{}: {} pixels empty\n", packed->cut.surfels(),
                cloud.nodes().size(), width, height, empty);
     fmt::print("  median {:.1f} ms, best {:.1f} ms; processor time {:.1f} ms\n", wall[wall.size() / 2] * 1e3,
                wall[0] * 1e3, cpu[cpu.size() / 2] * 1e3);
-    return 0;
+    return {};
+}
+
+Result<void> measure(const bench::BenchRun& run) {
+    LUCARNE_TRY(measure_at(run.points(5'000'000), 1280, 720));
+    return measure_at(run.points(1'000'000), 512, 512);
 }
 
 }  // namespace
 }  // namespace lucarne::gi
 
-int main() {
-    const int first = lucarne::gi::run(5'000'000, 1280, 720);
-    return first ? first : lucarne::gi::run(1'000'000, 512, 512);
+int main(int argc, char** argv) {
+    return lucarne::bench::bench_main(argc, argv, lucarne::gi::measure);
 }

@@ -1,10 +1,9 @@
 // Clouds larger than any memory, built with --memory 1G: their points are made while they are read, so that
-// only the cache and its scratch file need disk. `./run bench --large [FOLDER] [SHARE]`: SHARE 0.1 makes
-// everything a tenth as large. At 1 it takes some 40 GB of disk in FOLDER (default: a temporary one) and an
+// only the cache and its scratch file need disk. `lucarne_large [FOLDER] [--scale S]`: a scale of 0.1
+// makes everything a tenth as large. At 1 it takes some 40 GB of disk in FOLDER (default: a temporary one) and an
 // hour.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 
@@ -17,6 +16,7 @@
 #include "io/core/random.h"
 #include "octree/build/build.h"
 #include "octree/cache.h"
+#include "tests/bench/bench_run.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne {
@@ -126,29 +126,25 @@ bool build(const Cloud& cloud, uint64_t points, const std::filesystem::path& fol
     return cache.has_value();
 }
 
-int bench(const std::filesystem::path& folder, double share) {
-    int failures = 0;
+Result<void> measure(const bench::BenchRun& run) {
+    Progress::set_silent(true);
+    std::string failures;
     for (const Cloud& cloud : clouds()) {
         // A process each: what the last one had resident must not count.
-        const auto points = static_cast<uint64_t>(share * static_cast<double>(cloud.points));
+        const uint64_t points = run.points(cloud.points);
         const pid_t child = fork();
-        if (child == 0) _exit(build(cloud, points, folder) ? 0 : 1);
+        if (child == 0) _exit(build(cloud, points, run.folder) ? 0 : 1);
         int status = 1;
-        if (child < 0 || waitpid(child, &status, 0) < 0 || status != 0) ++failures;
+        if (child < 0 || waitpid(child, &status, 0) < 0 || status != 0)
+            failures += failures.empty() ? cloud.name : std::string(", ") + cloud.name;
     }
-    return failures ? 1 : 0;
+    if (!failures.empty()) return failed(failures, "could not be built");
+    return {};
 }
 
 }  // namespace
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    std::string name = (std::filesystem::temp_directory_path() / "lucarne-large-XXXXXX").string();
-    const bool own = argc < 2;
-    if (own && !mkdtemp(name.data())) return 1;
-    const std::filesystem::path folder = own ? name : argv[1];
-    lucarne::Progress::set_silent(true);
-    const int status = lucarne::bench(folder, argc > 2 ? std::atof(argv[2]) : 1.0);
-    if (own) std::filesystem::remove_all(folder);
-    return status;
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
 }

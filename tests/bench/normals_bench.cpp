@@ -1,6 +1,6 @@
 // Normals: PCL's own estimator with its usual search and with ours in turn, the whole stage, and how many
-// points of virtual scans are oriented right. Prints figures beside their targets; takes the number of
-// points, a million unless told.
+// points of virtual scans are oriented right. Prints figures beside their targets.
+// `lucarne_normals [--scale S]`, of a million points a scan.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "io/core/options.h"
 #include "octree/normals/pcl_normals.h"
+#include "tests/bench/bench_run.h"
 #include "tests/octree/virtual_scans.h"
 
 namespace lucarne::octree {
@@ -100,7 +100,8 @@ void orientation(const std::string& scene, const Scan& scan, double known, doubl
     }
 }
 
-void bench(uint64_t points) {
+Result<void> measure(const lucarne::bench::BenchRun& run) {
+    const uint64_t points = run.points(1'000'000);
     fmt::print("{:.1f}M points a scan, as scanned from the scenes' stations, 2 mm noise\n",
                1e-6 * static_cast<double>(points));
     const Scan nave = scan_of("nave", points);
@@ -110,17 +111,12 @@ void bench(uint64_t points) {
     orientation("nave", nave, 0.995, 0.97);
     orientation("two-rooms", scan_of("two-rooms", points), 0.995, 0.97);
     orientation("statue", scan_of("statue", points), 0.99, 0.99);
+    return {};
 }
 
 }  // namespace
 }  // namespace lucarne::octree
 
 int main(int argc, char** argv) {
-    const auto points = lucarne::parse_count("points", argc > 1 ? argv[1] : "1M");
-    if (!points) {
-        std::fprintf(stderr, "%s\n", points.error().line().c_str());
-        return 2;
-    }
-    lucarne::octree::bench(*points);
-    return 0;
+    return lucarne::bench::bench_main(argc, argv, lucarne::octree::measure);
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/vec4.hpp>
 
+#include "io/core/error.h"
 #include "io/image/image.h"
 
 namespace lucarne::bench {
@@ -22,13 +23,13 @@ inline std::string scene_file(const std::string& name) {
 /// A scan of a scene as a cache in `folder`.
 class Scan {
  public:
-    Scan(std::string scene, const std::string& points, const std::filesystem::path& folder)
-        : scene_(std::move(scene)), lit_by_(scene_file(scene_)), folder_(folder) {
-        const std::string scan = folder / (scene_ + ".ply");
-        cache_ = folder / (scene_ + ".luc");
-        run("generate " + scene_ + " --even --normals --points " + points + " -o " + scan + " --overwrite");
-        run("convert " + scan + " -o " + cache_ + " --overwrite");
+    static Result<Scan> create(const std::string& scene, uint64_t points, const std::filesystem::path& folder) {
+        const Scan made(scene, folder);
+        const std::string scan = folder / (scene + ".ply");
+        LUCARNE_TRY(run(fmt::format("generate {} --even --normals --points {} -o {} --overwrite", scene, points, scan)));
+        LUCARNE_TRY(run("convert " + scan + " -o " + made.cache_ + " --overwrite"));
         std::filesystem::remove(scan);
+        return made;
     }
 
     const std::string& cache() const { return cache_; }
@@ -39,7 +40,8 @@ class Scan {
     }
 
     Result<std::vector<glm::vec4>> picture(const std::string& name, const std::string& arguments) const {
-        LUCARNE_ASSIGN(io::Image image, io::read_exr(render(name + ".exr", arguments)));
+        LUCARNE_ASSIGN(const std::string file, render(name + ".exr", arguments));
+        LUCARNE_ASSIGN(io::Image image, io::read_exr(file));
         return std::move(image.pixels);
     }
 
@@ -47,7 +49,7 @@ class Scan {
         std::vector<glm::vec4> whole, first, second;
     };
     Result<Truth> truth(const std::string& name, const std::string& arguments) const {
-        const std::string file = render(name + ".exr", "--engine reference --layers " + arguments);
+        LUCARNE_ASSIGN(const std::string file, render(name + ".exr", "--engine reference --layers " + arguments));
         const std::string stem = file.substr(0, file.size() - 4);
         LUCARNE_ASSIGN(io::Image whole, io::read_exr(file));
         LUCARNE_ASSIGN(io::Image first, io::read_exr(stem + ".a.exr"));
@@ -56,16 +58,20 @@ class Scan {
     }
 
     /// The path of the picture FOLDER/SCENE-NAME, `name` with the ending of its kind.
-    std::string render(const std::string& name, const std::string& arguments) const {
+    Result<std::string> render(const std::string& name, const std::string& arguments) const {
         const std::string file = folder_ / (scene_ + "-" + name);
-        run("render " + cache_ + " -o " + file + " --overwrite --scene " + lit_by_ + " " + arguments);
+        LUCARNE_TRY(run("render " + cache_ + " -o " + file + " --overwrite --scene " + lit_by_ + " " + arguments));
         return file;
     }
 
  private:
-    static void run(const std::string& arguments) {
-        if (std::system((LUCARNE_BINARY " " + arguments + " > /dev/null 2>&1").c_str()) != 0)
-            fmt::print(stderr, "lucarne {} failed\n", arguments);
+    Scan(const std::string& scene, const std::filesystem::path& folder)
+        : scene_(scene), lit_by_(scene_file(scene)), cache_(folder / (scene + ".luc")), folder_(folder) {}
+
+    static Result<void> run(const std::string& arguments) {
+        if (std::system((LUCARNE_BINARY " " + arguments + " > /dev/null").c_str()) != 0)
+            return failed("lucarne " + arguments, "failed");
+        return {};
     }
 
     std::string scene_, lit_by_, cache_;

@@ -1,8 +1,7 @@
 // What streaming is held to, measured by `lucarne fly` and printed beside its target: what loading takes of a
 // frame, cold starts, what loading ahead wins, popping, memory over a long flight, many caches.
-// `./run bench --stream [FOLDER] [SOAK]`: caches in FOLDER (default: a temporary one, 1 GB), SOAK seconds of
-// the long flight (default 60; an hour is 3600).
-#include <cstdlib>
+// `lucarne_stream [FOLDER] [--scale S] [--soak SECONDS]`: caches in FOLDER (default: a temporary one, 1 GB), seconds
+// of the long flight (default 60; an hour is 3600).
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/bench/bench_run.h"
 #include "tests/bench/rows.h"
 
 namespace lucarne {
@@ -20,11 +20,11 @@ using nlohmann::json;
 
 /// The scan to fly through and where its files are.
 struct Ground {
-    std::filesystem::path folder;
-    std::string soak;
+    const bench::BenchRun& run;
 
-    std::string cache() const { return folder / "nave4m.luc"; }
-    std::string file(const std::string& name) const { return folder / name; }
+    std::string cache() const { return file(fmt::format("nave-{}.luc", points())); }
+    std::string file(const std::string& name) const { return run.folder / name; }
+    uint64_t points() const { return run.points(4'000'000); }
 };
 
 void figure(const std::string& what, double value, const std::string& unit) {
@@ -36,9 +36,9 @@ constexpr const char* kPath = LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
 constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
 
 Result<void> make_cache(const Ground& ground) {
-    const std::string scan = ground.file("nave4m.ply");
-    LUCARNE_TRY(run_lucarne(
-        {"generate", "nave", "-o", scan, "--points", "4M", "--even", "--normals", "--overwrite"}));
+    const std::string scan = ground.file("nave.ply");
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(ground.points()), "--even",
+                             "--normals", "--overwrite"}));
     LUCARNE_TRY(run_lucarne({"convert", scan, "-o", ground.cache(), "--normals", "keep", "--overwrite"}));
     std::filesystem::remove(scan);
     return {};
@@ -105,10 +105,11 @@ Result<void> bench_popping(const Ground& ground) {
 }
 
 Result<void> bench_soak(const Ground& ground) {
-    LUCARNE_ASSIGN(const json flight, fly(ground, {ground.cache(), "--realtime", "--soak", ground.soak,
-                                                   "--memory", "64M", "--device-memory", "64M"}));
+    const std::string seconds = fmt::format("{}", ground.run.option("soak", ground.run.seconds(60)));
+    LUCARNE_ASSIGN(const json flight, fly(ground, {ground.cache(), "--realtime", "--soak", seconds, "--memory", "64M",
+                                                   "--device-memory", "64M"}));
     const json& soak = flight["soak"];
-    figure(fmt::format("flight of {} s: laps", ground.soak), soak["laps"].get<double>(), "");
+    figure(fmt::format("flight of {} s: laps", seconds), soak["laps"].get<double>(), "");
     row("the same: resident memory, last lap over the first",
         std::max(0.0, soak["resident_memory"]["growth"].get<double>() / 1048576), "MiB", 8);
     row("the same: most of the cap of memory", flight["memory"]["used"].get<double>() / 1048576, "MiB", 64);
@@ -133,18 +134,19 @@ void move_las(const std::string& file, double x, double y) {
 /// Side by side, as the scans of a town are. The flight is through the first of them.
 Result<void> bench_many_caches(const Ground& ground) {
     const std::string scan = ground.file("small.las");
+    const uint64_t caches = ground.run.count(200);
     LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "50k", "--overwrite"}));
     std::vector<std::string> arguments;
-    for (int i = 0; i < 200; ++i) {
+    for (uint64_t i = 0; i < caches; ++i) {
         const std::string moved = ground.file("moved.las");
         std::filesystem::copy_file(scan, moved, std::filesystem::copy_options::overwrite_existing);
-        move_las(moved, 15.0 * (i % 20), 40.0 * (i / 20));
+        move_las(moved, 15.0 * static_cast<double>(i % 20), 40.0 * static_cast<double>(i / 20));
         arguments.push_back(ground.file(fmt::format("small{}.luc", i)));
         LUCARNE_TRY(run_lucarne({"convert", moved, "-o", arguments.back(), "--overwrite"}));
     }
     for (const char* also : {"--realtime", "--points", "1000000"}) arguments.emplace_back(also);
     LUCARNE_ASSIGN(const json flight, fly(ground, arguments));
-    row("200 caches in one scene: points of the view cut",
+    row(fmt::format("{} caches in one scene: points of the view cut", caches),
         flight["points_per_frame"]["view"]["max"].get<double>() / 1e6, "M", 1);
     figure("the same: opened after", flight["start"]["open_seconds"].get<double>(), "s");
     row("the same: loading in a frame, p99", flight["loading_ms"]["p99"].get<double>(), "ms", 5);
@@ -154,7 +156,8 @@ Result<void> bench_many_caches(const Ground& ground) {
     return {};
 }
 
-Result<void> bench(const Ground& ground) {
+Result<void> measure(const bench::BenchRun& run) {
+    const Ground ground{run};
     if (!std::filesystem::exists(ground.cache())) LUCARNE_TRY(make_cache(ground));
     LUCARNE_TRY(bench_cold_start(ground));
     LUCARNE_TRY(bench_prefetch(ground));
@@ -167,12 +170,5 @@ Result<void> bench(const Ground& ground) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    std::string name = (std::filesystem::temp_directory_path() / "lucarne-stream-XXXXXX").string();
-    const bool own = argc < 2;
-    if (own && !mkdtemp(name.data())) return 1;
-    const lucarne::Ground ground{own ? name : argv[1], argc > 2 ? argv[2] : "60"};
-    const auto done = lucarne::bench(ground);
-    if (own) std::filesystem::remove_all(ground.folder);
-    if (!done) fmt::print(stderr, "lucarne_stream: {}\n", done.error().line());
-    return done ? 0 : 1;
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {"soak"});
 }

@@ -1,9 +1,8 @@
 // Every figure of the project's targets for speed and memory, measured and printed beside its target. A
-// program and no test: nothing here fails because a machine is busy. `lucarne_bench [FOLDER]` puts its scans
-// into FOLDER (default: a temporary one, removed afterwards; it needs 4 GB).
+// program and no test: nothing here fails because a machine is busy. `lucarne_bench [FOLDER] [--scale S]`
+// puts its scans into FOLDER (default: a temporary one, removed afterwards; it needs 4 GB).
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <string>
@@ -11,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "gi/gbuffer/gbuffer.h"
 #include "tests/bench/conversion.h"
@@ -28,15 +26,16 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-Result<void> bench_normals(const std::filesystem::path& folder) {
-    const std::string scan = folder / "nave4m.las", cache = folder / "nave4m.luc";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", "4M", "--overwrite"}));
+Result<void> bench_normals(const bench::BenchRun& run) {
+    const uint64_t points = run.points(4'000'000);
+    const std::string scan = run.folder / "nave4m.las", cache = run.folder / "nave4m.luc";
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(points), "--overwrite"}));
     LUCARNE_ASSIGN(const Usage without,
                    run_lucarne({"convert", scan, "-o", cache, "--normals", "none", "--overwrite"}));
     LUCARNE_ASSIGN(const Usage with,
                    run_lucarne({"convert", scan, "-o", cache, "--normals", "estimate", "--overwrite"}));
-    row("normals and areas of 4M points, CPU per million", (with.cpu_seconds - without.cpu_seconds) / 4, "s",
-        1);
+    row("normals and areas of 4M points, CPU per million",
+        (with.cpu_seconds - without.cpu_seconds) * 1e6 / static_cast<double>(points), "s", 1);
     std::filesystem::remove(scan);
     return {};
 }
@@ -72,16 +71,17 @@ Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameReques
     return times;
 }
 
-Result<void> bench_frames(const std::filesystem::path& folder) {
-    const std::string scan = folder / "even.ply", cache = folder / "even.luc";
-    LUCARNE_TRY(run_lucarne(
-        {"generate", "nave", "-o", scan, "--points", "8M", "--even", "--normals", "--overwrite"}));
+Result<void> bench_frames(const bench::BenchRun& run) {
+    const std::string scan = run.folder / "even.ply", cache = run.folder / "even.luc";
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(run.points(8'000'000)), "--even",
+                             "--normals", "--overwrite"}));
     LUCARNE_TRY(run_lucarne({"convert", scan, "-o", cache, "--normals", "keep", "--overwrite"}));
     std::filesystem::remove(scan);
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
     LUCARNE_ASSIGN(const auto source, viewer::open_input(cache));
     viewer::DrawingOptions options;
     options.scene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
+    LUCARNE_TRY(viewer::take_render_settings(options));
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
     LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
     viewer::FrameRequest request;
@@ -123,24 +123,17 @@ Result<void> bench_frames(const std::filesystem::path& folder) {
     return {};
 }
 
-Result<void> bench_all(const std::filesystem::path& folder) {
+Result<void> measure(const bench::BenchRun& run) {
     fmt::print("{} hardware threads\n", std::thread::hardware_concurrency());
-    LUCARNE_TRY(bench_frames(folder));
-    LUCARNE_TRY(bench_normals(folder));
-    LUCARNE_TRY(bench::bench_formats(folder));
-    return bench_conversion(folder, 20'000'000);
+    LUCARNE_TRY(bench_frames(run));
+    LUCARNE_TRY(bench_normals(run));
+    LUCARNE_TRY(bench::bench_formats(run));
+    return bench_conversion(run);
 }
 
 }  // namespace
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    std::string name = (std::filesystem::temp_directory_path() / "lucarne-bench-XXXXXX").string();
-    const bool own = argc < 2;
-    if (own && !mkdtemp(name.data())) return 1;
-    const std::filesystem::path folder = own ? name : argv[1];
-    const auto done = lucarne::bench_all(folder);
-    if (own) std::filesystem::remove_all(folder);
-    if (!done) fmt::print(stderr, "lucarne_bench: {}\n", done.error().line());
-    return done ? 0 : 1;
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
 }

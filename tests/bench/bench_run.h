@@ -1,0 +1,83 @@
+// How every benchmark program is called: `PROGRAM [FOLDER] [--scale S] [--OPTION NUMBER]...`.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "io/core/error.h"
+
+namespace lucarne::bench {
+
+/// One call of a benchmark program. Everything with a size is asked for at its full size and comes back times the
+/// scale, so that a test can run the whole program in seconds. Figures beside targets count at scale 1 alone.
+struct BenchRun {
+    std::filesystem::path folder;           ///< for scans, caches and pictures
+    double scale = 1;                       ///< of the full size, in (0, 1]
+    std::map<std::string, double> options;  ///< the program's own, without the dashes
+
+    uint64_t points(uint64_t full) const { return std::max<uint64_t>(scaled(full), 10'000); }
+    uint64_t count(uint64_t full) const { return std::max<uint64_t>(scaled(full), 1); }
+    double seconds(double full) const { return full * scale; }
+    double option(const std::string& name, double otherwise) const {
+        const auto found = options.find(name);
+        return found == options.end() ? otherwise : found->second;
+    }
+
+ private:
+    uint64_t scaled(uint64_t full) const { return static_cast<uint64_t>(scale * static_cast<double>(full)); }
+};
+
+/// Reads the arguments into `run`. Returns the first that is wrong; empty: none.
+inline std::string read_arguments(int argc, char** argv, std::initializer_list<const char*> options, BenchRun& run) {
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        if (!argument.starts_with("--")) {
+            run.folder = argument;
+            continue;
+        }
+        const std::string name = argument.substr(2);
+        char* end = nullptr;
+        const double value = ++i < argc ? std::strtod(argv[i], &end) : 0;
+        if (!end || *end) return argument;
+        if (name == "scale" && value > 0 && value <= 1) run.scale = value;
+        else if (std::ranges::find(options, name) != options.end()) run.options[name] = value;
+        else return argument;
+    }
+    return "";
+}
+
+/// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed. `options` are the
+/// names of the program's own options. Returns the exit status: 1 where something failed, never for a missed target.
+inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
+                      std::initializer_list<const char*> options = {}) {
+    const std::string program = std::filesystem::path(argv[0]).filename();
+    BenchRun run;
+    if (const std::string wrong = read_arguments(argc, argv, options, run); !wrong.empty()) {
+        std::string usage = program + " [FOLDER] [--scale S, of the full size, at most 1]";
+        for (const char* option : options) usage += fmt::format(" [--{} NUMBER]", option);
+        fmt::print(stderr, "{}: {}: is unknown or has no valid number; usage: {}\n", program, wrong, usage);
+        return 2;
+    }
+    std::string own = run.folder.empty() ? (std::filesystem::temp_directory_path() / (program + "-XXXXXX")).string() : "";
+    if (!own.empty() && !mkdtemp(own.data())) {
+        fmt::print(stderr, "{}: {}: cannot be made\n", program, own);
+        return 1;
+    }
+    if (!own.empty()) run.folder = own;
+    std::filesystem::create_directories(run.folder);
+    const auto done = measure(run);
+    if (!own.empty()) std::filesystem::remove_all(own);
+    if (!done) fmt::print(stderr, "{}: {}\n", program, done.error().line());
+    return done ? 0 : 1;
+}
+
+}  // namespace lucarne::bench
