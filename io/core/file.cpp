@@ -13,16 +13,13 @@
 
 namespace lucarne {
 
+using file_io::folder_of;
 using file_io::read_exactly;
 using file_io::read_up_to;
 using file_io::reason;
 using file_io::write_all;
 
 namespace {
-
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-}
 
 /// A name beside an output while it is not whole: of this process, and not left over from another.
 std::filesystem::path unused_name(const std::filesystem::path& folder) {
@@ -169,7 +166,7 @@ Result<InputFile> OutputFile::reader(uint64_t bytes) const {
 }
 
 Result<void> OutputFile::commit() {
-    if (::fsync(fd_) != 0) return failed(path_.string(), fmt::format("cannot be synced ({})", reason(errno)));
+    LUCARNE_TRY(file_io::sync(fd_, path_));
     if (temporary_.empty()) {
         // linkat never replaces a name, so an overwrite goes through a second name and rename.
         const std::string self = fmt::format("/proc/self/fd/{}", fd_);
@@ -183,12 +180,7 @@ Result<void> OutputFile::commit() {
     if (!temporary_.empty() && ::rename(temporary_.c_str(), path_.c_str()) != 0)
         return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
     committed_ = true;
-    if (const int folder = ::open(folder_of(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        folder >= 0) {
-        ::fsync(folder);  // the name itself; not every file system supports it
-        ::close(folder);
-    }
-    return {};
+    return file_io::sync_name(path_);
 }
 
 Result<void> write_file(const std::filesystem::path& path, std::span<const std::byte> data, bool overwrite) {

@@ -64,7 +64,7 @@ class OutputFile {
     uint64_t position() const { return position_; }  ///< the end of what `append` wrote
     /// The first `bytes`, which are written, to be read while more is appended; it outlives this object.
     Result<InputFile> reader(uint64_t bytes) const;
-    Result<void> commit();
+    Result<void> commit();  ///< where only its name cannot be synced, that is an error and the file stays
 
  private:
     OutputFile() = default;

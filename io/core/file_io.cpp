@@ -3,10 +3,27 @@
 #include <cerrno>
 #include <cstring>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "io/core/handle_pool.h"
+
 namespace lucarne::file_io {
+namespace {
+
+/// 0, or the errno.
+int sync_error(int fd) {
+    while (::fsync(fd) != 0)
+        if (errno != EINTR) return errno;
+    return 0;
+}
+
+}  // namespace
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
 
 std::string reason(int code) {
     return std::strerror(code);
@@ -48,6 +65,33 @@ Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
         return rejected(path.string(),
                         fmt::format("ends early: {} bytes wanted at {}, {} there", out.size(), offset, got));
     return {};
+}
+
+Result<void> sync(int fd, const std::filesystem::path& path) {
+    if (const int error = sync_error(fd))
+        return failed(path.string(), fmt::format("cannot be synced ({})", reason(error)));
+    return {};
+}
+
+Result<void> sync_name(const std::filesystem::path& path) {
+    const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int error = folder < 0 ? errno : sync_error(folder);
+    if (folder >= 0) ::close(folder);
+    // fsync(2): EINVAL, EROFS and ENOTSUP mean "no sync here"; some network file systems say EBADF of folders.
+    const bool unsupported = folder >= 0 && (error == EINVAL || error == EROFS || error == ENOTSUP || error == EBADF);
+    const bool unreadable = folder < 0 && (error == EACCES || error == EPERM);
+    if (error == 0 || unsupported || unreadable) return {};
+    return failed(path.string(), fmt::format("is written, but its name cannot be synced ({})", reason(error)),
+                  "check the disk: a power failure may still lose the file");
+}
+
+Result<void> name_written(const std::filesystem::path& part, const std::filesystem::path& name) {
+    const Handle written(::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    if (written.fd() < 0) return failed(name.string(), fmt::format("cannot be synced ({})", reason(errno)));
+    LUCARNE_TRY(sync(written.fd(), name));
+    if (::rename(part.c_str(), name.c_str()) != 0)
+        return failed(name.string(), fmt::format("cannot be given its name ({})", reason(errno)));
+    return sync_name(name);
 }
 
 }  // namespace lucarne::file_io

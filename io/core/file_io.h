@@ -10,6 +10,8 @@
 /// file of this folder share.
 namespace lucarne::file_io {
 
+std::filesystem::path folder_of(const std::filesystem::path& path);  ///< "." for a bare name
+
 std::string reason(int code);  ///< of an errno
 Result<void> write_all(int fd, uint64_t offset, std::span<const std::byte> data,
                        const std::filesystem::path& path);
@@ -17,5 +19,14 @@ Result<size_t> read_up_to(int fd, uint64_t offset, std::span<std::byte> out,
                           const std::filesystem::path& path);
 Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
                           const std::filesystem::path& path);
+/// Waits until what was written is on the disk. `path` only names the file in errors.
+Result<void> sync(int fd, const std::filesystem::path& path);
+/// Waits until the name of `path`, new or replaced, is on the disk. Does nothing on a file system that cannot
+/// sync folders, or for a folder that may be written but not read. Any other error (EIO, ENOSPC, EDQUOT) means
+/// that the name may be lost when the power fails.
+Result<void> sync_name(const std::filesystem::path& path);
+/// Syncs a file that another program has written as `part`, gives it its final `name` in the same folder,
+/// where it replaces what is there, and syncs that.
+Result<void> name_written(const std::filesystem::path& part, const std::filesystem::path& name);
 
 }  // namespace lucarne::file_io

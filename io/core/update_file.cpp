@@ -76,8 +76,7 @@ Result<void> UpdateFile::truncate(uint64_t bytes) {
 }
 
 Result<void> UpdateFile::sync() {
-    if (::fsync(fd_) != 0) return failed(path_.string(), fmt::format("cannot be synced ({})", reason(errno)));
-    return {};
+    return file_io::sync(fd_, path_);
 }
 
 }  // namespace lucarne

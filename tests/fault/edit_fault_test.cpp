@@ -118,7 +118,7 @@ TEST_F(Updates, ThatFailAtAnyCallSaySoAndLeaveTheOldState) {
                 write_bytes(cache_, before_);
                 const auto outcome = lucarne_with_fault(fault, update.arguments);
                 expect_old_or_new(update.name + (" " + fault));
-                if (outcome.code == 0) {  // a hint failed, or the folder's sync
+                if (outcome.code == 0) {  // a hint failed
                     ASSERT_TRUE(points() == new_points_) << update.name << fault;
                     continue;
                 }

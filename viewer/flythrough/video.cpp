@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/core/file_io.h"
 #include "io/core/file.h"
 #include "io/core/process.h"
 
@@ -185,10 +186,7 @@ Result<void> VideoWriter::finish() {
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return broken();
     LUCARNE_TRY(check_output(file_, overwrite_));  // it may have come meanwhile
-    std::error_code error;
-    std::filesystem::rename(part_, file_, error);
-    if (error) return failed(file_.string(), error.message());
-    return {};
+    return file_io::name_written(part_, file_);
 }
 
 }  // namespace lucarne::viewer

@@ -4,7 +4,7 @@
 //   count:FILE       nothing; writes the number of calls to FILE at the end
 //   kill:N           SIGKILL before the N-th call (from 1)
 //   full:N           from the N-th call on, every write fails with ENOSPC
-//   error:N          the N-th call alone fails with EIO
+//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given
 //   power:N:SEED     before the N-th call the power goes: of what was written since each file's last sync
 //   every
 //                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; then SIGKILL
@@ -54,7 +54,7 @@ class Faults {
         ++calls_;
         if (kind_ == "full" && calls_ >= at_ && writes) return ENOSPC;
         if (calls_ != at_) return 0;
-        if (kind_ == "error") return EIO;
+        if (kind_ == "error") return seed_ ? static_cast<int>(seed_) : EIO;
         if (kind_ == "power") lose();
         if (kind_ == "power" || kind_ == "kill") ::kill(::getpid(), SIGKILL);
         return 0;
@@ -124,7 +124,7 @@ class Faults {
 
     std::recursive_mutex mutex_;
     std::string kind_, argument_;
-    unsigned long long at_ = 0, seed_ = 0, calls_ = 0;
+    unsigned long long at_ = 0, seed_ = 0, calls_ = 0;  ///< `seed_`: the number after the call's, whatever it means
     std::vector<Undo> undos_;
 };
 
