@@ -1,6 +1,7 @@
 #include "io/core/handle_pool.h"
 
 #include <cerrno>
+#include <iterator>
 #include <system_error>
 
 #include <fcntl.h>
@@ -19,35 +20,53 @@ uint64_t HandlePool::enrol() {
     return next_++;
 }
 
+int HandlePool::open_to_read(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+}
+
 void HandlePool::leave(uint64_t number) {
+    std::list<Kept> closed;  // after the lock
     const std::lock_guard lock(mutex_);
     const auto place = places_.find(number);
     if (place == places_.end()) return;
-    kept_.erase(place->second);
+    closed.splice(closed.begin(), kept_, place->second);
     places_.erase(place);
+}
+
+/// Null: none is kept.
+std::shared_ptr<const Handle> HandlePool::kept_handle(uint64_t number) {
+    const std::lock_guard lock(mutex_);
+    const auto place = places_.find(number);
+    if (place == places_.end()) return nullptr;
+    kept_.splice(kept_.begin(), kept_, place->second);
+    return kept_.front().handle;
+}
+
+/// Keeps `handle`, unless another thread has opened the file meanwhile: then returns that one's.
+std::shared_ptr<const Handle> HandlePool::keep(uint64_t number, std::shared_ptr<const Handle> handle) {
+    std::list<Kept> closed;  // after the lock
+    const std::lock_guard lock(mutex_);
+    if (const auto place = places_.find(number); place != places_.end()) return place->second->handle;
+    kept_.push_front({number, handle});
+    places_[number] = kept_.begin();
+    while (kept_.size() > most_) {
+        places_.erase(kept_.back().number);
+        closed.splice(closed.begin(), kept_, std::prev(kept_.end()));
+    }
+    return handle;
 }
 
 Result<std::shared_ptr<const Handle>> HandlePool::acquire(uint64_t number, const std::filesystem::path& path,
                                                           const FileIdentity& identity) {
-    const std::lock_guard lock(mutex_);
-    if (const auto place = places_.find(number); place != places_.end()) {
-        kept_.splice(kept_.begin(), kept_, place->second);
-        return kept_.front().handle;
-    }
-    auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (auto kept = kept_handle(number)) return kept;
+    auto handle = std::make_shared<const Handle>(opener_(path));
     if (handle->fd() < 0)
         return failed(path.string(), fmt::format("cannot be opened again ({})",
                                                  std::error_code(errno, std::generic_category()).message()));
     struct stat status {};
     if (::fstat(handle->fd(), &status) != 0 || identity != FileIdentity{status.st_dev, status.st_ino})
         return failed(path.string(), "has been replaced since it was opened", "open it again");
-    kept_.push_front({number, handle});
-    places_[number] = kept_.begin();
-    while (kept_.size() > most_) {
-        places_.erase(kept_.back().number);
-        kept_.pop_back();
-    }
-    return handle;
+    return keep(number, handle);
 }
 
 size_t HandlePool::open() const {

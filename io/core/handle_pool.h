@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
+#include <utility>
 
 #include <sys/types.h>
 
@@ -35,9 +37,15 @@ struct FileIdentity {
 
 /// Handles of many files of which only so many are open at once: the longest unused is closed and opened
 /// again when it is needed. Beside those, as many are open as threads read at the moment. Thread-safe.
+///
+/// Files are opened and closed outside the lock: a slow one (on a network) holds up only those who read it.
 class HandlePool {
  public:
-    explicit HandlePool(size_t most) : most_(most) {}
+    /// Opens a file for reading: a file descriptor, or -1 and errno.
+    using Opener = std::function<int(const std::filesystem::path&)>;
+
+    explicit HandlePool(size_t most, Opener opener = open_to_read) : most_(most), opener_(std::move(opener)) {}
+    static int open_to_read(const std::filesystem::path& path);
 
     /// A number for a file that will be asked for again.
     uint64_t enrol();
@@ -53,7 +61,11 @@ class HandlePool {
         std::shared_ptr<const Handle> handle;
     };
 
+    std::shared_ptr<const Handle> kept_handle(uint64_t number);
+    std::shared_ptr<const Handle> keep(uint64_t number, std::shared_ptr<const Handle> handle);
+
     const size_t most_;
+    const Opener opener_;
     mutable std::mutex mutex_;
     uint64_t next_ = 0;
     std::list<Kept> kept_;  ///< the last used first

@@ -1,9 +1,15 @@
 #include "io/core/handle_pool.h"
 
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <fstream>
+#include <mutex>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "io/core/file.h"
 #include "io/core/machine.h"
@@ -45,6 +51,74 @@ TEST(HandlePool, ManyFilesAreReadThroughAFewHandlesByManyThreads) {
     EXPECT_EQ(pool->open(), 4u);
     files.clear();
     EXPECT_EQ(pool->open(), 0u) << "a file that goes leaves no handle";
+}
+
+/// Holds threads up until so many have come, or patience ends.
+class MeetingPoint {
+ public:
+    explicit MeetingPoint(int threads) : missing_(threads) {}
+    /// Whether all came.
+    bool meet() {
+        std::unique_lock lock(mutex_);
+        --missing_;
+        changed_.notify_all();
+        return changed_.wait_for(lock, std::chrono::seconds(20), [&] { return missing_ <= 0; });
+    }
+
+ private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    int missing_;
+};
+
+TEST(HandlePool, OthersAreReadWhileOneFileIsSlowToOpen) {
+    const TemporaryFolder folder;
+    MeetingPoint others_read(3);  // two readers and the slow open
+    std::atomic<bool> slow_waited{true};
+    const auto pool = std::make_shared<HandlePool>(2, [&](const std::filesystem::path& path) {
+        if (path.filename() == "slow") slow_waited = others_read.meet();
+        return HandlePool::open_to_read(path);
+    });
+    const InputFile kept = InputFile::open(write(folder / "kept", "1111"), pool).value();
+    const InputFile fresh = InputFile::open(write(folder / "fresh", "2222"), pool).value();
+    const InputFile slow = InputFile::open(write(folder / "slow", "3333"), pool).value();
+    EXPECT_EQ(first_bytes(kept), "1111");
+    std::vector<std::thread> threads;
+    threads.emplace_back([&] { EXPECT_EQ(first_bytes(slow), "3333"); });
+    for (const InputFile* file : {&kept, &fresh})
+        threads.emplace_back([&, file] {
+            EXPECT_EQ(first_bytes(*file), file == &kept ? "1111" : "2222");
+            others_read.meet();
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_TRUE(slow_waited) << "the readers waited for the slow file";
+    EXPECT_EQ(pool->open(), 2u);
+}
+
+TEST(HandlePool, OneHandleIsKeptOfAFileThatTwoThreadsOpenAtOnce) {
+    const TemporaryFolder folder;
+    MeetingPoint both(2);
+    std::atomic<int> opened{0};
+    HandlePool pool(8, [&](const std::filesystem::path& path) {
+        EXPECT_TRUE(both.meet()) << "one thread waited for the other's open";
+        ++opened;
+        return HandlePool::open_to_read(path);
+    });
+    struct stat status {};
+    ASSERT_EQ(::stat(write(folder / "a", "1111").c_str(), &status), 0);
+    const FileIdentity identity{status.st_dev, status.st_ino};
+    const uint64_t number = pool.enrol();
+    std::array<std::shared_ptr<const Handle>, 2> handles;
+    {
+        std::vector<std::thread> threads;
+        for (auto& handle : handles)
+            threads.emplace_back([&] { handle = pool.acquire(number, folder / "a", identity).value(); });
+        for (std::thread& thread : threads) thread.join();
+    }
+    EXPECT_EQ(opened, 2);
+    EXPECT_EQ(handles[0], handles[1]);
+    EXPECT_EQ(pool.open(), 1u);
+    EXPECT_EQ(handles[0].use_count(), 3) << "the pool's and ours";
 }
 
 TEST(HandlePool, FileThatWasReplacedIsNotReadAsTheOneOpened) {
