@@ -1,10 +1,11 @@
 #include "viewer/picture_worker.h"
 
 #include <condition_variable>
-#include <exception>
 #include <future>
 #include <mutex>
 #include <thread>
+
+#include "io/core/guarded.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -23,7 +24,7 @@ struct Told {
 struct PictureWorker::State {
     std::mutex mutex;
     std::condition_variable changed;
-    PictureRequest wanted;
+    std::shared_ptr<const PictureRequest> wanted;
     uint64_t wanted_number = 0;
     std::optional<std::shared_ptr<const octree::NodeSource>>
         next_source;  ///< to be drawn from instead; or nothing
@@ -171,7 +172,7 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
     uint64_t made_of = 0;
     bool again = false;
     for (;;) {
-        PictureRequest request;
+        std::shared_ptr<const PictureRequest> request;
         uint64_t request_number = 0;
         std::optional<std::shared_ptr<const octree::NodeSource>> other;
         {
@@ -184,20 +185,16 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
             request = wanted;
             request_number = wanted_number;
         }
-        Result<std::shared_ptr<Picture>> picture = [&]() -> Result<std::shared_ptr<Picture>> {
-            try {
-                if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
-                if (!shown || request_number == 0) return nullptr;
-                LUCARNE_TRY(tell(gl, *pipeline, request, request_number, told));
-                return make_picture(gl, *pipeline, request);
-            } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
-                return failed("picture", problem.what());
-            }
-        }();
+        auto picture = guarded("picture", [&]() -> Result<std::shared_ptr<Picture>> {
+            if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
+            if (!shown || request_number == 0) return nullptr;
+            LUCARNE_TRY(tell(gl, *pipeline, *request, request_number, told));
+            return make_picture(gl, *pipeline, *request);
+        });
         if (!picture) LUCARNE_TRY(gl.check());
         if (picture && !*picture) continue;
         made_of = request_number;
-        again = picture && worth_another(request, (*picture)->stats);
+        again = picture && worth_another(*request, (*picture)->stats);
         if (picture) {
             (*picture)->number = ++pictures_made;
             (*picture)->request = request_number;
@@ -211,13 +208,13 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
 Result<void> PictureWorker::State::work_with(const WorkerDevice& device_of) {
     Result<void> ended;
     {
-        auto gl = device_of.make();
+        auto gl = guarded("graphics device", device_of.make);
         if (!gl) ended = tl::make_unexpected(std::move(gl).error());
         if (ended && started) {
             device = (*gl)->info();
             std::exchange(started, std::nullopt)->set_value({});
         }
-        if (ended) ended = make_pictures(**gl);
+        if (ended) ended = guarded("pictures", [&] { return make_pictures(**gl); });
         pipeline.reset();  // before its device
     }
     device_of.release();
@@ -280,10 +277,11 @@ PictureWorker::~PictureWorker() {
 }
 
 uint64_t PictureWorker::request(PictureRequest request) {
+    auto wanted = std::make_shared<const PictureRequest>(std::move(request));
     uint64_t number = 0;
     {
         const std::lock_guard lock(state_->mutex);
-        state_->wanted = std::move(request);
+        state_->wanted = std::move(wanted);
         number = ++state_->wanted_number;
         state_->error = {};
     }

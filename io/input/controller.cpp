@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <libusb.h>
 
+#include "io/core/guarded.h"
 #include "io/core/log.h"
 
 namespace lucarne::io {
@@ -73,6 +74,7 @@ struct Controller::Reader {
     explicit Reader(std::function<void()> on_change) : changed(std::move(on_change)) {}
 
     void run();
+    void read_reports(bool told);
     void look_for_devices();
     int open(libusb_device* device, const Endpoint& endpoint);
     int claim(uint8_t interface);
@@ -221,6 +223,15 @@ void Controller::Reader::run() {
                                                        LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY,
                                                        LIBUSB_HOTPLUG_MATCH_ANY, arrived, this,
                                                        &callback) == LIBUSB_SUCCESS;
+    const auto ended = guarded("6-DoF controller", [&] { read_reports(told); });
+    if (told) libusb_hotplug_deregister_callback(usb, callback);
+    close();
+    if (!ended)
+        set(ControllerStatus{ControllerStatus::Kind::refused, ended.error().what, ended.error().why});
+}
+
+/// Until it is told to end; `told`: libusb tells of new devices.
+void Controller::Reader::read_reports(bool told) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds kScan(kScanSeconds);
     auto next_look = Clock::now();
@@ -241,8 +252,6 @@ void Controller::Reader::run() {
             next_look = Clock::now() + kScan;
         }
     }
-    if (told) libusb_hotplug_deregister_callback(usb, callback);
-    close();
 }
 
 Controller::Controller() = default;

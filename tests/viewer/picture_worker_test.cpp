@@ -80,6 +80,25 @@ TEST_F(Worker, MakesThePictureOfTheNewestRequest) {
     EXPECT_LE(picture->number, 9u) << "requests overtaken are not made";
 }
 
+TEST_F(Worker, ADeviceThatThrowsCountsAsOneThatCannotBeMade) {
+    const WorkerDevice throwing{[]() -> Result<std::unique_ptr<gi::Device>> { throw std::bad_alloc(); }, [] {}};
+    const auto never = PictureWorker::start(throwing, source_, {}, [] {});
+    ASSERT_FALSE(never);
+    EXPECT_THAT(never.error().line(), testing::HasSubstr("graphics device: there is not enough memory"));
+    // Also in the place of one that was lost.
+    auto worker = PictureWorker::start(device(1), source_, {}, [this] { published_.release(); });
+    ASSERT_TRUE(worker) << worker.error().line();
+    worker_ = std::move(*worker);
+    worker_->request(request_);
+    ASSERT_TRUE(loss());
+    worker_->set_device(throwing);
+    const auto again = loss();
+    ASSERT_TRUE(again);
+    EXPECT_THAT(again->line(), testing::HasSubstr("there is not enough memory"));
+    worker_->set_device(device());
+    EXPECT_TRUE(whole(worker_->request(request_)));
+}
+
 TEST_F(Worker, PicksTheWorldPointUnderAPlace) {
     const auto picture = whole(worker_->request(request_));
     ASSERT_TRUE(picture);

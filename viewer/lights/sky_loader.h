@@ -32,10 +32,8 @@ class SkyLoader {
         std::mutex mutex;
         std::string wanted;  ///< the newest wish; empty: it was taken
         uint64_t wish = 0;   ///< its number
-        bool working = false;
         std::optional<Sky> sky;
     };
-    static void work(Shared& shared);
 
     std::function<void()> done_;
     std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();

@@ -31,8 +31,8 @@ Desk::~Desk() {
 
 /// On a thread: a disk may take its time.
 void Desk::remember() {
-    writer_.push([settings = model_.shell.settings, folder = config_folder()] {
-        if (const auto saved = save_settings(settings, folder); !saved) log::warn("{}", saved.error().line());
+    writer_.push("the settings", [settings = model_.shell.settings, folder = config_folder()] {
+        return save_settings(settings, folder);
     });
 }
 
@@ -77,11 +77,12 @@ void Desk::follow_bookmarks() {
         shell.bookmarks.clear();
         bookmarks_of_ = of;
         if (!of.empty())
-            writer_.push([read = read_, of] {
-                LoadedBookmarks loaded = load_bookmarks(of);
-                const std::lock_guard lock(read->mutex);
-                read->bookmarks = std::move(loaded);
-            });
+            writer_.push(
+                "the bookmarks", [of]() -> Result<LoadedBookmarks> { return load_bookmarks(of); },
+                [read = read_, of](Result<LoadedBookmarks> loaded) {
+                    const std::lock_guard lock(read->mutex);
+                    read->bookmarks = loaded ? std::move(*loaded) : LoadedBookmarks{of, {}, loaded.error().line()};
+                });
     }
     std::optional<LoadedBookmarks> loaded;
     {
@@ -98,9 +99,8 @@ void Desk::follow_bookmarks() {
             bookmark.texture = window_.make_texture(bookmark.thumbnail);
     for (const unsigned texture : std::exchange(shell.stale_textures, {})) window_.free_texture(texture);
     if (!std::exchange(shell.bookmarks_changed, false)) return;
-    writer_.push([bookmarks = shell.bookmarks, folder = bookmarks_of_] {
-        if (const auto saved = save_bookmarks(bookmarks, folder); !saved)
-            log::warn("{}", saved.error().line());
+    writer_.push("the bookmarks", [bookmarks = shell.bookmarks, folder = bookmarks_of_] {
+        return save_bookmarks(bookmarks, folder);
     });
 }
 

@@ -60,11 +60,13 @@ void FileBrowser::show_all(bool all) {
 }
 
 void FileBrowser::list() {
-    jobs_.push([shared = shared_, folder = folder_, all = all_] {
-        FolderListing listing = list_folder(folder, all);
-        const std::lock_guard lock(shared->mutex);
-        shared->listing = std::move(listing);
-    });
+    jobs_.push(
+        "the folder", [folder = folder_, all = all_]() -> Result<FolderListing> { return list_folder(folder, all); },
+        [shared = shared_, folder = folder_](Result<FolderListing> listed) {
+            FolderListing listing = listed ? std::move(*listed) : FolderListing{folder, {}, listed.error().line()};
+            const std::lock_guard lock(shared->mutex);
+            shared->listing = std::move(listing);
+        });
 }
 
 void FileBrowser::toggle(const std::string& name) {

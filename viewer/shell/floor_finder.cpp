@@ -69,12 +69,14 @@ void FloorFinder::look(const std::shared_ptr<const octree::NodeSource>& source, 
     }
     source_ = source;
     asked_ = eye;
-    jobs_.push([shared = shared_, source, eye, eye_height] {
-        const auto floor = floor_below(*source, eye, eye_height);
-        const std::lock_guard lock(shared->mutex);
-        shared->floor = floor;
-        shared->looking = false;
-    });
+    using Floor = Result<std::optional<double>>;
+    jobs_.push(
+        "looking for the floor", [source, eye, eye_height]() -> Floor { return floor_below(*source, eye, eye_height); },
+        [shared = shared_](const Floor& floor) {
+            const std::lock_guard lock(shared->mutex);
+            shared->floor = floor.value_or(std::nullopt);
+            shared->looking = false;
+        });
 }
 
 std::optional<double> FloorFinder::found() const {

@@ -4,51 +4,42 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <utility>
+
+#include "io/core/guarded.h"
 
 namespace lucarne::viewer {
 
-/// A thread that does one job after another, so that the window's own never waits. Jobs report by what they
-/// share with whoever pushed them.
+/// A thread that does one job after another, so that the window's own never waits.
 class JobQueue {
  public:
-    using Job = std::function<void()>;
-
     JobQueue() : thread_([this] { work(); }) {}
     /// After the job at work; those still waiting are dropped.
-    ~JobQueue() {
-        {
-            const std::lock_guard lock(mutex_);
-            stop_ = true;
-        }
-        changed_.notify_all();
-        thread_.join();
-    }
+    ~JobQueue();
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
-    void push(Job job) {
-        {
-            const std::lock_guard lock(mutex_);
-            jobs_.push_back(std::move(job));
-        }
-        changed_.notify_all();
+    /// Runs `work` on the thread and then, there, `done` with the Result that it returns. What `work` throws (memory
+    /// runs out) becomes an error about `what`: so `done` always comes.
+    template <class Work, class Done>
+    void push(std::string what, Work work, Done done) {
+        push_job([what = std::move(what), work = std::move(work), done = std::move(done)]() mutable {
+            done(guarded(what, work));
+        });
+    }
+    /// The same where nobody waits for the result: an error becomes a warning on the terminal.
+    template <class Work>
+    void push(std::string what, Work work) {
+        push(std::move(what), std::move(work), warn_of);
     }
 
  private:
-    void work() {
-        for (;;) {
-            Job job;
-            {
-                std::unique_lock lock(mutex_);
-                changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
-                if (stop_) return;
-                job = std::move(jobs_.front());
-                jobs_.pop_front();
-            }
-            job();
-        }
-    }
+    using Job = std::function<void()>;
+    static void warn_of(const Result<void>& done);
+    void push_job(Job job);
+    void work();
 
     std::mutex mutex_;
     std::condition_variable changed_;

@@ -65,8 +65,7 @@ struct ScanSet::Item {
 
 /// A row's files, open; or what is to be opened in its place.
 struct Opened {
-    uint64_t id = 0;
-    Result<OpenInput> input;
+    OpenInput input;
     std::vector<std::string> instead;
     bool together = false;  ///< `instead` is one row
 };
@@ -79,14 +78,14 @@ struct ScanSet::Joined {
 /// Where the threads put what they have done.
 struct ScanSet::Shared {
     std::mutex mutex;
-    std::vector<Opened> opened;
+    std::vector<std::pair<uint64_t, Result<Opened>>> opened;  ///< of the rows with these ids
     std::optional<Result<Joined>> joined;
     std::function<void()> changed;
 
-    void report(Opened one) {
+    void report(uint64_t id, Result<Opened> one) {
         {
             const std::lock_guard lock(mutex);
-            opened.push_back(std::move(one));
+            opened.emplace_back(id, std::move(one));
         }
         changed();
     }
@@ -94,31 +93,38 @@ struct ScanSet::Shared {
 
 namespace {
 
-Opened open_paths(uint64_t id, bool together, InputOptions how, Watch& watch, uint64_t sample_points) {
-    if (watch.cancelled) return {id, failed("opening", "was stopped"), {}, false};
-    try {
-        if (std::ranges::any_of(how.paths, is_folder)) {
-            auto files = expanded(how, together);
-            if (!files) return {id, tl::make_unexpected(std::move(files).error()), {}, false};
-            return {id, OpenInput{}, std::move(*files), together};
-        }
-        if (how.paths.size() > 1 &&
-            std::ranges::any_of(how.paths, [](const auto& p) { return octree::is_octree(p); }))
-            return {id, OpenInput{}, how.paths, false};
-        Opening opening;
-        opening.resumable = true;
-        opening.sample_points = sample_points;
-        opening.sampling = [&watch](uint64_t done, uint64_t total) {
-            watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
-            return !watch.cancelled;
-        };
-        return {id, open_growing(how, opening), {}, false};
-    } catch (const std::exception& problem) {  // out of memory
-        return {id, failed(how.paths.front(), problem.what()), {}, false};
+Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, uint64_t sample_points) {
+    if (watch.cancelled) return failed("opening", "was stopped");
+    if (std::ranges::any_of(how.paths, is_folder)) {
+        LUCARNE_ASSIGN(auto files, expanded(how, together));
+        return Opened{{}, std::move(files), together};
     }
+    if (how.paths.size() > 1 &&
+        std::ranges::any_of(how.paths, [](const auto& p) { return octree::is_octree(p); }))
+        return Opened{{}, how.paths, false};
+    Opening opening;
+    opening.resumable = true;
+    opening.sample_points = sample_points;
+    opening.sampling = [&watch](uint64_t done, uint64_t total) {
+        watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
+        return !watch.cancelled;
+    };
+    LUCARNE_ASSIGN(OpenInput input, open_growing(how, opening));
+    return Opened{std::move(input), {}, false};
 }
 
 }  // namespace
+
+/// On the opening thread; `together` and `sample_points` as there.
+void ScanSet::push_opening(uint64_t id, InputOptions how, bool together, uint64_t sample_points) {
+    std::string name = how.paths.front();
+    opener_.push(
+        std::move(name),
+        [watch = items_[id].watch, how = std::move(how), together, sample_points] {
+            return open_paths(how, together, *watch, sample_points);
+        },
+        [shared = shared_, id](Result<Opened> opened) { shared->report(id, std::move(opened)); });
+}
 
 ScanSet::ScanSet(InputOptions how, StartOf start, std::function<void()> changed)
     : how_(std::move(how)), start_of_(std::move(start)), shared_(std::make_shared<Shared>()) {
@@ -160,9 +166,7 @@ void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t i
     const uint64_t sample = std::max(kLeastSamplePoints, kSamplePoints / std::max<uint64_t>(waiting, 1));
     InputOptions how = how_;
     how.paths = std::move(paths);
-    opener_.push([shared = shared_, watch = items_[id].watch, how = std::move(how), id, together, sample] {
-        shared->report(open_paths(id, together, how, *watch, sample));
-    });
+    push_opening(id, std::move(how), together, sample);
 }
 
 ScanRow* ScanSet::row_of(uint64_t id) {
@@ -175,8 +179,8 @@ void ScanSet::retire(Item& item) {
     item.watch->cancelled = true;
     if (!item.input.build) return;
     item.input.build->stop();
-    opener_.push(
-        [input = std::make_shared<OpenInput>(std::exchange(item.input, {}))]() mutable { input.reset(); });
+    opener_.push("closing a scan",
+                 [input = std::make_shared<OpenInput>(std::exchange(item.input, {}))]() mutable { input.reset(); });
 }
 
 void ScanSet::remove(uint64_t id) {
@@ -221,9 +225,7 @@ void ScanSet::go_on(uint64_t id) {
     row->share = 0;
     InputOptions how = how_;
     how.paths = row->paths;
-    opener_.push([shared = shared_, watch = item.watch, how = std::move(how), id] {
-        shared->report(open_paths(id, true, how, *watch, kSamplePoints));
-    });
+    push_opening(id, std::move(how), true, kSamplePoints);
 }
 
 void ScanSet::convert_next() {
@@ -256,32 +258,32 @@ void ScanSet::describe(const Item& item, ScanRow& row) const {
 }
 
 void ScanSet::take_opened() {
-    std::vector<Opened> opened;
+    std::vector<std::pair<uint64_t, Result<Opened>>> opened;
     {
         const std::lock_guard lock(shared_->mutex);
         opened.swap(shared_->opened);
     }
-    for (Opened& one : opened) {
-        ScanRow* row = row_of(one.id);
+    for (auto& [id, one] : opened) {
+        ScanRow* row = row_of(id);
         if (!row) continue;  // removed meanwhile; a build that has not begun goes at once
-        if (!one.instead.empty()) {
-            if (one.together) {
-                open_one(std::move(one.instead), true, one.id);
+        if (one && !one->instead.empty()) {
+            if (one->together) {
+                open_one(std::move(one->instead), true, id);
             } else {
-                for (std::string& path : one.instead) open_one({std::move(path)}, false, one.id);
+                for (std::string& path : one->instead) open_one({std::move(path)}, false, id);
             }
-            remove(one.id);
+            remove(id);
             continue;
         }
-        Item& item = items_[one.id];
+        Item& item = items_[id];
         row->stage.clear();
-        if (!one.input) {
+        if (!one) {
             row->state = item.source ? ScanState::stopped : ScanState::failed;
-            row->error = std::move(one.input).error();
+            row->error = std::move(one).error();
             log::warn("{}", row->error->line());
             continue;
         }
-        item.input = std::move(*one.input);
+        item.input = std::move(one->input);
         item.source = item.input.source;
         row->state = item.input.build ? ScanState::sample : ScanState::whole;
         describe(item, *row);
@@ -327,23 +329,21 @@ void ScanSet::join_visible() {
         if (const auto item = items_.find(row.id); row.visible && item != items_.end() && item->second.source)
             visible.push_back(item->second.source);
     joining_ = true;
-    joiner_.push([shared = shared_, visible = std::move(visible), start_of = start_of_]() mutable {
-        auto joined = [&]() -> Result<Joined> {
-            try {
-                if (visible.empty()) return Joined{};
-                LUCARNE_ASSIGN(Source source, octree::join_sources(std::move(visible)));
-                auto start = start_of(*source);
-                return Joined{std::move(source), std::move(start)};
-            } catch (const std::exception& problem) {
-                return failed("the open scans", problem.what());
+    joiner_.push(
+        "the open scans",
+        [visible = std::move(visible), start_of = start_of_]() mutable -> Result<Joined> {
+            if (visible.empty()) return Joined{};
+            LUCARNE_ASSIGN(Source source, octree::join_sources(std::move(visible)));
+            auto start = start_of(*source);
+            return Joined{std::move(source), std::move(start)};
+        },
+        [shared = shared_](Result<Joined> joined) {
+            {
+                const std::lock_guard lock(shared->mutex);
+                shared->joined = std::move(joined);
             }
-        }();
-        {
-            const std::lock_guard lock(shared->mutex);
-            shared->joined = std::move(joined);
-        }
-        shared->changed();
-    });
+            shared->changed();
+        });
 }
 
 void ScanSet::take_joined() {

@@ -101,6 +101,7 @@ class ScanSet {
     struct Shared;
     struct Joined;
     void open_one(std::vector<std::string> paths, bool together, uint64_t instead_of = 0);
+    void push_opening(uint64_t id, InputOptions how, bool together, uint64_t sample_points);
     void take_opened();
     void take_builds();
     void take_joined();

@@ -1,7 +1,6 @@
 #include "viewer/show/render_worker.h"
 
 #include <atomic>
-#include <exception>
 #include <mutex>
 #include <utility>
 
@@ -23,7 +22,7 @@ struct RenderWorker::State {
     JobQueue jobs;  ///< the last member: it ends before what its jobs use
 
     Result<void> frame_done();
-    void work(const RenderOrder& order, const WorkerDevice& device);
+    void finish(Result<std::string> done);
     Result<std::string> render(const RenderOrder& order, const WorkerDevice& device);
     Result<std::string> draw(const RenderOrder& order, const WorkerDevice& device);
     Result<std::string> still(Pipeline& pipeline, const RenderOrder& order, const StillOrder& what);
@@ -116,18 +115,12 @@ Result<std::string> RenderWorker::State::draw(const RenderOrder& order, const Wo
 
 Result<std::string> RenderWorker::State::render(const RenderOrder& order, const WorkerDevice& device) {
     LUCARNE_TRY(check(order));
-    try {
-        auto drawn = draw(order, device);
-        device.release();
-        return drawn;
-    } catch (const std::exception& problem) {  // out of memory: the window lives on and says so
-        device.release();
-        return failed(shown.file, problem.what());
-    }
+    auto drawn = guarded(shown.file, [&] { return draw(order, device); });
+    device.release();
+    return drawn;
 }
 
-void RenderWorker::State::work(const RenderOrder& order, const WorkerDevice& device) {
-    auto done = render(order, device);
+void RenderWorker::State::finish(Result<std::string> done) {
     {
         const std::lock_guard lock(mutex);
         shown.running = false;
@@ -152,9 +145,11 @@ bool RenderWorker::start(RenderOrder order, WorkerDevice device) {
         state_->outcome.reset();
     }
     state_->stop = false;
-    state_->jobs.push([state = state_.get(), order = std::move(order), device = std::move(device)] {
-        state->work(order, device);
-    });
+    state_->jobs.push(
+        "rendering", [state = state_.get(), order = std::move(order), device = std::move(device)] {
+            return state->render(order, device);
+        },
+        [state = state_.get()](Result<std::string> done) { state->finish(std::move(done)); });
     return true;
 }
 

@@ -1,25 +1,10 @@
 #include "viewer/tools/measure_worker.h"
 
-#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace lucarne::viewer {
-namespace {
-
-/// The window lives on when memory does not do.
-template <class Work>
-auto guarded(const char* what, const Work& work) -> decltype(work()) {
-    try {
-        return work();
-    } catch (const std::exception& problem) {
-        return failed(what, problem.what());
-    }
-}
-
-}  // namespace
-
 NodeCache& MeasureWorker::cache_of(const std::shared_ptr<const octree::NodeSource>& source) {
     if (!cache_ || cache_->source() != source) cache_ = std::make_unique<NodeCache>(source);
     return *cache_;
@@ -28,16 +13,17 @@ NodeCache& MeasureWorker::cache_of(const std::shared_ptr<const octree::NodeSourc
 void MeasureWorker::pick(std::shared_ptr<const Picture> picture, const glm::dvec2& place) {
     if (waiting_ >= kMostWaiting) return;
     ++waiting_;
-    picking_.push([this, picture = std::move(picture), place] {
-        Pick found =
-            guarded("picking", [&] { return pick_point(*picture, place, cache_of(picture->source)); });
-        {
-            const std::lock_guard lock(mutex_);
-            picks_.push_back(std::move(found));
-        }
-        --waiting_;
-        published_();
-    });
+    picking_.push(
+        "picking",
+        [this, picture = std::move(picture), place] { return pick_point(*picture, place, cache_of(picture->source)); },
+        [this](Pick found) {
+            {
+                const std::lock_guard lock(mutex_);
+                picks_.push_back(std::move(found));
+            }
+            --waiting_;
+            published_();
+        });
 }
 
 std::vector<MeasureWorker::Pick> MeasureWorker::take_picks() {
@@ -68,8 +54,8 @@ void MeasureWorker::read(std::shared_ptr<const octree::NodeSource> source, const
     }
     *stop_ = true;
     stop_ = std::make_shared<std::atomic<bool>>(false);
-    sections_.push([this, source = std::move(source), slice, stop = stop_] {
-        if (*stop) return;
+    const auto work = [this, source = std::move(source), slice, stop = stop_]() -> Result<void> {
+        if (*stop) return {};
         const auto publish = [&](const Section& section) {
             auto copy = std::make_shared<const Section>(section);
             {
@@ -78,14 +64,16 @@ void MeasureWorker::read(std::shared_ptr<const octree::NodeSource> source, const
             }
             published_();
         };
-        const auto section = guarded("section", [&] {
-            return read_section(*source, slice, kMostSectionPoints, [&](const Section& now, bool level_done) {
-                if (level_done) publish(now);
-                return !*stop;
-            });
-        });
-        if (!section) return say(section.error().line());
-        if (!*stop) publish(*section);
+        LUCARNE_ASSIGN(const Section section,
+                       read_section(*source, slice, kMostSectionPoints, [&](const Section& now, bool level_done) {
+                           if (level_done) publish(now);
+                           return !*stop;
+                       }));
+        if (!*stop) publish(section);
+        return {};
+    };
+    sections_.push("section", work, [this](const Result<void>& read) {
+        if (!read) say(read.error().line());
     });
 }
 
@@ -110,10 +98,11 @@ Result<void> MeasureWorker::write_section(const std::filesystem::path& base, con
 
 void MeasureWorker::save_section(const std::filesystem::path& base, const std::string& title,
                                  const UnitChoice& units) {
-    sections_.push([=, this] {
-        const auto written = guarded("section", [&] { return write_section(base, title, units); });
-        say(written ? fmt::format("saved {}.csv and .svg", base.string()) : written.error().line());
-    });
+    sections_.push(
+        "section", [=, this] { return write_section(base, title, units); },
+        [=, this](const Result<void>& written) {
+            say(written ? fmt::format("saved {}.csv and .svg", base.string()) : written.error().line());
+        });
 }
 
 }  // namespace lucarne::viewer

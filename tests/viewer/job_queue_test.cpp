@@ -1,0 +1,67 @@
+// Background jobs that throw: whoever asked for them is told, and the thread goes on.
+#include "viewer/shell/job_queue.h"
+
+#include <future>
+#include <new>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+#include "tests/octree/plane_source.h"
+#include "tests/viewer/window_fixture.h"
+#include "viewer/shell/floor_finder.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using testing::HasSubstr;
+
+/// What the requester of `work` is told.
+template <class Work>
+Result<int> told(JobQueue& jobs, Work work) {
+    std::promise<Result<int>> promise;
+    jobs.push("sky.hdr", work, [&](Result<int> done) { promise.set_value(std::move(done)); });
+    return promise.get_future().get();
+}
+
+TEST(JobQueue, WhatAJobThrowsIsTheErrorOfItsRequesterAndTheNextJobRuns) {
+    JobQueue jobs;
+    EXPECT_EQ(told(jobs, []() -> Result<int> { return 5; }).value(), 5);
+    const auto memory = told(jobs, []() -> Result<int> { throw std::bad_alloc(); });
+    ASSERT_FALSE(memory);
+    EXPECT_THAT(memory.error().line(), HasSubstr("sky.hdr: there is not enough memory"));
+    const auto reason = told(jobs, []() -> Result<int> { throw std::runtime_error("is bent"); });
+    ASSERT_FALSE(reason);
+    EXPECT_EQ(reason.error().line(), "sky.hdr: is bent");
+    EXPECT_FALSE(told(jobs, []() -> Result<int> { throw 7; }));
+    EXPECT_EQ(told(jobs, []() -> Result<int> { return 6; }).value(), 6);
+}
+
+TEST(JobQueue, AFailureThatNobodyWaitsForIsSaidOnTheTerminal) {
+    testing::internal::CaptureStderr();
+    {
+        JobQueue jobs;
+        jobs.push("the settings", []() -> Result<void> { throw std::bad_alloc(); });
+        jobs.push(
+            "listing", []() -> Result<int> { return 1; }, [](const Result<int>&) { throw std::bad_alloc(); });
+        EXPECT_EQ(told(jobs, []() -> Result<int> { return 6; }).value(), 6) << "the thread goes on";
+    }
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_THAT(said, HasSubstr("the settings: there is not enough memory"));
+    EXPECT_THAT(said, HasSubstr("a background job: there is not enough memory"));
+}
+
+TEST(FloorFinder, LooksAgainAfterMemoryHasRunOut) {
+    const auto source = std::make_shared<octree::test::PlaneSource>(2, 100, 10.0);
+    source->throw_at(0);
+    FloorFinder finder;
+    for (size_t looks = 1; looks < 4; ++looks)
+        EXPECT_TRUE(test::eventually([&] {
+            finder.look(source, {5.0 + static_cast<double>(looks), 5, 2}, 1.65);
+            return source->order().size() >= looks;
+        }));
+    EXPECT_FALSE(finder.found());
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

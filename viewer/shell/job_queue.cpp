@@ -1,0 +1,42 @@
+#include "viewer/shell/job_queue.h"
+
+#include "io/core/log.h"
+
+namespace lucarne::viewer {
+
+JobQueue::~JobQueue() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void JobQueue::push_job(Job job) {
+    {
+        const std::lock_guard lock(mutex_);
+        jobs_.push_back(std::move(job));
+    }
+    changed_.notify_all();
+}
+
+void JobQueue::warn_of(const Result<void>& done) {
+    if (!done) log::warn("{}", done.error().line());
+}
+
+void JobQueue::work() {
+    for (;;) {
+        Job job;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
+            if (stop_) return;
+            job = std::move(jobs_.front());
+            jobs_.pop_front();
+        }
+        warn_of(guarded("a background job", job));  // only `done` can fail here
+    }
+}
+
+}  // namespace lucarne::viewer
