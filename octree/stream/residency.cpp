@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <exception>
 #include <list>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <unordered_map>
-#include <unordered_set>
 
 #include <fmt/format.h>
+
+#include "io/core/guarded.h"
 
 namespace lucarne::octree {
 namespace {
@@ -39,7 +39,7 @@ struct Entry {
 
 struct Residency::State {
     State(const NodeSource& its_source, ResidencyOptions its_options)
-        : source(its_source), options(std::move(its_options)) {}
+        : source(its_source), options(std::move(its_options)), broken(its_source.nodes().size()) {}
 
     const NodeSource& source;
     const ResidencyOptions options;
@@ -47,7 +47,7 @@ struct Residency::State {
     mutable std::mutex mutex;
     std::condition_variable work, idle;
     std::unordered_map<uint32_t, Entry> entries;  ///< all that is wanted, held or on its way
-    std::unordered_set<uint32_t> broken;          ///< failed; not tried again
+    std::vector<bool> broken;                     ///< nodes that failed; they are not tried again
     std::vector<uint32_t> queue;                  ///< what to load, the most important last
     std::vector<uint32_t> evictable;              ///< held and not admitted, the first to go last
     Events events;
@@ -69,8 +69,9 @@ struct Residency::State {
     bool nothing_moves() const;
     void forget_event(Entry& entry);
     std::optional<uint32_t> next_load();
-    Result<NodeData> read(uint32_t node, uint64_t record_bytes, uint32_t count) const;
-    void finish_load(uint32_t node, Result<NodeData>&& loaded);
+    std::optional<uint32_t> take_next();
+    Result<Events> load(uint32_t node, uint64_t record_bytes, uint32_t count) const;
+    void finish_load(uint32_t node, Result<Events>&& loaded);
     void loader();
     bool goes_before(uint32_t a, uint32_t b) const;
 };
@@ -135,7 +136,7 @@ void Residency::State::admit() {
         const auto found = entries.find(nodes[node].parent);
         const Entry* parent =
             found != entries.end() && found->second.last_wanted == wants ? &found->second : nullptr;
-        entry.lost = broken.contains(node) || (parent && parent->lost);
+        entry.lost = broken[node] || (parent && parent->lost);
         if (entry.lost) continue;
         const bool orphan = parent && !parent->admitted;
         const uint64_t bytes = std::max(entry.bytes, entry.held_bytes);
@@ -155,12 +156,14 @@ void Residency::State::admit() {
     queue = std::move(missing);
 }
 
-/// Forgets what is neither wanted nor here, and lists what may go, the longest unwanted last.
+/// Drops entries that are neither wanted nor held nor on their way, and lists what may be evicted, the longest
+/// unwanted last.
 void Residency::State::forget_strangers() {
     evictable.clear();
     std::erase_if(entries, [&](const auto& pair) {
         return !pair.second.held && !pair.second.in_flight && pair.second.last_wanted != wants;
     });
+    evictable.reserve(entries.size());  // finish_load() adds to it
     for (const auto& [node, entry] : entries)
         if (entry.held && !entry.admitted) evictable.push_back(node);
     std::ranges::sort(evictable, [&](uint32_t a, uint32_t b) { return goes_before(b, a); });
@@ -183,8 +186,10 @@ void Residency::State::forget_event(Entry& entry) {
 
 void Residency::State::evict(uint32_t node) {
     Entry& entry = entries.at(node);
+    Events told;  // first, since it may throw
+    if (entry.known) told.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
     forget_event(entry);
-    if (entry.known) events.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
+    events.splice(events.end(), told);
     entry.known = false;
     stats.bytes_held -= entry.held_bytes;
     stats.nodes_held -= 1;
@@ -212,7 +217,8 @@ bool Residency::State::nothing_moves() const {
     return loads_in_flight == 0 && (queue.empty() || transit_full());
 }
 
-/// Takes the next node off the queue once there is room for it.
+/// Takes the next node off the queue once there is room for it. Throws where there is no memory to report an
+/// eviction; then nothing is taken.
 std::optional<uint32_t> Residency::State::next_load() {
     if (queue.empty() || transit_full()) return std::nullopt;
     const uint32_t node = queue.back();
@@ -234,7 +240,18 @@ std::optional<uint32_t> Residency::State::next_load() {
     return node;
 }
 
-void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
+/// The same; what it throws is reported instead, and the queue is given up: the next want() makes another.
+std::optional<uint32_t> Residency::State::take_next() {
+    auto next = guarded("loading", [&]() -> Result<std::optional<uint32_t>> { return next_load(); });
+    if (next) return *next;
+    if (!error) error = std::move(next).error();
+    queue.clear();
+    if (nothing_moves()) idle.notify_all();
+    return std::nullopt;
+}
+
+/// Allocates nothing, so that it cannot fail.
+void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     Entry& entry = entries.at(node);
     entry.in_flight = false;
     bytes_in_flight -= entry.bytes;
@@ -243,7 +260,8 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     if (!loaded) {
         if (entry.stale) return;  // it changed on the way: the next want() asks again
         ++stats.failures;
-        broken.insert(node);
+        ++stats.lost;
+        broken[node] = true;
         if (!error) error = std::move(loaded).error();
         return;
     }
@@ -251,12 +269,12 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     stats.bytes_loaded += entry.record_bytes;
     entry.fetched = entry.ahead && entry.last_wanted == wants;
     stats.ahead_loads += entry.fetched;
-    auto data = std::make_shared<const NodeData>(std::move(*loaded));
     forget_event(entry);
     entry.unpolled_bytes = entry.record_bytes;
     bytes_unpolled += entry.unpolled_bytes;
-    const auto kind = entry.known ? ResidencyEvent::Kind::replaced : ResidencyEvent::Kind::loaded;
-    entry.unpolled = events.insert(events.end(), {kind, node, std::move(data)});
+    if (entry.known) loaded->front().kind = ResidencyEvent::Kind::replaced;
+    entry.unpolled = loaded->begin();
+    events.splice(events.end(), *loaded);
     stats.bytes_held += entry.bytes - entry.held_bytes;
     entry.held_bytes = entry.bytes;
     if (entry.held) return;
@@ -267,29 +285,32 @@ void Residency::State::finish_load(uint32_t node, Result<NodeData>&& loaded) {
     evictable.insert(std::ranges::partition_point(evictable, later), node);
 }
 
-/// On a loading thread, without the lock.
-Result<NodeData> Residency::State::read(uint32_t node, uint64_t record_bytes, uint32_t count) const {
-    try {
+/// Reads a node and makes its event, on a loading thread, without the lock.
+Result<Events> Residency::State::load(uint32_t node, uint64_t record_bytes, uint32_t count) const {
+    const std::string name = fmt::format("node {}", node);
+    return guarded(name, [&]() -> Result<Events> {
         LUCARNE_ASSIGN(NodeData data, source.load(node));
         if (data.count != count || data.records.size() != record_bytes)
-            return rejected(fmt::format("node {}", node), "it holds something else than the directory says");
-        if (options.prepare) return options.prepare(node, std::move(data));
-        return data;
-    } catch (const std::exception& problem) {
-        return failed(fmt::format("node {}", node), problem.what());
-    }
+            return rejected(name, "it holds something else than the directory says");
+        if (options.prepare) data = options.prepare(node, std::move(data));
+        Events made;
+        made.push_back({ResidencyEvent::Kind::loaded, node, std::make_shared<const NodeData>(std::move(data))});
+        return made;
+    });
 }
 
 void Residency::State::loader() {
     std::unique_lock lock(mutex);
-    for (;;) {
-        std::optional<uint32_t> node;
-        work.wait(lock, [&] { return stop || (node = next_load()).has_value(); });
-        if (stop) return;
+    while (!stop) {
+        const std::optional<uint32_t> node = take_next();
+        if (!node) {
+            work.wait(lock);
+            continue;
+        }
         const uint64_t record_bytes = entries.at(*node).record_bytes;
         const uint32_t count = entries.at(*node).count;
         lock.unlock();
-        Result<NodeData> loaded = read(*node, record_bytes, count);
+        Result<Events> loaded = load(*node, record_bytes, count);
         lock.lock();
         finish_load(*node, std::move(loaded));
         work.notify_all();
@@ -323,6 +344,7 @@ void Residency::want(std::span<const Cut* const> cuts, std::span<const Cut* cons
     {
         const std::lock_guard lock(state_->mutex);
         ++state_->wants;
+        state_->broken.resize(state_->source.nodes().size());
         std::vector<uint32_t> wanted;
         state_->take_wishes(cuts, false, wanted);
         state_->take_wishes(ahead, true, wanted);
@@ -337,7 +359,10 @@ void Residency::want(std::span<const Cut* const> cuts, std::span<const Cut* cons
 void Residency::renew(std::span<const uint32_t> nodes) {
     const std::lock_guard lock(state_->mutex);
     for (const uint32_t node : nodes) {
-        state_->broken.erase(node);
+        if (node < state_->broken.size() && state_->broken[node]) {
+            state_->broken[node] = false;
+            --state_->stats.lost;
+        }
         if (const auto entry = state_->entries.find(node); entry != state_->entries.end())
             entry->second.stale = entry->second.held || entry->second.in_flight;
     }
@@ -381,7 +406,6 @@ ResidencyStats Residency::stats() const {
     const std::lock_guard lock(state_->mutex);
     ResidencyStats stats = state_->stats;
     stats.pending = 0;
-    stats.lost = state_->broken.size();
     for (const uint32_t node : state_->queue) stats.pending += !state_->entries.at(node).ahead;
     for (const auto& [node, entry] : state_->entries)
         stats.pending += !entry.ahead && ((entry.in_flight && entry.admitted) || entry.unpolled);

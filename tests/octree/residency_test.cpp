@@ -236,6 +236,28 @@ TEST(Residency, DropsLoadsNotStartedThatNobodyWantsAnyMore) {
     EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 3}));
 }
 
+TEST(Residency, WhateverALoadOrItsPreparationThrowsIsAnErrorOfItsNodeAlone) {
+    PlaneSource source(2, kPoints, 10.0);  // a root and its four children
+    source.throw_at(2);
+    Residency residency(source, {.memory = 100 * kNode, .threads = 2, .prepare = [](uint32_t node, NodeData&& data) {
+                                     if (node == 3) throw node;  // no std::exception
+                                     return std::move(data);
+                                 }});
+    const Cut cut = full_cut(source);
+    want(residency, cut);
+    EXPECT_TRUE(residency.wait());
+    EXPECT_EQ(residency.stats().failures, 2u);
+    EXPECT_EQ(residency.stats().nodes_held, 3u);
+    const auto error = residency.take_error();
+    ASSERT_FALSE(error);
+    EXPECT_TRUE(error.error().what == "node 2" || error.error().what == "node 3") << error.error().line();
+    const size_t loads = source.order().size();
+    want(residency, cut);
+    EXPECT_TRUE(residency.wait());
+    EXPECT_EQ(source.order().size(), loads) << "a node that failed is not asked for again";
+    EXPECT_TRUE(residency.take_error());
+}
+
 TEST(Residency, ReportsAFailedLoadOnceAndDoesNotTryItAgain) {
     PlaneSource source(4, kPoints, 10.0);
     source.break_node(2);
