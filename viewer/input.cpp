@@ -196,7 +196,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     // A temporary folder goes with the program, and what is in it.
     if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;
     LUCARNE_ASSIGN(open.build, GrowingBuild::open(std::move(scans.inputs), std::move(growing)));
-    open.source = open.build->source();
+    open.source = open.build->state().source;
     return open;
 }
 

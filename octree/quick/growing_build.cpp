@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include <tbb/task_arena.h>
 
+#include "io/core/guarded.h"
 #include "octree/attributes.h"
 #include "octree/build/build_inputs.h"
 #include "octree/build/build_listener.h"
@@ -77,15 +77,13 @@ struct GrowingBuild::State final : BuildListener {
     double publishing = 0;  ///< s that the last source took to make
 
     mutable std::mutex mutex;  ///< of what follows
-    std::shared_ptr<const NodeSource> newest;
-    BuildProgress state;
-    std::optional<Error> problem;
-    bool done = false;
+    BuildState now;
 
     Result<void> take_first();
     void publish(std::shared_ptr<const InputFile> file);
     void show(std::shared_ptr<const NodeSource> source);
     void work();
+    void end(Result<std::shared_ptr<const NodeSource>> cache);
     Result<std::shared_ptr<const NodeSource>> build();
 
     void scanned(const SourceHeader& facts) override;
@@ -131,7 +129,7 @@ void GrowingBuild::State::publish(std::shared_ptr<const InputFile> file) {
 void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
     {
         const std::lock_guard lock(mutex);
-        newest = std::move(source);
+        now.source = std::move(source);
     }
     if (changed) changed();
 }
@@ -179,8 +177,8 @@ void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte
 
 void GrowingBuild::State::advanced(std::string_view stage, uint64_t points, uint64_t total) {
     const std::lock_guard lock(mutex);
-    state = {std::string(stage),
-             total ? std::min(1.0, static_cast<double>(points) / static_cast<double>(total)) : 0.0};
+    now.progress = {std::string(stage),
+                    total ? std::min(1.0, static_cast<double>(points) / static_cast<double>(total)) : 0.0};
 }
 
 Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
@@ -193,23 +191,22 @@ Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
 }
 
 void GrowingBuild::State::work() {
-    auto cache = [&]() -> Result<std::shared_ptr<const NodeSource>> {
-        try {
-            return build();
-        } catch (const std::exception& reason) {
-            return failed("the build", reason.what());
-        }
-    }();
+    auto cache = guarded("the build", [&] { return build(); });
     entries = {};
     roots.clear();
+    end(std::move(cache));
+}
+
+void GrowingBuild::State::end(Result<std::shared_ptr<const NodeSource>> cache) {
     {
         const std::lock_guard lock(mutex);
-        state = {};
-        done = cache.has_value();
+        now.progress = {};
+        now.finished = cache.has_value();
+        now.stopped = stop && !cache;
         if (cache)
-            newest = std::move(*cache);
+            now.source = std::move(*cache);
         else
-            problem = std::move(cache).error();
+            now.error = tl::make_unexpected(std::move(cache).error());
     }
     if (changed) changed();
 }
@@ -235,37 +232,19 @@ void GrowingBuild::stop() {
 
 void GrowingBuild::begin(std::function<void()> changed) {
     state_->changed = std::move(changed);
-    state_->thread = std::thread([state = state_.get()] { state->work(); });
+    auto started = guarded("the build", [&] {
+        state_->thread = std::thread([state = state_.get()] { state->work(); });
+    });
+    if (!started) state_->end(tl::make_unexpected(std::move(started).error()));
 }
 
 void GrowingBuild::wait() {
     if (state_->thread.joinable()) state_->thread.join();
 }
 
-std::shared_ptr<const NodeSource> GrowingBuild::source() const {
+BuildState GrowingBuild::state() const {
     const std::lock_guard lock(state_->mutex);
-    return state_->newest;
-}
-
-BuildProgress GrowingBuild::progress() const {
-    const std::lock_guard lock(state_->mutex);
-    return state_->state;
-}
-
-bool GrowingBuild::finished() const {
-    const std::lock_guard lock(state_->mutex);
-    return state_->done;
-}
-
-bool GrowingBuild::stopped() const {
-    const std::lock_guard lock(state_->mutex);
-    return state_->stop && state_->problem;
-}
-
-Result<void> GrowingBuild::error() const {
-    const std::lock_guard lock(state_->mutex);
-    if (state_->problem) return tl::make_unexpected(*state_->problem);
-    return {};
+    return state_->now;
 }
 
 }  // namespace lucarne::octree

@@ -18,6 +18,15 @@ struct BuildProgress {
     double share = 0;   ///< of the stage, 0 to 1
 };
 
+/// All that there is to know of a build at one moment.
+struct BuildState {
+    std::shared_ptr<const NodeSource> source;  ///< the newest
+    BuildProgress progress;
+    bool finished = false;  ///< the source is the cache
+    bool stopped = false;   ///< the build has ended because of stop(): `error` says no more than that
+    Result<void> error;     ///< why the build ended without a cache; the last source stays
+};
+
 struct GrowingOptions {
     BuildOptions build;                ///< inputs: empty, they are given on their own
     uint64_t sample_points = 400'000;  ///< of the first picture
@@ -48,12 +57,7 @@ class GrowingBuild {
     /// Blocks until the build has ended.
     void wait();
 
-    std::shared_ptr<const NodeSource> source() const;  ///< the newest
-    BuildProgress progress() const;
-    bool finished() const;  ///< the source is the cache
-    bool stopped() const;   ///< it has ended because of stop(): error() says no more than that
-    /// Why the build ended without a cache; the last source stays.
-    Result<void> error() const;
+    BuildState state() const;
 
  private:
     GrowingBuild();

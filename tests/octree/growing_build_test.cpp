@@ -68,9 +68,9 @@ GrowingOptions options_for(const std::filesystem::path& output, NormalsMode norm
 
 /// All sources of a build, the first and the cache among them.
 std::vector<std::shared_ptr<const NodeSource>> all_sources(GrowingBuild& build) {
-    std::vector<std::shared_ptr<const NodeSource>> sources = {build.source()};
+    std::vector<std::shared_ptr<const NodeSource>> sources = {build.state().source};
     build.begin([&] {
-        if (auto source = build.source(); source != sources.back()) sources.push_back(std::move(source));
+        if (auto source = build.state().source; source != sources.back()) sources.push_back(std::move(source));
     });
     build.wait();
     return sources;
@@ -115,7 +115,7 @@ TEST(GrowingBuild, ItsFirstSourceCoversTheWholeExtent) {
     for (const bool seekable : {true, false}) {
         const auto build = GrowingBuild::open(inputs_of(500'000, seekable), options_for(folder / "a.luc"));
         ASSERT_TRUE(build) << build.error().line();
-        const auto source = (*build)->source();
+        const auto source = (*build)->state().source;
         ASSERT_TRUE(is_directory(source->nodes()));
         const auto numbers = numbers_in(*source);
         EXPECT_GT(numbers.size(), 15'000u);
@@ -135,7 +135,7 @@ TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
     const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
     ASSERT_TRUE(build) << build.error().line();
     const auto sources = all_sources(**build);
-    ASSERT_TRUE((*build)->error()) << (*build)->error().error().line();
+    ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
     // How many depends on how long each takes to be made: they get a twentieth of the time.
     EXPECT_GT(sources.size(), 2u) << "something comes between the first and the cache";
     size_t last = 0;
@@ -156,7 +156,7 @@ TEST(GrowingBuild, EndsWithTheCacheThatABuildAloneMakes) {
     const auto build = GrowingBuild::open(inputs_of(200'000), options_for(folder / "a.luc"));
     ASSERT_TRUE(build) << build.error().line();
     const auto last = all_sources(**build).back();
-    EXPECT_TRUE((*build)->finished());
+    EXPECT_TRUE((*build)->state().finished);
     BuildOptions alone = options_for(folder / "b.luc").build;
     const auto inputs = inputs_of(200'000);
     alone.inputs = {inputs[0].get()};
@@ -201,7 +201,7 @@ TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
         GrowingBuild::open(inputs_of(150'000), options_for(folder / "a.luc", NormalsMode::estimate));
     ASSERT_TRUE(build) << build.error().line();
     const auto sources = all_sources(**build);
-    ASSERT_TRUE((*build)->error()) << (*build)->error().error().line();
+    ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
     EXPECT_GT(sources.size(), 3u);
     for (size_t i = 0; i < sources.size(); ++i)
         for (uint32_t level = 0; level < 5; ++level)
@@ -230,13 +230,13 @@ TEST(GrowingBuild, AFailedBuildSaysWhyAndItsLastSourceStays) {
     const TempFolder folder;
     auto build = GrowingBuild::open(inputs_of(50'000), options_for(folder / "none" / "a.luc"));
     ASSERT_TRUE(build) << build.error().line();
-    const auto first = (*build)->source();
+    const auto first = (*build)->state().source;
     (*build)->begin([] {});
     (*build)->wait();
-    EXPECT_FALSE((*build)->finished());
-    ASSERT_FALSE((*build)->error());
-    EXPECT_NE((*build)->error().error().line().find("does not exist"), std::string::npos);
-    EXPECT_EQ((*build)->source(), first);
+    EXPECT_FALSE((*build)->state().finished);
+    ASSERT_FALSE((*build)->state().error);
+    EXPECT_NE((*build)->state().error.error().line().find("does not exist"), std::string::npos);
+    EXPECT_EQ((*build)->state().source, first);
     EXPECT_FALSE(numbers_in(*first).empty());
 }
 

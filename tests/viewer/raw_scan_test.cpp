@@ -169,9 +169,9 @@ TEST_F(RawScan, ThePicturesOfABuildEndWithThatOfItsCache) {
     const auto first = picture(*pipeline);
     request.wait = false;  // a new source is drawn whole all the same
     std::vector<std::shared_ptr<const octree::NodeSource>> sources;
-    open->build->begin([&] { sources.push_back(open->build->source()); });
+    open->build->begin([&] { sources.push_back(open->build->state().source); });
     open->build->wait();
-    ASSERT_TRUE(open->build->finished());
+    ASSERT_TRUE(open->build->state().finished);
     std::vector<uint32_t> last;
     for (const auto& source : sources) {
         ASSERT_TRUE(pipeline->set_source(source));

@@ -298,22 +298,19 @@ void ScanSet::take_builds() {
         Item& item = found->second;
         if (row.state == ScanState::opening) row.share = item.watch->share;
         if (!item.input.build || row.state != ScanState::converting) continue;
-        octree::GrowingBuild& build = *item.input.build;
-        const octree::BuildProgress progress = build.progress();
-        row.stage = progress.stage;
-        row.share = progress.share;
-        const bool finished = build.finished();
-        const auto error = build.error();
-        if (auto source = build.source(); source != item.source) {
-            item.source = std::move(source);
+        octree::BuildState build = item.input.build->state();
+        row.stage = std::move(build.progress.stage);
+        row.share = build.progress.share;
+        if (build.source != item.source) {
+            item.source = std::move(build.source);
             stale_ |= row.visible;
         }
-        if (finished) {
+        if (build.finished) {
             row.state = ScanState::whole;
             item.input.build.reset();  // its thread has nothing left to do
-        } else if (!error) {
+        } else if (!build.error) {
             row.state = ScanState::stopped;
-            if (!build.stopped()) row.error = error.error();
+            if (!build.stopped) row.error = std::move(build.error).error();
             if (row.error) log::warn("the cache was not finished: {}", row.error->line());
         }
         describe(item, row);
