@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 
+#include "io/core/log.h"
 #include "viewer/commands/commands.h"
 
 int main(int argc, char** argv) {
@@ -18,6 +19,8 @@ int main(int argc, char** argv) {
     const auto complain = [](const std::string& line) { std::fprintf(stderr, "lucarne: %s\n", line.c_str()); };
     try {
         app.parse(argc, argv);
+        const log::Operation command;
+        const log::Operation::Scope scope(command);
         if (auto done = chosen(); !done) {
             complain(done.error().line());
             return static_cast<int>(done.error().kind);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "io/core/guarded.h"
+#include "io/core/log.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -171,6 +172,7 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
 Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
     uint64_t made_of = 0;
     bool again = false;
+    log::Operation warnings;  // of one source
     for (;;) {
         std::shared_ptr<const PictureRequest> request;
         uint64_t request_number = 0;
@@ -185,6 +187,8 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
             request = wanted;
             request_number = wanted_number;
         }
+        if (other) warnings = {};
+        const log::Operation::Scope scope(warnings);
         auto picture = guarded("picture", [&]() -> Result<std::shared_ptr<Picture>> {
             if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
             if (!shown || request_number == 0) return nullptr;

@@ -97,6 +97,7 @@ void ViewSession::take_picture() {
     const bool whole =
         latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
+    const log::Operation::Scope scope{log::Operation()};
 }
 
 /// A context that the driver has lost is made again, with all that was in it.
@@ -108,6 +109,7 @@ Result<void> ViewSession::recover() {
     log::warn("the graphics driver has lost the window; it is made again");
     LUCARNE_TRY(window_.recover());
     for (Bookmark& bookmark : model_.shell.bookmarks) bookmark.texture = 0;
+    const log::Operation::Scope scope{log::Operation()};
     model_.shell.stale_textures.clear();
     return {};
 }

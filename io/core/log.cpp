@@ -1,40 +1,42 @@
 #include "io/core/log.h"
 
+#include <functional>
 #include <mutex>
 #include <set>
 #include <string>
 
-#include <spdlog/sinks/dist_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "io/core/error.h"
 
 namespace lucarne::log {
+
+/// The warnings of an operation. Of very many it forgets the older ones.
+struct Said {
+    std::mutex mutex;
+    std::set<std::string, std::less<>> lines;
+
+    bool is_new(const std::string& line) {
+        constexpr size_t kMostKept = 1000;
+        const std::lock_guard lock(mutex);
+        if (lines.size() >= kMostKept) lines.clear();
+        return lines.insert(line).second;
+    }
+};
+
 namespace {
 
-/// Says no warning twice: a file is opened more than once, and each time the same is found in it. Of very
-/// many warnings it forgets the older ones.
-class WarnOnceSink final : public spdlog::sinks::dist_sink<std::mutex> {
- protected:
-    void sink_it_(const spdlog::details::log_msg& message) override {
-        constexpr size_t kMostKept = 1000;
-        if (message.level == spdlog::level::warn) {
-            if (said_.size() >= kMostKept) said_.clear();
-            if (!said_.emplace(message.payload.data(), message.payload.size()).second) return;
-        }
-        dist_sink::sink_it_(message);
-    }
-
- private:
-    std::set<std::string> said_;
-};
+/// Of the operation that the calling thread is in; null: of none.
+std::shared_ptr<Said>& said_by_thread() {
+    thread_local std::shared_ptr<Said> said;
+    return said;
+}
 
 spdlog::logger& logger() {
     static const auto instance = [] {
-        auto once = std::make_shared<WarnOnceSink>();
-        once->add_sink(std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-        auto made = std::make_shared<spdlog::logger>("lucarne", std::move(once));
+        auto made =
+            std::make_shared<spdlog::logger>("lucarne", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
         made->set_pattern("lucarne: %^%v%$");
         return made;
     }();
@@ -52,10 +54,25 @@ void info(std::string_view text) {
     logger().info("{}", one_line(text));
 }
 void warn(std::string_view text) {
-    logger().warn("{}", one_line(text));
+    const std::string line = one_line(text);
+    const auto& said = said_by_thread();
+    if (!said || said->is_new(line)) logger().warn("{}", line);
 }
 void set_quiet(bool quiet) {
     logger().set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+}
+
+Operation::Operation() : said_(std::make_shared<Said>()) {}
+
+Operation Operation::current() {
+    return Operation(said_by_thread());
+}
+
+Operation::Scope::Scope(const Operation& operation)
+    : before_(std::exchange(said_by_thread(), operation.said_)) {}
+
+Operation::Scope::~Scope() {
+    said_by_thread() = std::move(before_);
 }
 
 }  // namespace lucarne::log

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/core/error.h"
+#include "io/core/log.h"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -56,14 +57,17 @@ class ThreadLimit {
 };
 
 /// body(first, last) over [0, count) in pieces of at most `grain`, in parallel. The pieces do not depend on
-/// the number of threads, so a body that depends on nothing but its piece gives the same result every run.
+/// the number of threads, so a body that depends on nothing but its piece gives the same result every run. Its warnings
+/// belong to the caller's operation, and what it throws is thrown here.
 template <class Body>
 void parallel_ranges(size_t count, size_t grain, const Body& body) {
     const size_t pieces = (count + grain - 1) / grain;
     HandOver begun, done;
+    const auto operation = log::Operation::current();
     begun.give();
     tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
         const HandOver::Piece handed(begun, done);
+        const log::Operation::Scope scope(operation);
         const size_t first = piece * grain;
         body(first, std::min(count, first + grain));
     });

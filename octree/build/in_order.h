@@ -26,8 +26,10 @@ Result<void> in_order(size_t count, unsigned most, const Make& make, const Take&
         if (next == count || error.any()) control.stop();
         return next++;
     };
+    const auto operation = log::Operation::current();
     const auto build = [&](size_t index) {
         const HandOver::Piece handed(begun, made);
+        const log::Operation::Scope scope(operation);
         auto result = std::make_shared<Made>(Made{index, {}});
         if (error.any()) return result;
         if (auto piece = make(index))
@@ -38,6 +40,7 @@ Result<void> in_order(size_t count, unsigned most, const Make& make, const Take&
     };
     const auto hand_on = [&](const std::shared_ptr<Made>& result) {
         const HandOver::Piece handed(made, made);
+        const log::Operation::Scope scope(operation);
         if (error.any()) return;
         if (auto done = take(result->index, std::move(result->piece)); !done)
             error.report(result->index, std::move(done).error());

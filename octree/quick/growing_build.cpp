@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "io/core/guarded.h"
+#include "io/core/log.h"
 #include "octree/attributes.h"
 #include "octree/build/build_inputs.h"
 #include "octree/build/build_listener.h"
@@ -68,6 +69,7 @@ struct GrowingBuild::State final : BuildListener {
     std::function<void()> changed;
     std::thread thread;
     std::atomic<bool> stop{false};
+    log::Operation operation = log::Operation::current();  ///< that has opened it
 
     // Of the build's thread:
     LoosePoints loose;
@@ -191,6 +193,7 @@ Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
 }
 
 void GrowingBuild::State::work() {
+    const log::Operation::Scope scope(operation);
     auto cache = guarded("the build", [&] { return build(); });
     entries = {};
     roots.clear();

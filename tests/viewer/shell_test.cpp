@@ -265,6 +265,28 @@ TEST_F(OpenScans, AreDrawnTogetherHiddenAndClosedAndABrokenOneStopsOnlyItself) {
     EXPECT_EQ(set_.source(), nullptr);
 }
 
+TEST_F(OpenScans, AFileThatIsOpenedAgainSaysAgainWhatIsWrongWithIt) {
+    const std::string odd = folder_ / "odd.las", broken = folder_ / "broken.las";
+    ASSERT_EQ(test::lucarne("generate cornell --points 5k -o " + odd).code, 0);
+    std::fstream(odd, std::ios::in | std::ios::out | std::ios::binary).seekp(100).put('\x63');  // 99 records
+    write(broken, "LASF and nothing more");
+    testing::internal::CaptureStderr();
+    for (int opened = 0; opened < 2; ++opened) {
+        set_.open({odd, broken});
+        EXPECT_TRUE(settles());
+        while (!set_.rows().empty()) set_.remove(set_.rows().front().id);
+        EXPECT_TRUE(settles());
+    }
+    const std::string said = testing::internal::GetCapturedStderr();
+    const auto times = [&](const std::string& part) {
+        int found = 0;
+        for (size_t at = said.find(part); at != said.npos; at = said.find(part, at + 1)) ++found;
+        return found;
+    };
+    EXPECT_EQ(times(odd + ": 99 "), 2) << "once an opening, with its conversion\n" << said;
+    EXPECT_EQ(times(broken + ": "), 2) << said;
+}
+
 TEST_F(OpenScans, AFolderIsTheScansInIt) {
     ASSERT_EQ(test::lucarne("generate cornell --points 5k -o " + (folder_ / "scans.las")).code, 0);
     std::filesystem::create_directories(folder_ / "all/deep");

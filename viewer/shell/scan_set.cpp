@@ -58,6 +58,7 @@ std::string ScanRow::name() const {
 /// What belongs to a row; the window does not see it.
 struct ScanSet::Item {
     std::shared_ptr<Watch> watch = std::make_shared<Watch>();
+    log::Operation operation;  ///< the warnings of its opening and conversion
     OpenInput input;
     Source source;       ///< the newest
     bool going = false;  ///< the build has begun
@@ -120,7 +121,8 @@ void ScanSet::push_opening(uint64_t id, InputOptions how, bool together, uint64_
     std::string name = how.paths.front();
     opener_.push(
         std::move(name),
-        [watch = items_[id].watch, how = std::move(how), together, sample_points] {
+        [watch = items_[id].watch, operation = items_[id].operation, how = std::move(how), together, sample_points] {
+            const log::Operation::Scope scope(operation);
             return open_paths(how, together, *watch, sample_points);
         },
         [shared = shared_, id](Result<Opened> opened) { shared->report(id, std::move(opened)); });
@@ -219,6 +221,7 @@ void ScanSet::go_on(uint64_t id) {
     }
     retire(item);  // before the new one is opened: they have one name
     item.watch = std::make_shared<Watch>();
+    item.operation = {};
     item.going = false;
     row->state = ScanState::opening;
     row->stage = "opening";
@@ -280,6 +283,7 @@ void ScanSet::take_opened() {
         if (!one) {
             row->state = item.source ? ScanState::stopped : ScanState::failed;
             row->error = std::move(one).error();
+            const log::Operation::Scope scope(item.operation);
             log::warn("{}", row->error->line());
             continue;
         }
@@ -311,6 +315,7 @@ void ScanSet::take_builds() {
         } else if (!build.error) {
             row.state = ScanState::stopped;
             if (!build.stopped) row.error = std::move(build.error).error();
+            const log::Operation::Scope scope(item.operation);
             if (row.error) log::warn("the cache was not finished: {}", row.error->line());
         }
         describe(item, row);
