@@ -4,28 +4,14 @@
 #include <imgui.h>
 
 #include "viewer/axis_marks.h"
+#include "viewer/free_name.h"
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
-#include "viewer/tools/measure_file.h"
 
 namespace lucarne::viewer {
 namespace {
 
 constexpr float kClickReach = 4;  ///< to be scaled(): what moves further between press and release is a drag
-constexpr int kMostFiles = 10000;
-
-/// The first name of the kind section-0001 that is free.
-std::filesystem::path free_section(const std::filesystem::path& folder) {
-    for (int number = 1; number < kMostFiles; ++number) {
-        auto base = folder / fmt::format("section-{:04}", number);
-        std::error_code ignored;
-        if (!std::filesystem::exists(base.string() + ".csv", ignored) &&
-            !std::filesystem::exists(base.string() + ".svg", ignored))
-            return base;
-    }
-    return folder / "section";
-}
-
 }  // namespace
 
 void MeasureSession::take_results(ViewModel& model) {
@@ -49,28 +35,23 @@ void MeasureSession::follow_section(ViewModel& model) {
     measure.section = shown ? worker_.section() : nullptr;
     if (!measure.save_section) return;
     measure.save_section = false;
-    if (shown) worker_.save_section(free_section(model.pictures), one->name, measure.units());
+    if (shown) worker_.save_section(free_name(model.pictures, "section", {".csv", ".svg"}), one->name, measure.units());
 }
 
 void MeasureSession::files(ViewModel& model) {
     MeasureModel& measure = model.measure;
-    if (measure.wish == MeasureModel::FileWish::none || !model.picture)
-        return;  // the first picture tells the unit
+    if (measure.wish == MeasureModel::FileWish::none) return;
+    if (measure.wish == MeasureModel::FileWish::load && !model.picture) return;  // the first one tells the unit
     const auto wish = std::exchange(measure.wish, MeasureModel::FileWish::none);
     const auto path = model.pictures / measure.file;
-    if (wish == MeasureModel::FileWish::save) {
-        const auto saved = save_measurements(path, measure.list.all(), measure.units(), path == own_file_);
-        if (saved) own_file_ = path;
-        measure.message = saved ? "saved " + path.string() : saved.error().line();
-        return;
-    }
-    auto loaded = load_measurements(path, measure.metres_per_unit);
-    measure.message = loaded ? fmt::format("{} measurements loaded", loaded->size()) : loaded.error().line();
-    if (!loaded) return;
-    own_file_ = path;
-    measure.list.replace(std::move(*loaded));
-    measure.selected.reset();
-    model.side_bar().unfold(BarSection::measure);
+    const bool save = wish == MeasureModel::FileWish::save;
+    const auto done = save ? measure.save(path) : measure.load(path);
+    if (!done)
+        measure.message = done.error().line();
+    else
+        measure.message = save ? "saved " + path.string()
+                               : fmt::format("{} measurements loaded", measure.list.all().size());
+    if (done && !save) model.side_bar().unfold(BarSection::measure);
 }
 
 void MeasureSession::take_input(ViewModel& model) {

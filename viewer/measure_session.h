@@ -22,7 +22,6 @@ class MeasureSession {
 
     MeasureWorker worker_;
     SectionPanel section_panel_;
-    std::filesystem::path own_file_;  ///< saved or loaded before: may be written over
 };
 
 }  // namespace lucarne::viewer

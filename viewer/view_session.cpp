@@ -7,19 +7,21 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "io/core/guarded.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "viewer/actions.h"
+#include "viewer/free_name.h"
 #include "viewer/lights/light_edits.h"
 #include "viewer/panels/panels.h"
 #include "viewer/rgba.h"
+#include "viewer/shell/unsaved.h"
 
 namespace lucarne::viewer {
 namespace {
 
 constexpr double kRest = 0.25;      ///< s without a move until the picture is made in full
 constexpr double kStep = 1.0 / 60;  ///< s between frames of the window while something moves
-constexpr int kMostSavedPictures = 10000;
 constexpr uint32_t kIdleFrames = 4;  ///< until ImGui's windows have found their sizes
 
 bool same_request(const PictureRequest& a, const PictureRequest& b) {
@@ -47,16 +49,6 @@ glm::dvec2 cursor_move() {
 
 double axis(int less, int more) {
     return (ImGui::IsKeyDown(more) ? 1.0 : 0.0) - (ImGui::IsKeyDown(less) ? 1.0 : 0.0);
-}
-
-/// The first name of the kind lucarne-0001.png that is free.
-std::filesystem::path free_name(const std::filesystem::path& folder) {
-    for (int number = 1; number < kMostSavedPictures; ++number) {
-        auto path = folder / fmt::format("lucarne-{:04}.png", number);
-        std::error_code ignored;
-        if (!std::filesystem::exists(path, ignored)) return path;
-    }
-    return folder / "lucarne.png";
 }
 
 /// Of those that are no scans there is nothing to see.
@@ -97,7 +89,6 @@ void ViewSession::take_picture() {
     const bool whole =
         latest->request == sent_number_ && !latest->moving && latest->stats.nodes_pending == 0 && last_source;
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
-    const log::Operation::Scope scope{log::Operation()};
 }
 
 /// A context that the driver has lost is made again, with all that was in it.
@@ -106,10 +97,10 @@ Result<void> ViewSession::recover() {
     if (!window_.lost()) return {};
     if (!tries_.take(Clock::now()))
         return failed("window", "the graphics driver loses it again and again", "see that the driver is up to date");
+    const log::Operation::Scope scope{log::Operation()};
     log::warn("the graphics driver has lost the window; it is made again");
     LUCARNE_TRY(window_.recover());
     for (Bookmark& bookmark : model_.shell.bookmarks) bookmark.texture = 0;
-    const log::Operation::Scope scope{log::Operation()};
     model_.shell.stale_textures.clear();
     return {};
 }
@@ -118,6 +109,7 @@ Result<void> ViewSession::recover() {
 void ViewSession::follow_device() {
     const auto lost = worker_.lost_device();
     if (!lost || given_up_) return;
+    const log::Operation::Scope scope{log::Operation()};
     log::warn("{}", lost->line());
     model_.message = lost->why + ": the graphics device is set up again";
     if (tries_.take(Clock::now())) {
@@ -152,6 +144,7 @@ void ViewSession::take_extent() {
     if (at_home) model_.go_to(model_.home);
     model_.scene_changed();
     own_scene_ = model_.scene_version;
+    model_.light_tools.saved.mark(model_.scene, model_.scene_version);
 }
 
 /// What is open is drawn as it is, and converted one scan after another once there is something to see.
@@ -309,10 +302,10 @@ Result<void> ViewSession::save() {
     }
     if (model_.save_picture && model_.picture) {
         model_.save_picture = false;
-        const auto path = free_name(model_.pictures);
+        const std::string path = free_name(model_.pictures, "lucarne", {".png"}).string() + ".png";
         const auto saved =
             io::write_png(path, without_alpha(model_.picture->rgba, model_.picture->size), false);
-        model_.message = saved ? fmt::format("saved {}{}", path.string(), unfinished()) : saved.error().line();
+        model_.message = saved ? fmt::format("saved {}{}", path, unfinished()) : saved.error().line();
         log::info(model_.message);
     }
     return save_shot();
@@ -328,8 +321,23 @@ Result<void> ViewSession::save_shot() {
 }
 
 Result<void> ViewSession::run() {
+    auto done = guarded("window", [&] { return show_until_closed(); });
+    if (!done) {
+        if (const auto saved = save_unsaved(model_, SaveTo::free_names); !saved)
+            log::warn("{}", saved.error().line());
+        return done;
+    }
+    log::info("window: {} frames, each {:.1f} ms, 95 % of the last ones within {:.1f} ms",
+              model_.health.frames.frames(), 1e3 * model_.health.frames.quantile(0.5),
+              1e3 * model_.health.frames.quantile(0.95));
+    window_.hide();
+    return {};
+}
+
+Result<void> ViewSession::show_until_closed() {
     Clock::time_point awake = Clock::now();
     while (!desk_.closing(shot_.has_value())) {
+        if (termination_.requested()) return save_unsaved(model_, SaveTo::free_names);
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
         // From one frame's beginning to the next one's: what a frame takes does not slow it down further.
         const double since = std::chrono::duration<double>(Clock::now() - awake).count();
@@ -356,10 +364,6 @@ Result<void> ViewSession::run() {
         LUCARNE_TRY(worker_.error());
         LUCARNE_TRY(scans_.error());
     }
-    log::info("window: {} frames, each {:.1f} ms, 95 % of the last ones within {:.1f} ms",
-              model_.health.frames.frames(), 1e3 * model_.health.frames.quantile(0.5),
-              1e3 * model_.health.frames.quantile(0.95));
-    window_.hide();
     return {};
 }
 

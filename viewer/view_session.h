@@ -14,6 +14,7 @@
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"
+#include "viewer/shell/termination.h"
 #include "viewer/show/show_session.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
@@ -32,24 +33,27 @@ struct ScriptedShot {
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
-                ScanSet& scans)
+                ScanSet& scans, Termination& termination)
         : window_(window),
           worker_(worker),
           model_(model),
           shot_(std::move(shot)),
           scans_(scans),
+          termination_(termination),
           desk_(window, model, scans),
           quality_(model.frame_time),
           budget_(model.frame_time),
           show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
 
-    /// Until the window is closed. Errors: the scripted shot cannot be made or written, or is not of all
-    /// scans.
+    /// Until the window is closed. Where it ends without a question (SIGTERM, an error), unsaved work goes into files
+    /// with free names. Errors: the scripted shot cannot be made or written, or is not of all scans; the window is
+    /// lost; such a file cannot be written.
     Result<void> run();
 
  private:
     using Clock = std::chrono::steady_clock;
 
+    Result<void> show_until_closed();
     void take_picture();
     Result<void> recover();
     void follow_device();
@@ -71,6 +75,7 @@ class ViewSession {
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
     ScanSet& scans_;
+    Termination& termination_;
     Desk desk_;
     bool placed_ = false;  ///< there has been a view to begin with
     bool first_told_ = false;

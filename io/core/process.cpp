@@ -1,5 +1,6 @@
 #include "io/core/process.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -49,6 +50,21 @@ bool program_installed(const std::string& program) {
         if (!folder.empty() && access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0)
             return true;
     return false;
+}
+
+int spawn(const std::vector<std::string>& words, const posix_spawn_file_actions_t& actions, pid_t& pid) {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    const int failure = posix_spawnp(&pid, arguments[0], &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    return failure;
 }
 
 }  // namespace lucarne

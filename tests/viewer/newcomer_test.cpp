@@ -33,8 +33,13 @@ class Newcomer : public ManagedWindow {
     std::string at(int x, int y) const {
         return fmt::format("mousemove --window {} {} {} sleep 0.3 ", window_, x, y);
     }
-    void close_window() {
+    /// `answer`: the key that answers the question about what is in no file; empty: none is asked.
+    void close_window(const std::string& answer = "") {
         xdo("key alt+F4");
+        if (!answer.empty()) {
+            ASSERT_TRUE(eventually([&] { return log().find("asked whether to close") != std::string::npos; })) << log();
+            xdo("key " + answer);
+        }
         ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << "it does not close";
         EXPECT_EQ(viewer_->code(), 0);
     }
@@ -121,7 +126,8 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     ASSERT_TRUE(saved && saved->width == kWidth && saved->height == kHeight);
     EXPECT_TRUE(nearer(*saved, *front, *above)) << "it shows another view";
 
-    close_window();
+    close_window("Return");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "scene-0001.json")) << "with the light where it was put";
     EXPECT_THAT(bytes_of(folder_ / "config/settings.json"), HasSubstr("cornell.las"));
 
     open_window();

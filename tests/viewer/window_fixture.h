@@ -23,6 +23,17 @@ inline bool installed(const std::string& program) {
     return shell("command -v " + program).code == 0;
 }
 
+/// Polls until `there` holds; false once patience ends.
+template <class Condition>
+bool eventually(const Condition& there) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
+        if (there()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+}
+
 /// A program in the background, ended with this object.
 class Background {
  public:
@@ -34,10 +45,11 @@ class Background {
         }
     }
     ~Background() {
-        if (running()) {
-            kill(pid_, SIGTERM);
-            waitpid(pid_, nullptr, 0);
-        }
+        if (!running()) return;
+        kill(pid_, SIGTERM);
+        if (eventually([&] { return !running(); })) return;
+        kill(pid_, SIGKILL);
+        waitpid(pid_, nullptr, 0);
     }
     Background(const Background&) = delete;
     Background& operator=(const Background&) = delete;
@@ -51,22 +63,12 @@ class Background {
         return pid_ > 0;
     }
     std::optional<int> code() const { return code_; }
+    pid_t pid() const { return pid_; }  ///< -1 once it has ended
 
  private:
     pid_t pid_ = -1;
     std::optional<int> code_;
 };
-
-/// Polls until `there` holds; false once patience ends.
-template <class Condition>
-bool eventually(const Condition& there) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < end) {
-        if (there()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return false;
-}
 
 inline double difference(const io::Image8& a, const io::Image8& b) {  ///< mean, of 255
     double sum = 0;

@@ -36,6 +36,8 @@ TEST_F(ViewerWindow, OrbitsAndMovesTheLightAndComesHome) {
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *lamp) > 0.5; }))
         << "Shift and drag do not aim";
     xdo("key ctrl+q");
+    ASSERT_TRUE(eventually([&] { return log().find("not saved: the scene") != std::string::npos; })) << log();
+    xdo("key ctrl+d");
     EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
     EXPECT_EQ(viewer_->code(), 0);
 }

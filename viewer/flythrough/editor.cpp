@@ -18,7 +18,7 @@ void PathEditor::select(std::optional<size_t> key) {
 }
 
 void PathEditor::put(CameraPath path) {
-    before_.push_back(std::exchange(path_, std::move(path)));
+    before_.push_back({std::exchange(path_, std::move(path)), std::exchange(revision_, ++newest_)});
     if (before_.size() > kMostUndone) before_.erase(before_.begin());
     select(selected_);
 }
@@ -106,7 +106,8 @@ Result<void> PathEditor::set_frames_per_second(double rate) {
 
 void PathEditor::undo() {
     if (before_.empty()) return;
-    path_ = std::move(before_.back());
+    path_ = std::move(before_.back().path);
+    revision_ = before_.back().revision;
     before_.pop_back();
     select(selected_);
 }
@@ -114,13 +115,16 @@ void PathEditor::undo() {
 Result<void> PathEditor::load(const std::filesystem::path& file) {
     LUCARNE_ASSIGN(CameraPath loaded, load_path(file));
     put(std::move(loaded));
+    saved_ = revision_;
     selected_ = 0;
     return {};
 }
 
-Result<void> PathEditor::save(const std::filesystem::path& file, bool overwrite) const {
+Result<void> PathEditor::save(const std::filesystem::path& file, bool overwrite) {
     if (empty()) return failed(file.string(), "the flythrough has no key frame yet", "add one first");
-    return write_file(file, path_text(path_), overwrite);
+    LUCARNE_TRY(write_file(file, path_text(path_), overwrite));
+    saved_ = revision_;
+    return {};
 }
 
 }  // namespace lucarne::viewer

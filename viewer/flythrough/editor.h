@@ -35,15 +35,22 @@ class PathEditor {
     /// Takes the place of all there is. Errors: the file's; then nothing changes.
     Result<void> load(const std::filesystem::path& file);
     /// Errors: there is no key frame yet; the file cannot be written, or exists and is not to be replaced.
-    Result<void> save(const std::filesystem::path& file, bool overwrite) const;
+    Result<void> save(const std::filesystem::path& file, bool overwrite);
+    /// Whether there are key frames that are other than those saved or loaded last.
+    bool unsaved() const { return !empty() && revision_ != saved_; }
 
  private:
+    struct Before {
+        CameraPath path;
+        uint64_t revision;
+    };
     Result<void> take(CameraPath changed);
     void put(CameraPath path);
 
     CameraPath path_;
+    uint64_t revision_ = 0, newest_ = 0, saved_ = 0;  ///< of the path; the last that was given; in the file
     std::optional<size_t> selected_;
-    std::vector<CameraPath> before_;  ///< for undo
+    std::vector<Before> before_;  ///< for undo
 };
 
 }  // namespace lucarne::viewer

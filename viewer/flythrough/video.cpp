@@ -10,16 +10,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "io/core/file_io.h"
 #include "io/core/file.h"
+#include "io/core/file_io.h"
 #include "io/core/process.h"
-
-extern char** environ;
 
 namespace lucarne::viewer {
 namespace {
@@ -96,11 +93,7 @@ Result<void> VideoWriter::launch(double rate) {
     posix_spawn_file_actions_adddup2(&actions, frames[1], STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, words[1], STDERR_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    const std::vector<std::string> words_of_command = command(part_, size_, rate);
-    std::vector<char*> arguments;
-    for (const std::string& word : words_of_command) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    const int failure = posix_spawnp(&pid_, kProgram, &actions, nullptr, arguments.data(), environ);
+    const int failure = spawn(command(part_, size_, rate), actions, pid_);
     posix_spawn_file_actions_destroy(&actions);
     close(frames[1]);
     close(words[1]);

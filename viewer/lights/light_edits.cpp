@@ -9,12 +9,12 @@
 
 #include "gi/registry.h"
 #include "gi/scene/scene_lights.h"
+#include "viewer/free_name.h"
 
 namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostLights = 64, kMostUndone = 100;
-constexpr int kMostNames = 10000;
 
 /// A white surface of albedo .5 that faces halfway to the light looks mid-grey.
 double fitting_strength(const gi::SceneLight& light, double ev, double metres_per_unit) {
@@ -149,16 +149,22 @@ gi::Scene scene_to_save(const ViewModel& model) {
     return scene;
 }
 
+Result<void> save_scene_as(ViewModel& model, const std::filesystem::path& path) {
+    LightTools& tools = model.light_tools;
+    LUCARNE_TRY(gi::save_scene(scene_to_save(model), path, path == tools.scene_file));
+    tools.scene_file = path.string();
+    tools.saved.mark(model.scene, model.scene_version);
+    return {};
+}
+
+std::filesystem::path scene_place(const ViewModel& model) {
+    if (!model.light_tools.scene_file.empty()) return model.light_tools.scene_file;
+    return free_name(model.pictures, "scene", {".json"}).string() + ".json";
+}
+
 void save_scene(ViewModel& model) {
-    std::filesystem::path path = model.light_tools.scene_file;
-    const bool chosen = !path.empty();
-    std::error_code ignored;
-    for (int number = 1; !chosen && number < kMostNames; ++number) {
-        path = model.pictures / fmt::format("scene-{:04}.json", number);
-        if (!std::filesystem::exists(path, ignored)) break;
-    }
-    const auto saved = gi::save_scene(scene_to_save(model), path, chosen);
-    if (saved) model.light_tools.scene_file = path.string();
+    const auto path = scene_place(model);
+    const auto saved = save_scene_as(model, path);
     model.message = saved ? "saved " + path.string() : saved.error().line();
 }
 

@@ -25,7 +25,11 @@ void compare_with(ViewModel& model, const std::string& engine);
 
 /// The scene with what the window shows: its view is the first camera, named "view".
 gi::Scene scene_to_save(const ViewModel& model);
-/// Into light_tools.scene_file, or into a name that is free; says so in the message.
+/// light_tools.scene_file, or a name that is free.
+std::filesystem::path scene_place(const ViewModel& model);
+/// Writes over light_tools.scene_file alone; `path` is that from then on.
+Result<void> save_scene_as(ViewModel& model, const std::filesystem::path& path);
+/// In its place; says so in the message.
 void save_scene(ViewModel& model);
 
 }  // namespace lucarne::viewer

@@ -17,6 +17,24 @@ struct LightHandle {
     bool operator==(const LightHandle&) const = default;
 };
 
+/// The scene that is in a file or was opened; what is other than that is unsaved.
+class SavedScene {
+ public:
+    /// `version`: ViewModel::scene_version.
+    void mark(const gi::Scene& scene, uint64_t version) {
+        text_ = gi::write_scene(scene);
+        version_ = version;
+    }
+    /// False also where all changes were taken back.
+    bool differs(const gi::Scene& scene, uint64_t version) const {
+        return version != version_ && gi::write_scene(scene) != text_;
+    }
+
+ private:
+    std::string text_;
+    uint64_t version_ = 1;
+};
+
 /// What the window keeps for lights, albedo, exposure and comparisons beside the scene itself.
 struct LightTools {
     bool show_handles = true;
@@ -30,6 +48,7 @@ struct LightTools {
     std::string reading_sky, sky_problem;           ///< what is being read; why the last one is not shown
     std::string scene_file;                         ///< what Save scene writes
     bool save_scene = false;
+    SavedScene saved;
 };
 
 }  // namespace lucarne::viewer

@@ -125,7 +125,7 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
 }
 
 bool edit_light(ViewModel& model, gi::SceneLight& light) {
-    ImGui::InputText("name", &light.name);
+    if (ImGui::InputText("name", &light.name)) model.shown_changed();
     bool changed = false;
     if (light.kind == gi::LightKind::directional) {
         draw_sun(model);

@@ -10,7 +10,7 @@ void draw_menu_bar(ViewModel& model);  ///< of the table of actions, with their 
 
 void draw_start_page(ViewModel& model);  ///< with nothing open
 void draw_file_browser(ViewModel& model, FileBrowser& browser);
-void draw_closing_question(ViewModel& model);  ///< where a conversion or a rendering is running
+void draw_closing_question(ViewModel& model);  ///< where work is unsaved or still running
 
 /// The sections that are open. Before the first view there are only those that need none.
 void draw_side_bar(ViewModel& model, bool has_view);

@@ -9,6 +9,7 @@
 
 #include "io/core/log.h"
 #include "viewer/panels/panels.h"
+#include "viewer/shell/unsaved.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -119,24 +120,43 @@ void Desk::draw() {
     draw_closing_question(model_);
 }
 
+/// Empty: nothing is lost by closing now.
+std::string Desk::reason_to_ask() const {
+    std::string all;
+    for (const Unsaved& one : unsaved(model_)) all += (all.empty() ? "not saved: " : ", ") + one.what;
+    const auto add = [&](std::string_view reason) { all += (all.empty() ? "" : "; ") + std::string(reason); };
+    if (model_.show.rendering.running) add("a picture or flight is being rendered");
+    if (scans_.converting()) add("a scan is being converted");
+    return all;
+}
+
 bool Desk::closing(bool at_once) {
-    if (!model_.close && !window_.closing()) return model_.shell.close_now;
-    const bool rendering = model_.show.rendering.running;
-    if (at_once || !(scans_.converting() || rendering)) return true;
+    Shell& shell = model_.shell;
+    if (std::exchange(shell.save_to_close, false)) {
+        const auto saved = save_unsaved(model_);
+        shell.closing_problem = saved ? "" : saved.error().line();
+        shell.close_now = saved.has_value();
+    }
+    if (!model_.close && !window_.closing()) return shell.close_now;
+    const std::string reason = at_once ? "" : reason_to_ask();
+    if (reason.empty()) return true;
     model_.close = false;
     window_.stay();
-    if (!std::exchange(model_.shell.ask_to_close, true))
-        log::info("{}: asked whether to close all the same",
-                  rendering ? "a picture or flight is being rendered" : "a scan is being converted");
+    shell.closing_problem.clear();
+    if (!std::exchange(shell.ask_to_close, true)) log::info("{}: asked whether to close all the same", reason);
     return false;
 }
 
 void Desk::answer(std::span<const KeyChord> keys) {
     Shell& shell = model_.shell;
     for (const KeyChord& chord : keys) {
+        if (!shell.ask_to_close) return;
+        const bool enter = chord.key == GLFW_KEY_ENTER || chord.key == GLFW_KEY_KP_ENTER;
+        const bool save = enter && !unsaved(model_).empty();
+        const bool discard = chord.key == GLFW_KEY_D && chord.modifiers == GLFW_MOD_CONTROL;
         if (chord.key == GLFW_KEY_ESCAPE) shell.ask_to_close = false;
-        shell.close_now |=
-            shell.ask_to_close && (chord.key == GLFW_KEY_ENTER || chord.key == GLFW_KEY_KP_ENTER);
+        shell.save_to_close |= save;
+        shell.close_now |= discard || (enter && !save);
     }
 }
 

@@ -25,12 +25,13 @@ class Desk {
     void draw();
     /// The floor under the camera, world z, once it has been looked for; for walking.
     std::optional<double> floor();
-    /// Whether the window is to go; asks first where a conversion is running, unless `at_once`.
+    /// Whether the window is to go; asks first where work is unsaved or still running, unless `at_once`.
     bool closing(bool at_once);
     /// Keys that were pressed while that question stands.
     void answer(std::span<const KeyChord> keys);
 
  private:
+    std::string reason_to_ask() const;
     void choose_files();
     std::filesystem::path folder() const;
     void remember();

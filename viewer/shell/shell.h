@@ -15,8 +15,10 @@ struct Shell {
     ScanSet* scans = nullptr;          ///< what is open; outlives the model
     std::vector<std::string> to_open;  ///< paths
     bool want_file = false;            ///< File > Open
-    bool ask_to_close = false;  ///< the question is on the screen
-    bool close_now = false;     ///< and was answered
+    bool ask_to_close = false;   ///< the question is on the screen
+    bool save_to_close = false;  ///< answered: save what is unsaved, then close
+    bool close_now = false;      ///< answered: close as it is
+    std::string closing_problem;  ///< why saving has failed
     Settings settings;
 
     std::vector<Bookmark> bookmarks;

@@ -15,6 +15,19 @@ void ShowModel::set_sizes(int window_width, int window_height) {
     }
 }
 
+Result<void> ShowModel::save_path(const std::filesystem::path& file) {
+    LUCARNE_TRY(editor.save(file, file == own_path));
+    own_path = file;
+    return {};
+}
+
+Result<void> ShowModel::load_path(const std::filesystem::path& file) {
+    LUCARNE_TRY(editor.load(file));
+    own_path = file;
+    time = editor.path().start();
+    return {};
+}
+
 void ShowModel::add_key(const gi::SceneCamera& camera) {
     const auto added = editor.add(camera);
     if (!added) return take(added);

@@ -23,6 +23,7 @@ struct ShowModel {
     // A flight.
     int flight_width = 0, flight_height = 0;  ///< likewise
     std::string path_file = "flythrough.json";
+    std::filesystem::path own_path;  ///< saved or loaded before
     std::string frames_folder = "frames";
     std::string video_file = "flythrough.mp4";
 
@@ -36,6 +37,10 @@ struct ShowModel {
     void take(Result<void> done) {
         if (!done) message = done.error().line();
     }
+    /// Writes over its own file alone.
+    Result<void> save_path(const std::filesystem::path& file);
+    /// Takes the place of the path that there is; the preview is at its start.
+    Result<void> load_path(const std::filesystem::path& file);
     /// After the selected key frame; the preview is there.
     void add_key(const gi::SceneCamera& camera);
     /// Sizes that were not chosen yet.

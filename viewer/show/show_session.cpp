@@ -37,12 +37,9 @@ RenderOrder order_of(const ViewModel& model, std::shared_ptr<const octree::NodeS
 void ShowSession::path_files(ViewModel& model, bool save) {
     ShowModel& show = model.show;
     const auto file = model.pictures / show.path_file;
-    const auto done = save ? show.editor.save(file, file == own_path_) : show.editor.load(file);
+    const auto done = save ? show.save_path(file) : show.load_path(file);
     show.message =
         done ? fmt::format("{} {}", save ? "saved" : "loaded", file.string()) : done.error().line();
-    if (!done) return;
-    own_path_ = file;
-    if (!save) show.time = show.editor.path().start();
 }
 
 void ShowSession::fulfil(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source) {

@@ -22,7 +22,6 @@ class ShowSession {
 
     std::function<Result<WorkerDevice>()> device_;
     RenderWorker worker_;
-    std::filesystem::path own_path_;  ///< saved or loaded before: may be written over
 };
 
 }  // namespace lucarne::viewer

@@ -57,7 +57,9 @@ void MeasureList::scale(double factor) {
         for (ExactPoint& point : measurement.points) point.position *= factor;
         measurement.thickness *= factor;
     }
+    const bool saved = now_ == saved_;
     now_ = std::make_shared<const std::vector<Measurement>>(std::move(next));
+    if (saved) saved_ = now_;
     before_.clear();
     after_.clear();
 }

@@ -23,6 +23,11 @@ class MeasureList {
     /// All positions, to another unit. This cannot be undone, nor what was before.
     void scale(double factor);
 
+    /// They are in a file now, or come from one.
+    void mark_saved() { saved_ = now_; }
+    /// Whether they are other than those marked last. Undoing all changes since makes them the same again.
+    bool unsaved() const { return now_ != saved_ && !(now_->empty() && saved_->empty()); }
+
     bool can_undo() const { return !before_.empty(); }
     bool can_redo() const { return !after_.empty(); }
     void undo();
@@ -33,6 +38,7 @@ class MeasureList {
     void become(std::vector<Measurement> next);
 
     State now_ = std::make_shared<const std::vector<Measurement>>();
+    State saved_ = now_;
     std::vector<State> before_, after_;
 };
 

@@ -27,7 +27,7 @@ void MeasureModel::take(ExactPoint point) {
 }
 
 bool MeasureModel::finish() {
-    if (!tool || pending.size() < info_of(*tool).least) return false;
+    if (!can_finish()) return false;
     Measurement done{*tool, "", std::exchange(pending, {}), *tool == MeasureKind::section ? thickness : 0};
     if (!list.add(std::move(done))) {
         message = "no more measurements can be held; save and delete some";
@@ -70,6 +70,22 @@ void MeasureModel::copy_selected() {
     if (what.empty()) return;
     clipboard = measurements_text(what, units());
     message = one ? "copied " + one->name : fmt::format("copied {} measurements", what.size());
+}
+
+Result<void> MeasureModel::save(const std::filesystem::path& path) {
+    LUCARNE_TRY(save_measurements(path, list.all(), units(), path == own_file));
+    own_file = path;
+    list.mark_saved();
+    return {};
+}
+
+Result<void> MeasureModel::load(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(auto loaded, load_measurements(path, metres_per_unit));
+    own_file = path;
+    list.replace(std::move(loaded));
+    list.mark_saved();
+    selected.reset();
+    return {};
 }
 
 void MeasureModel::set_unit(double its_metres_per_unit) {

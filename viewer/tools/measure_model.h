@@ -21,6 +21,7 @@ struct MeasureModel {
     double metres_per_unit = 1;  ///< of the world, in which all positions are
     /// To save to and load from: .csv or .json.
     std::string file = "measurements.json";
+    std::filesystem::path own_file;  ///< saved or loaded before
 
     // Wishes of actions and panels, which the session fulfils.
     enum class FileWish { none, save, load };
@@ -43,9 +44,17 @@ struct MeasureModel {
     void redo();
     void copy_selected();  ///< all, where none is selected
 
+    /// Whether measurements are in no file, or the tool's points are enough for one.
+    bool unsaved() const { return list.unsaved() || can_finish(); }
+    /// Writes over its own file alone. Errors: save_measurements().
+    Result<void> save(const std::filesystem::path& path);
+    /// Takes the place of all there is, which can be undone. Errors: load_measurements(); then nothing changes.
+    Result<void> load(const std::filesystem::path& path);
+
     /// Another scan was opened or closed, and with it the unit of all together has changed.
     void set_unit(double its_metres_per_unit);
 
+    bool can_finish() const { return tool && pending.size() >= info_of(*tool).least; }
     const Measurement* selected_one() const;
     UnitChoice units() const { return {metres, metres_per_unit}; }
 };
