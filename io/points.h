@@ -148,6 +148,7 @@ struct ScanInfo {
     uint64_t file_bytes = 0;            ///< with `modified`: which state of the file this is; 0: no file
     int64_t modified = 0;               ///< of the file, ns since 1970
     double metres_per_unit = 1.0;
+    bool unit_stated = false;           ///< by the file, its format or the user; else metres are assumed
     /// How many bits of a component of `color` are in use: 8 or 16 (many 16-bit fields hold 0-255; the
     /// attribute stays as the file had it), 0 for floats from 0 to 1. Also in `details` as "color_bits".
     uint32_t color_bits = 8;

@@ -33,8 +33,7 @@ std::string losses_text(const io::Losses& losses) {
     return text;
 }
 
-json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents,
-               bool unit_given) {
+json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Contents* contents) {
     json stations = json::array();
     for (const auto& s : info.stations)
         stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
@@ -50,7 +49,7 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
     described["epsg"] = info.epsg ? json(info.epsg) : json();
     described["unit"] = unit_name(info.metres_per_unit);
     described["metres_per_unit"] = info.metres_per_unit;
-    described["unit_stated"] = unit_given || io::states_unit(info);
+    described["unit_stated"] = info.unit_stated;
     described["stations"] = std::move(stations);
     described["attributes"] = attributes_json(schema);
     described["left_out"] = losses_json(contents ? contents->losses : info.losses);

@@ -16,7 +16,7 @@ nlohmann::ordered_json attributes_json(const io::Schema& schema);
 /// bounds as they were read, else as the file says. What a file of several scans says of each, and
 /// its images; of a mesh. `unit_given`: by the user.
 nlohmann::ordered_json scan_json(const io::ScanInfo& info, const io::Schema& schema,
-                                 const io::Contents* contents, bool unit_given);
+                                 const io::Contents* contents);
 
 nlohmann::ordered_json losses_json(const io::Losses& losses);
 /// "12 points whose state is invalid, 3 images, which are listed but not read".

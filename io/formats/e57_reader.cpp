@@ -88,7 +88,7 @@ class E57Source final : public PointSource {
                                    counted(document.images.size(), "images"));
         info_.file_bytes = e57_.file->size();
         info_.modified = e57_.file->modified();
-        info_.metres_per_unit = options.metres_per_unit.value_or(1.0);
+        set_unit(info_, options, 1.0);  // the format is in metres
         info_.color_bits = e57_.layout.color_bits;
         info_.losses = e57_.losses;
         add_loss(info_.losses, "images, which are listed but not read", document.images.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +54,9 @@ inline bool usable(double coordinate) {
 /// The first whole line of a file's first bytes that is neither blank nor a comment behind #; empty where
 /// there is none.
 std::string_view first_statement(std::string_view head);
+
+/// Sets the unit: the user's word, else what the file states; metres where neither states one.
+void set_unit(ScanInfo& info, const ReadOptions& options, std::optional<double> stated);
 
 /// The path's extension with its dot.
 std::string lower_extension(const std::filesystem::path& path);

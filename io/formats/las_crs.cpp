@@ -98,19 +98,19 @@ std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directo
     return keys.unit ? epsg_unit(*keys.unit) : std::nullopt;
 }
 
-double metres_per_unit(const std::string& file, const Header& header) {
+std::optional<double> stated_unit(const std::string& file, const Header& header) {
     const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
     const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
     if (wkt && ((header.global_encoding & kWktBit) || !keys)) {
-        if (const auto unit = wkt_metres_per_unit(wkt->text())) return *unit;
+        if (const auto unit = wkt_metres_per_unit(wkt->text())) return unit;
         if (wkt->text().starts_with("GEOGCS"))
             log::warn("{}: its coordinates are degrees, not lengths", file);
     }
-    if (!keys) return 1.0;
+    if (!keys) return std::nullopt;
     const auto numbers = doubles_of(header);
     if (geo_keys(keys->data, numbers).model == kModelGeographic)
         log::warn("{}: its coordinates are degrees, not lengths", file);
-    return geotiff_metres_per_unit(keys->data, numbers).value_or(1.0);
+    return geotiff_metres_per_unit(keys->data, numbers);
 }
 
 CoordinateSystem coordinate_system(const Header& header) {

@@ -16,8 +16,8 @@ namespace lucarne::io::las {
 std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directory,
                                               std::span<const std::byte> doubles);
 
-/// From whichever the header has; 1 where neither says. Warns when the coordinates are angles.
-double metres_per_unit(const std::string& file, const Header& header);
+/// Metres per unit from whichever the header has; none where neither says. Warns when the coordinates are angles.
+std::optional<double> stated_unit(const std::string& file, const Header& header);
 
 /// What a system is called that says a unit of length and nothing else: of files that have none, but are no metres.
 inline constexpr const char* kLocalSystem = "local";

@@ -105,9 +105,10 @@ class LasSource final : public PointSource {
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
-        info_.metres_per_unit = las::metres_per_unit(name, header_);
-        if (options.metres_per_unit) info_.metres_per_unit = *options.metres_per_unit;
         const auto system = las::coordinate_system(header_);
+        auto unit = las::stated_unit(name, header_);
+        if (!unit && (!system.name.empty() || system.epsg)) unit = 1.0;  // most systems are in metres
+        set_unit(info_, options, unit);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
         info_.losses = header_.losses;

@@ -294,7 +294,7 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     info.path = file->path().string();
     info.file_bytes = file->size();
     info.modified = file->modified();
-    info.metres_per_unit = options.metres_per_unit.value_or(1.0);
+    set_unit(info, options, std::nullopt);
     info.losses = parser.losses();
     nlohmann::json details;
     if (parser.other() > 0) {

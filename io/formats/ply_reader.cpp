@@ -138,7 +138,7 @@ class PlySource final : public PointSource {
         info_.modified = file_->modified();
         LUCARNE_ASSIGN(auto remarks, remarks_of(name, header_.comments));
         info_.stations = std::move(remarks.stations);
-        info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
+        set_unit(info_, options, remarks.metres_per_unit);
         LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
         nlohmann::json details = ply::to_details(header_);

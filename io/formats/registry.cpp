@@ -118,6 +118,12 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
                          "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
 }
 
+void set_unit(ScanInfo& info, const ReadOptions& options, std::optional<double> stated) {
+    const auto unit = options.metres_per_unit ? options.metres_per_unit : stated;
+    info.metres_per_unit = unit.value_or(1.0);
+    info.unit_stated = unit.has_value();
+}
+
 std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension)

@@ -76,11 +76,6 @@ std::optional<std::string> savable(const PointSource& scan) {
 
 }  // namespace
 
-bool states_unit(const ScanInfo& info) {
-    return info.metres_per_unit != 1.0 || !info.coordinate_system.empty() || info.epsg != 0 ||
-           info.format.starts_with("E57") || info.format.starts_with("PTX");
-}
-
 Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options) {
     if (error.kind != ErrorKind::input_rejected || options.salvage || error.what != path.string()) return error;
     ReadOptions salvaging = options;

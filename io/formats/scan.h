@@ -50,10 +50,6 @@ struct Contents {
 /// Makes that pass. `progress` is told how many more points were seen.
 Result<Contents> survey(const PointSource& scan, const std::function<void(uint64_t)>& progress = {});
 
-/// Whether the file says its unit, or its format does (E57 and PTX are metres): a coordinate system has one, and
-/// nobody assumes another than the metre. Else metres are assumed.
-bool states_unit(const ScanInfo& info);
-
 /// The error of a file that was rejected with these options, and what to do: how many points --salvage would
 /// read, which is found out by reading it.
 Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options);

@@ -15,7 +15,7 @@ namespace {
 
 /// Files without points decide nothing: some programs write them with a header of defaults.
 bool in_stated_unit(const io::ScanInfo& scan) {
-    return scan.declared_points > 0 && io::states_unit(scan);
+    return scan.declared_points > 0 && scan.unit_stated;
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::s
 }
 
 void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit) {
-    if (metres_per_unit != 1.0 && scan.declared_points > 0 && !io::states_unit(scan))
+    if (metres_per_unit != 1.0 && scan.declared_points > 0 && !scan.unit_stated)
         log::warn("{}: does not say its unit; that of the others is assumed, {} m (--unit can say otherwise)",
                   scan.path, metres_per_unit);
 }
@@ -101,7 +101,7 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
     header.metres_per_unit = common_unit(inputs);
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
-        if (!io::states_unit(header.scans.back()))
+        if (!header.scans.back().unit_stated)
             header.scans.back().metres_per_unit = header.metres_per_unit;
         widen_colour(header.scans.back(), inputs.source(i).schema(), schema);
         if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;

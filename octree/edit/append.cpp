@@ -113,7 +113,7 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     for (size_t i = 1; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
         widen_colour(header.scans.back(), inputs.source(i).schema(), header.schema);
-        if (!io::states_unit(header.scans.back())) header.scans.back().metres_per_unit = before.metres_per_unit;
+        if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = before.metres_per_unit;
         header.scans.back().losses = facts.inputs[i].losses;
     }
     return header;

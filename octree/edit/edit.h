@@ -15,6 +15,7 @@ struct EditOptions {
     unsigned threads = 0;                 ///< 0: all cores
     std::filesystem::path temp_folder;    ///< for scratch files; empty: the cache's folder
     uint32_t neighbours = 16;             ///< for normals and areas
+    NeighbourSearch neighbour_search = NeighbourSearch::leaf;
 };
 
 /// Which points to delete: those for which all that is given holds.

@@ -148,6 +148,7 @@ Result<void> Rewrite::find_surface() {
     LUCARNE_ASSIGN(ScratchFile file, ScratchFile::create(folder_));
     const SurfaceStore::Settings settings{.normals = normals,
                                           .neighbours = options_.neighbours,
+                                          .search = options_.neighbour_search,
                                           .threads = threads_,
                                           .memory = options_.memory};
     LUCARNE_ASSIGN(surface_,

@@ -21,6 +21,7 @@ class Units : public ::testing::Test {
         source.info().path = path;
         source.info().metres_per_unit = metres_per_unit;
         source.info().coordinate_system = system;
+        source.info().unit_stated = !system.empty();
         return source.info();
     }
     Unifier unified() const {
@@ -35,7 +36,7 @@ class Units : public ::testing::Test {
 TEST_F(Units, FilesWithoutPointsDecideNothingAndStopNothing) {
     add("empty.las", kFoot, "feet", 0);
     add("a.las", 1, "UTM");
-    add("b.e57", 1).format = "E57 1.0, 1 scan";
+    add("b.e57", 1).unit_stated = true;
     const Unifier inputs = unified();
     EXPECT_EQ(common_unit(inputs), 1.0);
     EXPECT_TRUE(check_units(inputs));
@@ -44,7 +45,7 @@ TEST_F(Units, FilesWithoutPointsDecideNothingAndStopNothing) {
 TEST_F(Units, TheMostFilesThatStateOneDecideWhereverTheyStand) {
     add("feet.las", kFoot, "feet");
     add("a.las", 1, "UTM");
-    add("b.ptx", 1).format = "PTX, 1 scan";
+    add("b.ptx", 1).unit_stated = true;
     const auto checked = check_units(unified());
     EXPECT_EQ(common_unit(unified()), 1.0);
     ASSERT_FALSE(checked);

@@ -190,6 +190,7 @@ TEST(Append, RefusesAnotherUnitAPlaceTooFarAndASecondWriter) {
     const auto first = patch(1'000, {0, 0}, 30, 1);
     auto feet = patch(1'000, {0, 0}, 30, 2);
     feet.info().metres_per_unit = 0.3048;
+    feet.info().unit_stated = true;
     const ComputedSource far{io::Schema{}, 1,
                              [](uint64_t, std::byte* record) { io::store(record, glm::dvec3(1e12, 0, 0)); }};
     ASSERT_TRUE(build({&first}, folder / "a.luc"));

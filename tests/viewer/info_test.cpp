@@ -56,6 +56,9 @@ TEST(UnitOption, IsTheUnitOfFilesOfEveryFormatAndOfTheCachesMadeOfThem) {
     ASSERT_EQ(lucarne("generate cornell --points 1k -o " + paths.back()).code, 0);
     for (const std::string& path : paths) {
         EXPECT_EQ(info_number(folder, path, "metres_per_unit"), 1) << path;
+        const bool format_states_it = path.ends_with(".e57") || path.ends_with(".ptx");
+        EXPECT_EQ(info_number(folder, path, "unit_stated"), format_states_it) << path;
+        EXPECT_EQ(info_number(folder, path + " --unit m", "unit_stated"), 1) << path;
         EXPECT_DOUBLE_EQ(info_number(folder, path + " --unit us-ft", "metres_per_unit"), 1200.0 / 3937)
             << path;
     }

@@ -88,11 +88,9 @@ struct Summary {
     io::Losses losses;
     std::vector<std::string> empty;
 
-    Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents,
-            const io::ReadOptions& read) {
+    Summary(std::span<const io::PointSource* const> scans, std::span<const io::Contents> contents) {
         for (size_t i = 0; i < std::min(scans.size(), contents.size()); ++i) {
-            inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i],
-                                       read.metres_per_unit.has_value()));
+            inputs.push_back(scan_json(scans[i]->info(), scans[i]->schema(), &contents[i]));
             io::add_losses(losses, contents[i].losses);
             if (contents[i].points == 0) empty.push_back(scans[i]->info().path);
         }
@@ -155,14 +153,14 @@ auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, 
 Result<void> append(ConvertOptions options, SetAside& aside) {
     const auto& build = options.build;
     const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
-                                   build.neighbours};
+                                   build.neighbours, build.neighbour_search};
     Scans scans;
     LUCARNE_ASSIGN(const auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
                    }));
     log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed{}",
               build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
-              report.nodes, Summary(build.inputs, report.inputs, options.read).text());
+              report.nodes, Summary(build.inputs, report.inputs).text());
     if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
     return aside.result(build.output.string());
 }
@@ -189,7 +187,7 @@ Result<void> convert(ConvertOptions options) {
         cpu += stage.cpu_seconds;
         wall += stage.wall_seconds;
     }
-    const Summary summary(build.inputs, report.inputs, options.read);
+    const Summary summary(build.inputs, report.inputs);
     log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
               counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes), wall, cpu, summary.text());
     if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
@@ -254,7 +252,8 @@ void add_convert(CLI::App& app, Command& chosen) {
     command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
     auto* append_flag =
         command->add_flag("--append", options->append,
-                          "Add the inputs to a cache that exists, in place; it keeps its kind of normals");
+                          "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
+                          "normals");
     for (const char* other : {"--resume", "--overwrite", "--normals"})
         append_flag->excludes(command->get_option(other));
     command->add_option("--json", options->json, "Write what was done and how long it took")

@@ -74,15 +74,14 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
 Result<json> describe_scan(const std::string& path, const Options& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
-    const bool given = options.read.metres_per_unit.has_value();
-    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr, given);
+    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
     const uint64_t declared = scan->info().declared_points;
     if (declared > kLong) progress.emplace("looking through", declared, "points");
     LUCARNE_ASSIGN(const auto contents, io::survey(*scan, [&](uint64_t points) {
                        if (progress) progress->add(points);
                    }));
-    return scan_json(scan->info(), scan->schema(), &contents, given);
+    return scan_json(scan->info(), scan->schema(), &contents);
 }
 
 Result<json> describe(const std::string& path, const Options& options) {

@@ -143,7 +143,7 @@ class PcdSource final : public PointSource {
         info_.modified = file_->modified();
         LUCARNE_ASSIGN(auto remarks, remarks_of(info_.path, header_.comments));
         info_.stations = std::move(remarks.stations);
-        info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
+        set_unit(info_, options, remarks.metres_per_unit);
         if (const Attribute* color = schema().find(names::color); color && color->type != ScalarType::u8)
             info_.color_bits = remarks.color_bits.value_or(color->type == ScalarType::u16 ? 16u : 0u);
         const auto& v = header_.viewpoint;

@@ -216,7 +216,7 @@ class PtxSource final : public PointSource {
         info_.format = fmt::format("PTX, {} {}", scans.size(), scans.size() == 1 ? "scan" : "scans");
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
-        info_.metres_per_unit = options.metres_per_unit.value_or(1.0);
+        set_unit(info_, options, 1.0);  // the format is in metres
         info_.details = nlohmann::json{{"color_bits", info_.color_bits}, {kIntensityLimits, {0, 1}}}.dump();
         size_t values = 3;
         for (const Scan& scan : scans) values = std::max(values, scan.values);

@@ -66,7 +66,7 @@ class TextSource final : public PointSource {
         sections_.push_back(std::move(section));
         LUCARNE_ASSIGN(const auto remarks, remarks_of(file_->path().string(), head_.remarks));
         info_.stations = remarks.stations;
-        info_.metres_per_unit = options.metres_per_unit.value_or(remarks.metres_per_unit.value_or(1.0));
+        set_unit(info_, options, remarks.metres_per_unit);
         fill_info(pts ? "PTS" : "XYZ", columns, sampled, remarks);
         // The last row may lack its line end.
         const uint64_t most =
