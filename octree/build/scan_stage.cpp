@@ -105,11 +105,11 @@ Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
     };
 }
 
-Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes) {
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
-    for (size_t input = 0; input < inputs.inputs(); ++input) {
+    for (size_t input = first; input < inputs.inputs(); ++input) {
         io::Contents seen{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
         LUCARNE_ASSIGN(
             LeftOut left,
@@ -131,9 +131,10 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes) {
         seen.losses = std::move(left.losses);
         facts.inputs.push_back(std::move(seen));
     }
-    if (facts.points == 0) return rejected(inputs.source(0).info().path, "has no points");
-    for (size_t input = 0; input < inputs.inputs(); ++input)
-        if (facts.inputs[input].points == 0) log::warn("{}: has no points", inputs.source(input).info().path);
+    if (facts.points == 0) return rejected(inputs.source(first).info().path, "has no points");
+    for (size_t input = first; input < inputs.inputs(); ++input)
+        if (facts.inputs[input - first].points == 0)
+            log::warn("{}: has no points", inputs.source(input).info().path);
     LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
     return facts;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "io/core/log.h"
 #include "io/formats/scan.h"
 #include "octree/attributes.h"
 #include "octree/build/build_inputs.h"
@@ -110,13 +111,53 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     header.max = glm::max(before.max, facts.max);
     header.points = before.points + facts.points;
     for (auto& scan : header.scans) widen_colour(scan, before.schema, header.schema);
-    for (size_t i = 1; i < inputs.inputs(); ++i) {
+    for (size_t i = 1; i < inputs.inputs(); ++i) {  // the cache is input 0
         header.scans.push_back(inputs.source(i).info());
         widen_colour(header.scans.back(), inputs.source(i).schema(), header.schema);
         if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = before.metres_per_unit;
-        header.scans.back().losses = facts.inputs[i].losses;
+        header.scans.back().losses = facts.inputs[i - 1].losses;
     }
     return header;
+}
+
+std::string file_name(const io::ScanInfo& scan) {
+    return std::filesystem::path(scan.path).filename().string();
+}
+
+Result<bool> has_points_of(const CacheFile& cache, size_t scan) {
+    const auto& schema = cache.header().schema;
+    const auto* number = schema.find(io::names::scan);
+    if (!number) return true;  // of its only scan
+    for (uint32_t node = 0; node < cache.nodes().size(); ++node) {
+        LUCARNE_ASSIGN(const NodeData data, cache.load(node));
+        for (size_t i = 0; i < data.count; ++i)
+            if (io::load<uint16_t>(&data.records[i * schema.stride + number->offset]) == scan) return true;
+    }
+    return false;
+}
+
+/// Whether the cache holds this file, in this state, already; says so, and where it may hold another state of
+/// it.
+Result<bool> holds_already(const CacheFile& cache, const io::ScanInfo& scan) {
+    const auto& scans = cache.header().scans;
+    if (scan.file_bytes == 0) return false;  // no file
+    for (size_t i = 0; i < scans.size(); ++i) {
+        if (file_name(scans[i]) != file_name(scan)) continue;
+        const bool same = scans[i].file_bytes == scan.file_bytes && scans[i].modified == scan.modified;
+        if (!same && scans[i].path != scan.path) continue;
+        LUCARNE_ASSIGN(const bool there, has_points_of(cache, i));
+        if (!there) continue;  // deleted
+        const std::string cache_name = cache.file().path().string();
+        if (same) {
+            log::warn("{}: is in {} already, as scan {}; it is left out", scan.path, cache_name, i);
+            return true;
+        }
+        log::warn(
+            "{}: another state of this file is in {} already, as scan {}; lucarne delete --scan {} {} "
+            "removes it",
+            scan.path, cache_name, i, i, cache_name);
+    }
+    return false;
 }
 
 }  // namespace
@@ -129,15 +170,28 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     const CacheSchema cache(*opened.cache);
     std::vector<const io::PointSource*> sources{&cache};
     std::vector<io::ScanInfo> all = before.scans;
+    EditReport skipped;
     for (const auto* scan : scans) {
+        LUCARNE_ASSIGN(const bool there, holds_already(*opened.cache, scan->info()));
+        if (there) {
+            skipped.already_in.push_back(scan->info().path);
+            continue;
+        }
         LUCARNE_TRY(check_unit(scan->info(), before.metres_per_unit, "the cache has"));
         sources.push_back(scan);
         all.push_back(scan->info());
     }
+    if (sources.size() == 1) {
+        skipped.points = before.points;
+        skipped.kept_nodes = skipped.nodes = opened.cache->nodes().size();
+        skipped.bytes = opened.cache->superblock().file_bytes;
+        return skipped;
+    }
     warn_of_differences(all);
-    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(std::move(sources)));
-    LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes));
-    for (const auto* scan : scans) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(sources));
+    LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes, 1));
+    sources.erase(sources.begin());  // the cache
+    for (const auto* scan : sources) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
     change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);
@@ -145,7 +199,9 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     LUCARNE_ASSIGN(EditReport report, rewrite(std::move(opened), change, options));
     report.added = facts.points;
     report.dropped = facts.dropped;
-    report.inputs.assign(facts.inputs.begin() + 1, facts.inputs.end());  // the cache is the first
+    report.appended = std::move(sources);
+    report.inputs = facts.inputs;
+    report.already_in = std::move(skipped.already_in);
     return report;
 }
 

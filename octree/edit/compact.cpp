@@ -36,17 +36,38 @@ class Copier {
     std::vector<std::byte> payload_;
 };
 
-}  // namespace
+/// What of the file the newest state needs.
+uint64_t live_bytes(const CacheFile& cache) {
+    const auto& block = cache.superblock();
+    uint64_t bytes = format::kFirstPayload + block.metadata_bytes + block.directory_bytes;
+    for (const NodeInfo& node : cache.nodes()) bytes += node.payload_bytes;
+    return bytes;
+}
 
-Result<CompactReport> compact_cache(const std::filesystem::path& path,
-                                    const std::filesystem::path& temp_folder) {
-    LUCARNE_ASSIGN(OpenedCache opened, OpenedCache::open(path));  // keeps the lock
+Result<CompactReport> compact(const OpenedCache& opened, const std::filesystem::path& temp_folder) {
+    const auto& path = opened.file.path();
     LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(path, true, scratch_folder(path, temp_folder)));
     Copier copier(*opened.cache, writer);
     LUCARNE_TRY(copier.below(0));
     LUCARNE_TRY(copier.copy(0));
     LUCARNE_TRY(writer.finish(opened.cache->header()));
     return CompactReport{opened.cache->file().size(), writer.bytes()};
+}
+
+}  // namespace
+
+Result<CompactReport> compact_cache(const std::filesystem::path& path,
+                                    const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(const OpenedCache opened, OpenedCache::open(path));  // keeps the lock
+    return compact(opened, temp_folder);
+}
+
+Result<CompactReport> compact_if_half_unused(const std::filesystem::path& path,
+                                             const std::filesystem::path& temp_folder) {
+    LUCARNE_ASSIGN(const OpenedCache opened, OpenedCache::open(path));
+    const uint64_t bytes = opened.cache->file().size();
+    if (live_bytes(*opened.cache) >= bytes / 2) return CompactReport{bytes, bytes, false};
+    return compact(opened, temp_folder);
 }
 
 }  // namespace lucarne::octree

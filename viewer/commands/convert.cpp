@@ -155,12 +155,13 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
                                    build.neighbours, build.neighbour_search};
     Scans scans;
-    LUCARNE_ASSIGN(const auto report, build_of_the_sound(options, aside, scans, [&] {
+    LUCARNE_ASSIGN(auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
                    }));
-    log::info("{}: {} points added, {} in all; {} were written anew, {} of {} nodes stayed{}",
-              build.output.string(), report.added, report.points, report.rewritten_points, report.kept_nodes,
-              report.nodes, Summary(build.inputs, report.inputs).text());
+    log::info("{}: {} added, {} in all; {} were written anew, {} of {} nodes stayed{}", build.output.string(),
+              counted(report.added, "points"), report.points, report.rewritten_points, report.kept_nodes,
+              report.nodes, Summary(report.appended, report.inputs).text());
+    compact_after_update(edit, report);
     if (!options.json.empty()) LUCARNE_TRY(write_edit_report(options.json, build.overwrite, report));
     return aside.result(build.output.string());
 }
@@ -253,7 +254,7 @@ void add_convert(CLI::App& app, Command& chosen) {
     auto* append_flag =
         command->add_flag("--append", options->append,
                           "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
-                          "normals");
+                          "normals. Files that it holds already are left out");
     for (const char* other : {"--resume", "--overwrite", "--normals"})
         append_flag->excludes(command->get_option(other));
     command->add_option("--json", options->json, "Write what was done and how long it took")

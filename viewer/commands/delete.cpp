@@ -42,9 +42,10 @@ Result<void> erase(const DeleteOptions& given) {
         return bad_arguments("delete", "nothing says which points", "give --box, --scan or both");
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, false));
     LUCARNE_ASSIGN(const auto selection, selection_of(options));
-    LUCARNE_ASSIGN(const auto report, octree::delete_from_cache(selection, options.edit));
+    LUCARNE_ASSIGN(auto report, octree::delete_from_cache(selection, options.edit));
     log::info("{}: {} points deleted, {} left; lucarne compact gives their space back",
               options.edit.cache.string(), report.removed, report.points);
+    compact_after_update(options.edit, report);
     if (options.json.empty()) return {};
     return write_edit_report(options.json, false, report);
 }
