@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "io/core/file_io.h"
+#include "io/core/private_file.h"
 
 namespace lucarne {
 
@@ -207,9 +208,11 @@ Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
 }
 
 Result<ScratchFile> ScratchFile::named(const std::filesystem::path& path, bool keep) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (keep ? 0 : O_TRUNC), 0600);
-    if (fd < 0) return failed(path.string(), fmt::format("cannot be opened ({})", reason(errno)));
-    return ScratchFile(fd, path.parent_path());
+    LUCARNE_ASSIGN(const int fd, open_private_file(path, true));
+    ScratchFile file(fd, path.parent_path());
+    if (!keep && ::ftruncate(fd, 0) != 0)
+        return failed(path.string(), fmt::format("cannot be emptied ({})", reason(errno)));
+    return file;
 }
 
 ScratchFile::ScratchFile(ScratchFile&& other) noexcept {

@@ -10,36 +10,44 @@
 #include <unistd.h>
 
 #include "io/core/file_io.h"
+#include "io/core/private_file.h"
 
 namespace lucarne {
 
 using file_io::reason;
 
 Result<UpdateFile> UpdateFile::open(const std::filesystem::path& path, const char* busy) {
-    return open_locked(path, 0, busy);
-}
-Result<UpdateFile> UpdateFile::open_or_create(const std::filesystem::path& path, const char* busy) {
-    return open_locked(path, O_CREAT, busy);
-}
-
-Result<UpdateFile> UpdateFile::open_locked(const std::filesystem::path& path, int flags, const char* busy) {
     for (;;) {
-        const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | flags, 0666);
+        const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
         if (fd < 0) {
             auto why = fmt::format("cannot be opened for writing ({})", reason(errno));
             return errno == ENOENT ? rejected(path.string(), std::move(why))
                                    : failed(path.string(), std::move(why));
         }
-        UpdateFile file(fd, path);
-        struct stat held {
-        }, named{};
-        if (::fstat(fd, &held) != 0 || !S_ISREG(held.st_mode))
-            return rejected(path.string(), "is not a regular file");
-        if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return failed(path.string(), busy, "wait until it is done");
-        // Who held the lock before may have put another file under the name, or removed it.
-        if (::stat(path.c_str(), &named) == 0 && named.st_ino == held.st_ino && named.st_dev == held.st_dev)
-            return file;
+        LUCARNE_ASSIGN(auto locked, lock(UpdateFile(fd, path), busy));
+        if (locked) return std::move(*locked);
     }
+}
+Result<UpdateFile> UpdateFile::open_private(const std::filesystem::path& path, bool create,
+                                            const char* busy) {
+    for (;;) {
+        LUCARNE_ASSIGN(const int fd, open_private_file(path, create));
+        LUCARNE_ASSIGN(auto locked, lock(UpdateFile(fd, path), busy));
+        if (locked) return std::move(*locked);
+    }
+}
+
+Result<std::optional<UpdateFile>> UpdateFile::lock(UpdateFile file, const char* busy) {
+    struct stat held {
+    }, named{};
+    if (::fstat(file.fd_, &held) != 0 || !S_ISREG(held.st_mode))
+        return rejected(file.path_.string(), "is not a regular file");
+    if (::flock(file.fd_, LOCK_EX | LOCK_NB) != 0)
+        return failed(file.path_.string(), busy, "wait until it is done");
+    // Who held the lock before may have put another file under the name, or removed it.
+    if (::stat(file.path_.c_str(), &named) != 0 || named.st_ino != held.st_ino || named.st_dev != held.st_dev)
+        return std::optional<UpdateFile>();
+    return std::optional<UpdateFile>(std::move(file));
 }
 
 UpdateFile::UpdateFile(UpdateFile&& other) noexcept {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "io/core/error.h"
@@ -15,8 +16,8 @@ class UpdateFile {
  public:
     /// Errors: missing, unwritable or no regular file; locked by somebody else, who `busy` says it is.
     static Result<UpdateFile> open(const std::filesystem::path& path, const char* busy);
-    /// The same; makes the file where there is none.
-    static Result<UpdateFile> open_or_create(const std::filesystem::path& path, const char* busy);
+    /// The same of a file in a private folder (private_file.h); makes it where there is none, if it is to `create`.
+    static Result<UpdateFile> open_private(const std::filesystem::path& path, bool create, const char* busy);
     UpdateFile(UpdateFile&& other) noexcept;
     UpdateFile& operator=(UpdateFile&& other) noexcept;
     ~UpdateFile();
@@ -32,7 +33,8 @@ class UpdateFile {
 
  private:
     UpdateFile(int fd, std::filesystem::path path) : fd_(fd), path_(std::move(path)) {}
-    static Result<UpdateFile> open_locked(const std::filesystem::path& path, int flags, const char* busy);
+    /// Empty: another file has the name by now.
+    static Result<std::optional<UpdateFile>> lock(UpdateFile file, const char* busy);
     int fd_ = -1;
     std::filesystem::path path_;
 };

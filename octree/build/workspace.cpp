@@ -8,6 +8,7 @@
 
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/core/private_file.h"
 #include "io/points.h"
 #include "octree/cache_format.h"
 
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 constexpr const char* kJournal = "journal";
 constexpr const char* kSuffix = ".lucarne-work";
 constexpr const char* kIdentity = "identity";
+/// All that a work folder holds; nothing else in it is touched.
+const std::array<std::string, 3> kFiles = {kJournal, "points", "normals"};
 constexpr const char* kBusy = "another conversion to this cache is running";
 /// A record: its stage's name padded with zeros, the bytes that follow, and the checksum of name and bytes.
 constexpr size_t kNameBytes = 16, kHeadBytes = kNameBytes + 16;
@@ -60,8 +63,8 @@ void report_others(const fs::path& temp_folder, const fs::path& own) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(temp_folder, error)) {
         if (!entry.path().filename().string().ends_with(kSuffix) || entry.path() == own) continue;
-        if (!fs::exists(entry.path() / kJournal, error) || !UpdateFile::open(entry.path() / kJournal, kBusy))
-            continue;  // just made, or at work
+        if (!UpdateFile::open_private(entry.path() / kJournal, false, kBusy))
+            continue;  // just made, at work, or another user's
         log::warn("{} holds {} of an interrupted conversion; resume that one with --resume, or remove it",
                   entry.path().string(), bytes_text(folder_bytes(entry.path())));
     }
@@ -78,12 +81,12 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     const std::string whole = fs::absolute(output, error).lexically_normal().string();
     const auto hash = format::checksum(std::as_bytes(std::span(whole)));
     const fs::path folder = temp_folder / fmt::format("{:016x}{}", hash, kSuffix);
-    fs::create_directory(folder, error);
-    if (error)
-        return failed(temp_folder.string(),
-                      fmt::format("no temporary file can be made here ({})", error.message()),
-                      "choose another folder with --temp");
-    LUCARNE_ASSIGN(work.journal_, UpdateFile::open_or_create(folder / kJournal, kBusy));
+    LUCARNE_TRY(ScratchFile::create(temp_folder));  // says what is wrong with the folder above
+    if (const auto own = make_private_folder(folder); !own) {
+        log::warn("{}; this conversion cannot be resumed", own.error().line());
+        return work;
+    }
+    LUCARNE_ASSIGN(work.journal_, UpdateFile::open_private(folder / kJournal, true, kBusy));
     work.folder_ = folder;
     report_others(temp_folder, folder);
     LUCARNE_TRY(work.start(whole + "\n" + identity, resume));
@@ -100,12 +103,11 @@ Workspace& Workspace::operator=(Workspace&& other) noexcept {
     return *this;
 }
 Workspace::~Workspace() {
-    std::error_code ignored;  // what cannot be removed is reported by the next build
     if (folder_.empty()) return;
     if (keep_ && records_.size() > 1)
         log::warn("{} keeps {} for --resume", folder_.string(), bytes_text(folder_bytes(folder_)));
     else
-        fs::remove_all(folder_, ignored);
+        remove_private_folder(folder_, kFiles);  // what cannot be removed is reported by the next build
 }
 
 Result<void> Workspace::start(const std::string& identity, Resume resume) {
@@ -117,7 +119,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
         if (keep_ && same && records_.size() > 1) {
             log::info("going on after '{}' of the interrupted conversion", records_.back().stage);
             end_ = records_.back().offset + kHeadBytes + records_.back().bytes.size();
-            return {};
+                    return {};
         }
         if (keep_ && !same)
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
@@ -126,9 +128,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
             log::warn("removed {} that an interrupted conversion left; --resume would have gone on from it",
                       bytes_text(folder_bytes(folder_)));
     }
-    std::error_code ignored;  // what stays is emptied when it is opened
-    for (const auto& entry : fs::directory_iterator(folder_, ignored))
-        if (entry.path().filename() != kJournal) fs::remove(entry.path(), ignored);
+    remove_private_files(folder_, std::span(kFiles).subspan(1));  // what stays is emptied when it is opened
     records_.clear();
     LUCARNE_TRY(journal_->truncate(0));
     const auto bytes = std::as_bytes(std::span(identity));

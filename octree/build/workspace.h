@@ -19,8 +19,10 @@ enum class Resume {
 };
 
 /// The scratch files of a build and the journal of its finished stages, in a folder of their own beside the
-/// output or in the temporary folder. Nothing in it is synced: every record of the journal has a checksum,
-/// and has those of the scratch files it speaks of, so that what a power cut took is noticed and done again.
+/// output or in the temporary folder. Others can guess its name, so it is used only where it is private
+/// (io/core/private_file.h); else the scratch files are nameless, with a warning. Nothing in it is synced:
+/// every record of the journal has a checksum, and has those of the scratch files it speaks of, so that what a
+/// power cut took is noticed and done again.
 class Workspace {
  public:
     /// `identity` says what is built from what with which options; another build's leftovers are not used.
@@ -55,7 +57,7 @@ class Workspace {
     Result<void> start(const std::string& identity, Resume resume);
     Result<void> append(Record record);
 
-    std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty with Resume::never
+    std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty where nothing has a name
     std::optional<UpdateFile> journal_;
     std::vector<Record> records_;
     uint64_t end_ = 0;

@@ -1,5 +1,6 @@
 // Conversions that are killed, run out of space or lose what was not synced, and go on.
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -28,8 +29,12 @@ class Conversion : public testing::Test {
  protected:
     void SetUp() override {
         ASSERT_EQ(lucarne("generate two-rooms --points 30k -o " + quoted(scan_)).code, 0);
-        ASSERT_EQ(lucarne_with_fault("count:" + (folder_ / "calls").string(), convert("")).code, 0);
-        calls_ = std::stoull(read_bytes(folder_ / "calls"));
+        ASSERT_EQ(lucarne_with_fault("trace:" + (folder_ / "calls").string(), convert("")).code, 0);
+        std::istringstream calls(read_bytes(folder_ / "calls"));
+        for (std::string call; std::getline(calls, call);) {
+            ++calls_;
+            if (call == "fsync" && last_write_ == 0) last_write_ = calls_ - 1;
+        }
         reference_ = read_bytes(cache_);
         fs::remove(cache_);
         ASSERT_GT(calls_, 10u);
@@ -56,16 +61,15 @@ class Conversion : public testing::Test {
     void interrupt() {
         for (uint64_t call = 1; call <= calls_; ++call) {
             ASSERT_EQ(lucarne_with_fault("kill:" + std::to_string(call), convert("")).code, -1);
-            const auto left = leftovers();
-            ASSERT_EQ(left.size(), 1u);
-            if (read_bytes(left[0] / "journal").find("chunk") != std::string::npos) return;
+            const auto left = leftovers();  // none before the folder is made
+            if (!left.empty() && read_bytes(left[0] / "journal").find("chunk") != std::string::npos) return;
         }
         FAIL() << "no chunks were ever finished";
     }
 
     const io::testing::TemporaryFolder folder_;
     const fs::path scan_ = folder_ / "a.las", cache_ = folder_ / "a.luc";
-    uint64_t calls_ = 0;
+    uint64_t calls_ = 0, last_write_ = 0;  ///< the latter before the output is synced
     std::string reference_;
 };
 
@@ -139,7 +143,7 @@ TEST_F(Conversion, ReportsAnyCallThatFails) {
 }
 
 TEST_F(Conversion, WithResumeKeepsWhatIsDoneWhenTheDiskIsFull) {
-    const auto full = lucarne_with_fault("full:" + std::to_string(calls_ - 4), convert("--resume"));
+    const auto full = lucarne_with_fault("full:" + std::to_string(last_write_), convert("--resume"));
     ASSERT_EQ(full.code, 1) << full.text;
     ASSERT_EQ(leftovers().size(), 1u);
     const auto resumed = lucarne(convert("--resume"));

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <span>
 #include <system_error>
 
 #include <fcntl.h>
@@ -16,6 +17,7 @@
 
 #include "io/core/file.h"
 #include "io/core/file_io.h"
+#include "io/core/private_file.h"
 #include "io/core/process.h"
 
 namespace lucarne::viewer {
@@ -66,8 +68,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::start(const std::filesystem::p
     LUCARNE_TRY(check(file, overwrite));
     std::unique_ptr<VideoWriter> writer(new VideoWriter(stop));
     writer->file_ = file;
-    writer->part_ = file.parent_path() /
-                    fmt::format(".{}.{}.part{}", file.stem().string(), getpid(), file.extension().string());
+    // ffmpeg would follow a link that somebody put in its output's place.
+    LUCARNE_ASSIGN(writer->folder_,
+                   new_private_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path(".")));
+    writer->part_ = writer->folder_ / file.filename();
     writer->size_ = size;
     writer->overwrite_ = overwrite;
     LUCARNE_TRY(writer->launch(rate));
@@ -109,8 +113,9 @@ VideoWriter::~VideoWriter() {
         kill(pid_, SIGKILL);
         waitpid(pid_, nullptr, 0);
     }
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
+    if (folder_.empty()) return;
+    const std::string part = part_.filename().string();
+    remove_private_folder(folder_, std::span(&part, 1));
 }
 
 tl::unexpected<Error> VideoWriter::broken() const {

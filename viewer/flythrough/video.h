@@ -44,7 +44,7 @@ class VideoWriter {
     tl::unexpected<Error> broken() const;
 
     const std::atomic<bool>& stop_;
-    std::filesystem::path file_, part_;  ///< the video; where ffmpeg writes it until it is whole
+    std::filesystem::path file_, folder_, part_;  ///< the video; where ffmpeg writes it until it is whole
     ImageSize size_;
     bool overwrite_ = false;
     int pid_ = -1, frames_ = -1, words_ = -1;  ///< process; its standard input and its error output

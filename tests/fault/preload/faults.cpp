@@ -1,19 +1,25 @@
 // A library that LD_PRELOAD puts between the program and the C library: it counts the calls that change files
-// and, at one of them, does what a disk, a signal or a power cut would. LUCARNE_FAULT says what:
+// or folders, and the end of the program as the last one, and at one of them does what a disk, a signal or a power
+// cut would. LUCARNE_FAULT says what:
 //
 //   count:FILE       nothing; writes the number of calls to FILE at the end
+//   trace:FILE       nothing; writes the calls' names to FILE at the end, one a line
 //   kill:N           SIGKILL before the N-th call (from 1)
+//   signal:N:NUMBER  signal NUMBER before the N-th call, which is never made unless the signal is ignored
 //   full:N           from the N-th call on, every write fails with ENOSPC
-//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given
-//   power:N:SEED     before the N-th call the power goes: of what was written since each file's last sync
-//   every
-//                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; then SIGKILL
+//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given, unless it gives space back
+//   power:N:SEED     before the N-th call the power goes: of what was written since each file's last sync every
+//                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; of the names that
+//                    were given since their folder's last sync the last ones are lost; then SIGKILL
+//
+// LUCARNE_NO_TMPFILE: files cannot be made without a name.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstdarg>
 #include <cstring>
 #include <mutex>
 #include <random>
@@ -41,6 +47,14 @@ struct Undo {
     std::vector<char> before;
 };
 
+/// A name that was given while its folder was not synced.
+struct UndoName {
+    std::string name, from;  ///< `from`: what it was renamed from, or empty
+    std::string replaced;    ///< what stood there before has this name, if anything did
+};
+
+enum class Call { write, commit, cleanup };  ///< cleanup gives space back, and does not fail
+
 class Faults {
  public:
     static Faults& instance() {
@@ -50,11 +64,20 @@ class Faults {
 
     /// Called before each call that changes a file; a value other than 0 is the errno that it shall fail
     /// with.
-    int enter(bool writes) {
+    int enter(const char* name, Call call) {
         ++calls_;
-        if (kind_ == "full" && calls_ >= at_ && writes) return ENOSPC;
+        if (kind_ == "trace") trace_ += std::string(name) + '\n';
+        if (kind_ == "full" && calls_ >= at_ && call == Call::write) return ENOSPC;
         if (calls_ != at_) return 0;
-        if (kind_ == "error") return seed_ ? static_cast<int>(seed_) : EIO;
+        if (kind_ == "error" && call != Call::cleanup) return seed_ ? static_cast<int>(seed_) : EIO;
+        if (kind_ == "signal") {
+            struct sigaction action {};
+            ::sigaction(static_cast<int>(seed_), nullptr, &action);
+            ::kill(::getpid(), static_cast<int>(seed_));
+            if (action.sa_handler == SIG_IGN) return 0;
+            mutex_.unlock();  // other threads may clean up
+            for (;;) ::pause();
+        }
         if (kind_ == "power") lose();
         if (kind_ == "power" || kind_ == "kill") ::kill(::getpid(), SIGKILL);
         return 0;
@@ -79,10 +102,29 @@ class Faults {
             return same;
         });
     }
+    /// Keeps what stands under `name`, before another takes its place; returns the name that it is kept under.
+    std::string keep(const std::string& name) {
+        static const auto link = next<int(int, const char*, int, const char*, int)>("linkat");
+        if (kind_ != "power") return {};
+        std::string kept = name + ".undo-" + std::to_string(undo_names_.size());
+        return link(AT_FDCWD, name.c_str(), AT_FDCWD, kept.c_str(), 0) == 0 ? kept : "";
+    }
+    void named(UndoName undo) {
+        if (kind_ == "power") undo_names_.push_back(std::move(undo));
+    }
+    /// All names are in one folder.
+    void folder_synced() {
+        for (const UndoName& undo : undo_names_)
+            if (!undo.replaced.empty()) next<int(const char*)>("unlink")(undo.replaced.c_str());
+        undo_names_.clear();
+    }
     void report() const {
-        if (kind_ != "count") return;
+        if (kind_ != "count" && kind_ != "trace") return;
         if (FILE* file = std::fopen(argument_.c_str(), "w")) {
-            std::fprintf(file, "%llu\n", static_cast<unsigned long long>(calls_));
+            if (kind_ == "count")
+                std::fprintf(file, "%llu\n", static_cast<unsigned long long>(calls_));
+            else
+                std::fputs(trace_.c_str(), file);
             std::fclose(file);
         }
     }
@@ -95,13 +137,14 @@ class Faults {
         const size_t colon = fault.find(':');
         kind_ = fault.substr(0, colon);
         if (colon != fault.npos) argument_ = fault.substr(colon + 1);
-        if (kind_ != "count") std::sscanf(argument_.c_str(), "%llu:%llu", &at_, &seed_);
+        if (kind_ != "count" && kind_ != "trace") std::sscanf(argument_.c_str(), "%llu:%llu", &at_, &seed_);
     }
 
     void lose() {
         const auto write_back = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
         const auto cut = next<int(int, off_t)>("ftruncate");
         std::mt19937_64 random(seed_);
+        lose_names(random() % (undo_names_.size() + 1));
         constexpr size_t kSector = 512;
         for (auto undo = undos_.rbegin(); undo != undos_.rend(); ++undo) {
             for (size_t at = 0; at < undo->before.size(); at += kSector)
@@ -122,14 +165,38 @@ class Faults {
         }
     }
 
+    /// A file system takes names down in their order: the last ones are lost.
+    void lose_names(size_t count) {
+        const auto move = next<int(const char*, const char*)>("rename");
+        const auto remove = next<int(const char*)>("unlink");
+        for (size_t i = 0; i < undo_names_.size(); ++i) {
+            const UndoName& undo = undo_names_[undo_names_.size() - 1 - i];
+            if (i >= count) {
+                if (!undo.replaced.empty()) remove(undo.replaced.c_str());
+                continue;
+            }
+            if (undo.from.empty())
+                remove(undo.name.c_str());
+            else
+                move(undo.name.c_str(), undo.from.c_str());
+            if (!undo.replaced.empty()) move(undo.replaced.c_str(), undo.name.c_str());
+        }
+    }
+
     std::recursive_mutex mutex_;
-    std::string kind_, argument_;
+    std::string kind_, argument_, trace_;
     unsigned long long at_ = 0, seed_ = 0, calls_ = 0;  ///< `seed_`: the number after the call's, whatever it means
     std::vector<Undo> undos_;
+    std::vector<UndoName> undo_names_;
 };
 
 struct AtEnd {
-    ~AtEnd() { Faults::instance().report(); }
+    ~AtEnd() {
+        auto& faults = Faults::instance();
+        const std::lock_guard lock(faults.mutex());
+        (void)faults.enter("exit", Call::cleanup);
+        faults.report();
+    }
 } at_end;
 
 bool is_regular(int fd) {
@@ -137,15 +204,23 @@ bool is_regular(int fd) {
     return ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-template <class Call>
-auto changing(bool writes, const Call& call) -> decltype(call(Faults::instance())) {
+template <class Make>
+auto changing(const char* name, Call kind, const Make& make) -> decltype(make(Faults::instance())) {
     auto& faults = Faults::instance();
     const std::lock_guard lock(faults.mutex());
-    if (const int error = faults.enter(writes)) {
+    if (const int error = faults.enter(name, kind)) {
         errno = error;
         return -1;
     }
-    return call(faults);
+    return make(faults);
+}
+
+int open_file(const char* path, int flags, mode_t mode) {
+    static const auto real = next<int(const char*, int, ...)>("open");
+    static const bool nameless = !std::getenv("LUCARNE_NO_TMPFILE");
+    if (nameless || (flags & O_TMPFILE) != O_TMPFILE) return real(path, flags, mode);
+    errno = EOPNOTSUPP;
+    return -1;
 }
 
 }  // namespace
@@ -155,7 +230,7 @@ extern "C" {
 ssize_t pwrite(int fd, const void* data, size_t bytes, off_t offset) {
     static const auto real = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
     if (!is_regular(fd)) return real(fd, data, bytes, offset);
-    return changing(true, [&](Faults& faults) {
+    return changing("pwrite", Call::write, [&](Faults& faults) {
         faults.remember(fd, offset, bytes);
         return real(fd, data, bytes, offset);
     });
@@ -166,7 +241,7 @@ ssize_t pwrite64(int fd, const void* data, size_t bytes, off64_t offset) {
 
 int ftruncate(int fd, off_t size) noexcept {
     static const auto real = next<int(int, off_t)>("ftruncate");
-    return changing(true, [&](Faults& faults) {
+    return changing("ftruncate", Call::write, [&](Faults& faults) {
         struct stat status {};
         if (::fstat(fd, &status) == 0 && status.st_size > size)
             faults.remember(fd, size, static_cast<size_t>(status.st_size - size));
@@ -179,7 +254,9 @@ int ftruncate64(int fd, off64_t size) noexcept {
 
 int fsync(int fd) {
     static const auto real = next<int(int)>("fsync");
-    return changing(false, [&](Faults& faults) {
+    return changing("fsync", Call::commit, [&](Faults& faults) {
+        struct stat status {};
+        if (::fstat(fd, &status) == 0 && S_ISDIR(status.st_mode)) faults.folder_synced();
         faults.synced(fd);
         return real(fd);
     });
@@ -187,12 +264,61 @@ int fsync(int fd) {
 
 int linkat(int from, const char* old_name, int to, const char* new_name, int flags) noexcept {
     static const auto real = next<int(int, const char*, int, const char*, int)>("linkat");
-    return changing(false, [&](Faults&) { return real(from, old_name, to, new_name, flags); });
+    return changing("linkat", Call::commit, [&](Faults& faults) {
+        const int done = real(from, old_name, to, new_name, flags);
+        if (done == 0) faults.named({new_name, "", ""});
+        return done;
+    });
 }
 
 int rename(const char* from, const char* to) noexcept {
     static const auto real = next<int(const char*, const char*)>("rename");
-    return changing(false, [&](Faults&) { return real(from, to); });
+    return changing("rename", Call::commit, [&](Faults& faults) {
+        const std::string replaced = faults.keep(to);
+        const int done = real(from, to);
+        if (done == 0) faults.named({to, from, replaced});
+        return done;
+    });
+}
+
+int mkdir(const char* path, mode_t mode) noexcept {
+    static const auto real = next<int(const char*, mode_t)>("mkdir");
+    return changing("mkdir", Call::commit, [&](Faults&) { return real(path, mode); });
+}
+
+int unlink(const char* path) noexcept {
+    static const auto real = next<int(const char*)>("unlink");
+    return changing("unlink", Call::cleanup, [&](Faults&) { return real(path); });
+}
+int unlinkat(int folder, const char* path, int flags) noexcept {
+    static const auto real = next<int(int, const char*, int)>("unlinkat");
+    return changing("unlinkat", Call::cleanup, [&](Faults&) { return real(folder, path, flags); });
+}
+int rmdir(const char* path) noexcept {
+    static const auto real = next<int(const char*)>("rmdir");
+    return changing("rmdir", Call::cleanup, [&](Faults&) { return real(path); });
+}
+int fallocate(int fd, int mode, off_t offset, off_t bytes) {
+    static const auto real = next<int(int, int, off_t, off_t)>("fallocate");
+    return changing("fallocate", Call::cleanup, [&](Faults&) { return real(fd, mode, offset, bytes); });
+}
+int fallocate64(int fd, int mode, off64_t offset, off64_t bytes) {
+    return fallocate(fd, mode, offset, bytes);
+}
+
+int open(const char* path, int flags, ...) {
+    std::va_list rest;
+    va_start(rest, flags);
+    const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0;
+    va_end(rest);
+    return open_file(path, flags, mode);
+}
+int open64(const char* path, int flags, ...) {
+    std::va_list rest;
+    va_start(rest, flags);
+    const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0;
+    va_end(rest);
+    return open_file(path, flags, mode);
 }
 
 }  // extern "C"
