@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
@@ -120,12 +121,19 @@ Result<TemporaryFolder> TemporaryFolder::create() {
     std::string name = (base / "lucarne-XXXXXX").string();
     if (!mkdtemp(name.data()))
         return failed(base.string(), std::strerror(errno), "set TMPDIR to a folder that can be written");
+    at_interrupt(name, [name] {
+        std::error_code ignored;
+        std::filesystem::remove_all(name, ignored);
+        return std::string();
+    });
     return TemporaryFolder(name);
 }
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code code;
-    if (!path_.empty()) std::filesystem::remove_all(path_, code);
+    if (path_.empty()) return;
+    std::filesystem::remove_all(path_, code);
+    forget_interrupt(path_);
 }
 
 void add_read_options(CLI::App& command, io::ReadOptions& options) {

@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 
+#include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "viewer/commands/commands.h"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
     using namespace lucarne;
     // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
+    handle_interrupts();
     CLI::App app{"Lucarne: point clouds of any size in the light of their own surfaces."};
     app.name("lucarne");
     app.require_subcommand(1);

@@ -337,7 +337,7 @@ Result<void> ViewSession::run() {
 Result<void> ViewSession::show_until_closed() {
     Clock::time_point awake = Clock::now();
     while (!desk_.closing(shot_.has_value())) {
-        if (termination_.requested()) return save_unsaved(model_, SaveTo::free_names);
+        if (interrupt_.requested()) return save_unsaved(model_, SaveTo::free_names);
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
         // From one frame's beginning to the next one's: what a frame takes does not slow it down further.
         const double since = std::chrono::duration<double>(Clock::now() - awake).count();

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "io/core/interrupt.h"
 #include "viewer/cost_model.h"
 #include "viewer/lights/sky_loader.h"
 #include "viewer/measure_session.h"
@@ -14,7 +15,6 @@
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"
-#include "viewer/shell/termination.h"
 #include "viewer/show/show_session.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
@@ -33,13 +33,13 @@ struct ScriptedShot {
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
-                ScanSet& scans, Termination& termination)
+                ScanSet& scans, InterruptRequest& interrupt)
         : window_(window),
           worker_(worker),
           model_(model),
           shot_(std::move(shot)),
           scans_(scans),
-          termination_(termination),
+          interrupt_(interrupt),
           desk_(window, model, scans),
           quality_(model.frame_time),
           budget_(model.frame_time),
@@ -75,7 +75,7 @@ class ViewSession {
     ViewModel& model_;
     std::optional<ScriptedShot> shot_;
     ScanSet& scans_;
-    Termination& termination_;
+    InterruptRequest& interrupt_;
     Desk desk_;
     bool placed_ = false;  ///< there has been a view to begin with
     bool first_told_ = false;

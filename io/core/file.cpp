@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "io/core/file_io.h"
+#include "io/core/interrupt.h"
 #include "io/core/private_file.h"
 
 namespace lucarne {
@@ -29,6 +30,13 @@ std::filesystem::path unused_name(const std::filesystem::path& folder) {
         auto name = folder / fmt::format(".lucarne-{}-{}.part", ::getpid(), n);
         if (::lstat(name.c_str(), &status) != 0) return name;
     }
+}
+
+void remove_at_interrupt(const std::filesystem::path& name) {
+    at_interrupt(name, [name] {
+        ::unlink(name.c_str());
+        return std::string();
+    });
 }
 
 }  // namespace
@@ -120,6 +128,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path, bool ov
         file.fd_ = ::open(name.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
         if (file.fd_ < 0) return failed(path.string(), fmt::format("cannot be created ({})", reason(errno)));
         file.temporary_ = name;
+        remove_at_interrupt(name);
     }
     return file;
 }
@@ -138,7 +147,9 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 }
 OutputFile::~OutputFile() {
     if (fd_ >= 0) ::close(fd_);
-    if (!committed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+    if (temporary_.empty()) return;
+    if (!committed_) ::unlink(temporary_.c_str());
+    forget_interrupt(temporary_);
 }
 
 Result<void> OutputFile::append(std::span<const std::byte> data) {
@@ -174,7 +185,10 @@ Result<void> OutputFile::commit() {
         const auto name = overwrite_ ? unused_name(folder_of(path_)) : path_;
         if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)
             return failed(path_.string(), fmt::format("cannot be given its name ({})", reason(errno)));
-        if (overwrite_) temporary_ = name;
+        if (overwrite_) {
+            temporary_ = name;
+            remove_at_interrupt(name);
+        }
     } else if (!overwrite_ && ::access(path_.c_str(), F_OK) == 0) {
         return failed(path_.string(), "exists already", "choose another name or pass --overwrite");
     }

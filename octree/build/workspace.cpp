@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/private_file.h"
@@ -88,6 +89,7 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     }
     LUCARNE_ASSIGN(work.journal_, UpdateFile::open_private(folder / kJournal, true, kBusy));
     work.folder_ = folder;
+    work.resume_ = resume;
     report_others(temp_folder, folder);
     LUCARNE_TRY(work.start(whole + "\n" + identity, resume));
     return work;
@@ -99,6 +101,7 @@ Workspace& Workspace::operator=(Workspace&& other) noexcept {
     journal_.swap(other.journal_);
     records_.swap(other.records_);
     std::swap(end_, other.end_);
+    std::swap(resume_, other.resume_);
     std::swap(keep_, other.keep_);
     return *this;
 }
@@ -108,6 +111,25 @@ Workspace::~Workspace() {
         log::warn("{} keeps {} for --resume", folder_.string(), bytes_text(folder_bytes(folder_)));
     else
         remove_private_folder(folder_, kFiles);  // what cannot be removed is reported by the next build
+    forget_interrupt(folder_);
+}
+
+/// An interrupt keeps what a resumed build would go on from, and removes what is of no use.
+void Workspace::tell_at_interrupt() const {
+    if (records_.size() < 2) {
+        at_interrupt(folder_, [folder = folder_] {
+            remove_private_folder(folder, kFiles);
+            return std::string();
+        });
+        return;
+    }
+    const std::string how = resume_ == Resume::go_on ? "again" : "with --resume";
+    at_interrupt(folder_, [folder = folder_, stage = records_.back().stage, how] {
+        return fmt::format(
+            "{}: keeps {} of the interrupted conversion; give the same command {} to go on after '{}', or remove "
+            "the folder",
+            folder.string(), bytes_text(folder_bytes(folder)), how, stage);
+    });
 }
 
 Result<void> Workspace::start(const std::string& identity, Resume resume) {
@@ -119,7 +141,8 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
         if (keep_ && same && records_.size() > 1) {
             log::info("going on after '{}' of the interrupted conversion", records_.back().stage);
             end_ = records_.back().offset + kHeadBytes + records_.back().bytes.size();
-                    return {};
+            tell_at_interrupt();
+            return {};
         }
         if (keep_ && !same)
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
@@ -131,6 +154,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
     remove_private_files(folder_, std::span(kFiles).subspan(1));  // what stays is emptied when it is opened
     records_.clear();
     LUCARNE_TRY(journal_->truncate(0));
+    tell_at_interrupt();
     const auto bytes = std::as_bytes(std::span(identity));
     return append({kIdentity, {bytes.begin(), bytes.end()}});
 }
@@ -185,6 +209,7 @@ Result<void> Workspace::append(Record record) {
     record.offset = end_;
     end_ += bytes.size();
     records_.push_back(std::move(record));
+    tell_at_interrupt();
     return {};
 }
 

@@ -14,7 +14,7 @@ namespace lucarne::octree {
 /// What becomes of a build's scratch files when it is interrupted.
 enum class Resume {
     never,  ///< they are nameless: nothing is left, however the process ends
-    later,  ///< SIGKILL or a power cut leaves them for `go_on`; any other failure removes them
+    later,  ///< a signal or a power cut leaves them for `go_on`; any other failure removes them
     go_on   ///< goes on from the last stage that an interrupted build finished, if there was one
 };
 
@@ -56,11 +56,13 @@ class Workspace {
     Result<std::vector<Record>> read_journal() const;
     Result<void> start(const std::string& identity, Resume resume);
     Result<void> append(Record record);
+    void tell_at_interrupt() const;
 
     std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty where nothing has a name
     std::optional<UpdateFile> journal_;
     std::vector<Record> records_;
     uint64_t end_ = 0;
+    Resume resume_ = Resume::never;
     bool keep_ = false;
 };
 

@@ -249,7 +249,7 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->default_str("leaf");
     command->add_flag_callback(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
-        "Go on from the last stage that an interrupted conversion finished");
+        "Go on from the last stage that an interrupted conversion finished; if this one fails, keep its stages");
     command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
     auto* append_flag =
         command->add_flag("--append", options->append,

@@ -95,7 +95,7 @@ Result<void> view(ViewOptions options) {
         LUCARNE_TRY(check_outputs({options.screenshot}, options.overwrite, inputs));
         shot = ScriptedShot{options.screenshot, options.frames, options.overwrite};
     }
-    Termination termination;
+    InterruptRequest interrupt;
     std::atomic<bool> awake{false};
     ScanSet scans(
         options.input, [&](const octree::NodeSource& source) { return starting_view(options, source); },
@@ -117,7 +117,7 @@ Result<void> view(ViewOptions options) {
     model.shell.scans = &scans;
     model.message = std::move(kept.problem);
     take_settings(std::move(kept.settings), model);
-    auto done = ViewSession(*window, *worker, model, shot, scans, termination).run();
+    auto done = ViewSession(*window, *worker, model, shot, scans, interrupt).run();
     awake = false;
     return done;
 }

@@ -17,6 +17,7 @@
 
 #include "io/core/file.h"
 #include "io/core/file_io.h"
+#include "io/core/interrupt.h"
 #include "io/core/private_file.h"
 #include "io/core/process.h"
 
@@ -72,6 +73,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::start(const std::filesystem::p
     LUCARNE_ASSIGN(writer->folder_,
                    new_private_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path(".")));
     writer->part_ = writer->folder_ / file.filename();
+    at_interrupt(writer->folder_, [folder = writer->folder_, part = file.filename().string()] {
+        remove_private_folder(folder, std::span(&part, 1));
+        return std::string();
+    });
     writer->size_ = size;
     writer->overwrite_ = overwrite;
     LUCARNE_TRY(writer->launch(rate));
@@ -116,6 +121,7 @@ VideoWriter::~VideoWriter() {
     if (folder_.empty()) return;
     const std::string part = part_.filename().string();
     remove_private_folder(folder_, std::span(&part, 1));
+    forget_interrupt(folder_);
 }
 
 tl::unexpected<Error> VideoWriter::broken() const {

@@ -25,8 +25,7 @@ class VideoWriter {
     static Result<std::unique_ptr<VideoWriter>> start(const std::filesystem::path& file, ImageSize size,
                                                       double rate, bool overwrite,
                                                       const std::atomic<bool>& stop);
-    /// Unless finish() went well, ffmpeg is ended and nothing is left of the file. (A signal that ends the program
-    /// leaves the hidden part.)
+    /// Unless finish() went well, ffmpeg is ended and nothing is left of the file.
     ~VideoWriter();
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;

@@ -1,0 +1,87 @@
+#include "io/core/interrupt.h"
+
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <unistd.h>
+
+#include "io/core/log.h"
+
+namespace lucarne {
+namespace {
+
+/// Signals are the process's, and so is this.
+struct Actions {
+    std::mutex mutex;
+    std::map<std::filesystem::path, InterruptAction> of;
+    InterruptRequest* request = nullptr;  ///< who wants to hear of the first signal
+};
+Actions& actions() {
+    static auto* all = new Actions;  // outlives every other static object, whose destructors may use it
+    return *all;
+}
+
+void run_actions() {
+    auto& all = actions();
+    all.mutex.lock();  // for good: nothing is finished or begun any more
+    for (const auto& [unfinished, action] : all.of) {
+        const std::string line = action();
+        if (line.empty()) continue;
+        if (::isatty(STDERR_FILENO)) std::fputc('\n', stderr);  // below the progress bar
+        log::warn("{}", line);
+    }
+}
+
+}  // namespace
+
+/// Whether somebody takes the signal that has come.
+bool hand_over_interrupt() {
+    const std::lock_guard lock(actions().mutex);
+    InterruptRequest* request = actions().request;
+    return request && !request->requested_.exchange(true);
+}
+
+void at_interrupt(const std::filesystem::path& unfinished, InterruptAction action) {
+    const std::lock_guard lock(actions().mutex);
+    actions().of[unfinished] = std::move(action);
+}
+
+void forget_interrupt(const std::filesystem::path& unfinished) {
+    const std::lock_guard lock(actions().mutex);
+    actions().of.erase(unfinished);
+}
+
+void handle_interrupts() {
+    sigset_t caught;
+    sigemptyset(&caught);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction now {};
+        if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&caught, number);
+    }
+    ::pthread_sigmask(SIG_BLOCK, &caught, nullptr);
+    std::thread([caught] {
+        int number = SIGTERM;
+        do {
+            if (::sigwait(&caught, &number) != 0) return;
+        } while (hand_over_interrupt());
+        ::pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
+        run_actions();
+        ::raise(number);
+    }).detach();
+}
+
+InterruptRequest::InterruptRequest() {
+    const std::lock_guard lock(actions().mutex);
+    actions().request = this;
+}
+
+InterruptRequest::~InterruptRequest() {
+    const std::lock_guard lock(actions().mutex);
+    actions().request = nullptr;
+}
+
+}  // namespace lucarne
