@@ -20,12 +20,12 @@ Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path
 
 struct VerifyReport {
     uint64_t nodes = 0, points = 0, bytes = 0;
-    uint32_t depth = 0;  ///< the deepest level
+    uint32_t depth = 0;             ///< the deepest level
+    uint64_t bytes_behind_end = 0;  ///< left by an interrupted update; harmless
 };
 
 /// Reads the whole cache and checks every checksum and invariant: both superblocks, every point inside its
-/// node's cube, the bounds, the counts, nothing behind the end. `progress` is told the bytes of each node
-/// checked.
+/// node's cube, the bounds, the counts. `progress` is told the bytes of each node checked.
 Result<VerifyReport> verify_cache(const std::filesystem::path& path,
                                   const std::function<void(uint64_t)>& progress);
 

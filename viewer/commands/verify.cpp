@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/progress.h"
@@ -22,6 +23,9 @@ Result<void> verify(const std::filesystem::path& path) {
     LUCARNE_ASSIGN(const auto report, octree::verify_cache(path, [&](uint64_t done) { progress.add(done); }));
     log::info("{}: sound; {} points in {} nodes on {} levels, {}", path.string(), report.points, report.nodes,
               report.depth + 1, bytes_text(report.bytes));
+    if (report.bytes_behind_end)
+        log::warn("{}: has {} of an interrupted update behind its end, which do no harm; lucarne compact removes them",
+                  path.string(), counted(report.bytes_behind_end, "bytes"));
     return {};
 }
 
