@@ -141,9 +141,14 @@ json root_json(const Cube& root) {
     return result;
 }
 
+/// Whether places in the cube can be counted (Cube::place).
+bool has_places(const Cube& root) {
+    return root.size <= kFarthest && root.first_size() > 0 && std::isfinite(0x1p32 / root.first_size());
+}
+
 Cube root_of(const json& value) {
     Cube root{vector_of(value.at("min")), number(value.at("size"))};
-    require(root.size > 0 && root.size <= kFarthest, "a root cube without or beyond any size");
+    require(has_places(root), "a root cube without or beyond any size");
     if (!value.contains("first")) return root;
     const json& first = value.at("first");
     root.first_min = vector_of(first.at("min"));
@@ -160,7 +165,7 @@ Cube root_of(const json& value) {
         require(std::abs(root.first_min[static_cast<int>(axis)]) <= kFarthest,
                 "a first cube without a place");
     }
-    require(root.first_size() > 0, "a root cube without or beyond any size");
+    require(has_places(root), "a root cube without or beyond any size");
     return root;
 }
 

@@ -23,7 +23,7 @@ Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const Node
     : writer_(writer),
       loader_(loader),
       stride_(loader.schema().stride),
-      sampler_(limits),
+      sampler_(limits, loader.root().first_size()),
       emitter_(loader),
       samples_(std::move(samples)),
       listener_(listener) {}

@@ -75,7 +75,7 @@ format::Entry NodeSampler::settle(size_t child, std::vector<uint32_t>& order) {
     entry.child_mask = c.node.child_mask;
     entry.count = static_cast<uint32_t>(order.size());
     entry.subtree_count = c.node.points - c.taken;
-    entry.area_floor = area_floors(inherited_, own_, c.node.surface);
+    entry.area_floor = stored_floors(area_floors(inherited_, own_, c.node.surface), face_edge_);
     return entry;
 }
 

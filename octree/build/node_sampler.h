@@ -27,13 +27,15 @@ struct Pending {
     NodeKey key;
     uint8_t child_mask = 0;
     uint64_t points = 0;  ///< in the cube in all, whichever node will hold them
-    double surface = 0;   ///< in the cube, file unit squared
+    double surface = 0;   ///< in the cube, in faces of the root cube before it was doubled
 };
 
-/// Divides the samples of up to eight children between them and their parent.
+/// Divides the samples of up to eight children between them and their parent. Areas and surfaces count in faces
+/// of the root cube before it was doubled, whose edge is `face_edge`: in squares of the unit, floats would not hold
+/// those of every cloud. Only the floors of a directory entry are in squares of the unit.
 class NodeSampler {
  public:
-    explicit NodeSampler(const NodeLimits& limits) : limits_(limits) {}
+    NodeSampler(const NodeLimits& limits, double face_edge) : limits_(limits), face_edge_(face_edge) {}
 
     void start(const NodeKey& parent);
     void add(const Place& place, float area);  ///< the samples of one child, in Morton order...
@@ -61,6 +63,7 @@ class NodeSampler {
     void count_taken();
 
     NodeLimits limits_;
+    double face_edge_;
     NodeKey parent_;
     Sampler sampler_;
     std::vector<float> areas_;

@@ -3,6 +3,11 @@
 #include "octree/attributes.h"
 
 namespace lucarne::octree {
+namespace {
+
+constexpr double kFace = 1;  ///< areas count in faces of the root cube before it was doubled
+
+}  // namespace
 
 io::Schema with_estimates(io::Schema schema, bool normals) {
     if (normals) schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
@@ -30,14 +35,14 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
         if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
             io::store(record + normal_->offset, encode_normal(found[i].normal));
         if (!in_place || found[i].area > 0)
-            io::store(record + area_->offset, encode_area(found[i].area, root().first_size()));
+            io::store(record + area_->offset, encode_area(found[i].area, kFace));
     }
     return records;
 }
 
 float RecordLoader::area(const std::byte* record) const {
     if (!area_) return 0;
-    return static_cast<float>(decode_area(io::load<uint16_t>(record + area_->offset), root().first_size()));
+    return static_cast<float>(decode_area(io::load<uint16_t>(record + area_->offset), kFace));
 }
 
 }  // namespace lucarne::octree

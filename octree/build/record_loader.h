@@ -24,7 +24,7 @@ class RecordLoader {
     Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
 
     Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
-    /// The point's surface share, 0 where unknown.
+    /// The point's surface share in faces of the root cube before it was doubled; 0 where unknown.
     float area(const std::byte* record) const;
     /// Where estimates stand; null where nothing was estimated.
     const io::Attribute* estimated_normal() const { return normal_; }

@@ -34,6 +34,9 @@ Result<LeftOut> read_input(const Unifier& inputs, size_t input, uint64_t batch_b
     }
 }
 
+/// The least edge of a root cube: places in it are counted in 2^32ths, whose inverse is an ordinary double.
+constexpr double kLeastRoot = 1e-290;
+
 void put_text(ByteWriter& writer, const std::string& text) {
     writer.put_all(std::vector<char>(text.begin(), text.end()));
 }
@@ -50,6 +53,7 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
     if (!(size < 1e300))
         return rejected("points", "their coordinates span more than 1e300 units", "remove the stray ones");
     if (size <= 0) size = 1;  // one place only
+    size = std::max(size, kLeastRoot);
     // A hair wider, so that the farthest point is inside and not on the border.
     return Cube{min, size * (1 + 1e-9)};
 }

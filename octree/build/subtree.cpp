@@ -15,7 +15,7 @@ class Builder {
         : loader_(loader),
           limits_(limits),
           stride_(loader.schema().stride),
-          sampler_(limits),
+          sampler_(limits, loader.root().first_size()),
           emitter_(loader) {}
 
     Result<void> load(size_t index, uint64_t count);
@@ -70,8 +70,9 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
     if (last - first <= limits_.leaf || key.level == kMostLevel) {
         sample.resize(last - first);
         for (size_t i = first; i < last; ++i) sample[i - first] = static_cast<uint32_t>(i);
+        const auto root_size = static_cast<double>(uint64_t{1} << loader_.root().doublings);
         const auto part = [&](auto& all) { return std::span(all).subspan(first, last - first); };
-        return {key, 0, last - first, surface_of(part(areas_), part(codes_), key.level, loader_.root().size)};
+        return {key, 0, last - first, surface_of(part(areas_), part(codes_), key.level, root_size)};
     }
     struct Child {
         Pending node;

@@ -86,6 +86,7 @@ Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std:
     options.memory = settings.memory;
     options.threads = settings.threads;
     options.normals = settings.normals;
+    options.area_unit = chunks.root().first_size();
     std::mutex mutex;
     const auto keep = [&](size_t chunk, ChunkNormals&& found) -> Result<void> {
         const std::lock_guard lock(mutex);

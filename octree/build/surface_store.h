@@ -13,7 +13,7 @@ class SurfaceStore {
  public:
     struct Point {
         glm::vec3 normal{0.0f};  ///< as estimated, before its component's sign
-        float area = 0;          ///< 0: unknown
+        float area = 0;          ///< in faces of the root cube before it was doubled; 0: unknown
         uint32_t component = 0;
     };
     struct Settings {

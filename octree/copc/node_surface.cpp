@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "octree/normals/area_floor.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -77,7 +79,7 @@ void set_area_floors(std::span<NodeInfo> nodes, std::span<const uint64_t> codes,
         densities[i] = above + own;
         for (size_t step = 0; step < kPrefixSteps; ++step) {
             const double density = above + own / static_cast<double>(1u << step);
-            node.area_floor[step] = density > 0 ? static_cast<float>(1 / density) : 0.0f;
+            node.area_floor[step] = density > 0 ? stored_area(1 / density) : 0.0f;
         }
     }
 }

@@ -225,10 +225,11 @@ Result<Subtree> Rewrite::kept_subtree(const RecordLoader& loader, size_t item) c
                  .child_mask = node.child_mask,
                  .points = node.subtree_count - node.count + count};
     tree.sample.reserve(records.size());
+    const double edge = loader.root().first_size(), floor = node.area_floor[0] / edge / edge;
     for (const auto& from : sorted) {
         const std::byte* record = &records[from.index * stride];
         tree.sample.insert(tree.sample.end(), record, record + stride);
-        tree.root.surface += std::max(loader.area(record), node.area_floor[0]);
+        tree.root.surface += std::max<double>(loader.area(record), floor);
     }
     return tree;
 }

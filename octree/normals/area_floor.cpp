@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -52,6 +53,17 @@ std::array<float, kPrefixSteps> area_floors(std::span<const float> inherited_are
         floors[step] = previous;
     }
     return floors;
+}
+
+float stored_area(double area) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return area > 0 ? static_cast<float>(std::min(area, kMost)) : 0.0f;
+}
+
+std::array<float, kPrefixSteps> stored_floors(const std::array<float, kPrefixSteps>& floors, double edge) {
+    std::array<float, kPrefixSteps> stored{};
+    for (size_t step = 0; step < kPrefixSteps; ++step) stored[step] = stored_area(floors[step] * edge * edge);
+    return stored;
 }
 
 }  // namespace lucarne::octree

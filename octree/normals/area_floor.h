@@ -17,4 +17,9 @@ namespace lucarne::octree {
 std::array<float, kPrefixSteps> area_floors(std::span<const float> inherited_areas,
                                             std::span<const float> own_areas_in_prefix_order, double surface);
 
+/// An area as nodes hold it: at most the largest float, and not negative. NaN gives 0.
+float stored_area(double area);
+/// Floors counted in squares of `edge` as a directory has them, in squares of the unit.
+std::array<float, kPrefixSteps> stored_floors(const std::array<float, kPrefixSteps>& floors, double edge);
+
 }  // namespace lucarne::octree

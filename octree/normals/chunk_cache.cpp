@@ -1,8 +1,10 @@
 #include "octree/normals/chunk_cache.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "octree/normals/point_index.h"
+#include <glm/common.hpp>
 
 namespace lucarne::octree {
 namespace {
@@ -11,12 +13,38 @@ uint64_t bytes_of(const Positions& positions) {
     return positions->size() * sizeof(glm::dvec3);
 }
 
-bool searchable(const glm::dvec3& p) {
-    constexpr double kMost = PointIndex::kLargestCoordinate;
-    return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;  // false for NaN, too
+bool is_finite(const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+constexpr int kExtentExponent = 50;     ///< the square of 2^50 leaves room to sum millions of them in a float
+constexpr int kMostScaleExponent = 1000;  ///< the scale and its inverse are ordinary doubles
+
+double scale_of(const ChunkAccess& chunks) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Box all{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    for (size_t chunk = 0; chunk < chunks.chunk_count(); ++chunk) {
+        if (chunks.point_count(chunk) == 0) continue;
+        const Box box = chunks.bounds(chunk);
+        all.min = glm::min(all.min, box.min);
+        all.max = glm::max(all.max, box.max);
+    }
+    const glm::dvec3 extent = all.max - all.min;
+    const double widest = std::min(std::max({extent.x, extent.y, extent.z}), std::numeric_limits<double>::max());
+    if (!(widest > 0)) return 1;  // no points, or all in one place
+    return std::ldexp(1.0, std::clamp(kExtentExponent - std::ilogb(widest), -kMostScaleExponent,
+                                      kMostScaleExponent));
 }
 
 }  // namespace
+
+ChunkCache::ChunkCache(const ChunkAccess& chunks, uint64_t bytes)
+    : chunks_(chunks), limit_(bytes), scale_(scale_of(chunks)) {}
+
+Box ChunkCache::bounds(size_t chunk) const {
+    const Box box = chunks_.bounds(chunk);
+    return {box.min * scale_, box.max * scale_};
+}
 
 Result<Positions> ChunkCache::positions(size_t chunk) {
     {
@@ -28,8 +56,10 @@ Result<Positions> ChunkCache::positions(size_t chunk) {
     }
     // Loaded without the lock: others go on meanwhile, at worst the same chunk is read twice.
     LUCARNE_ASSIGN(auto loaded, chunks_.positions(chunk));
-    for (const auto& p : loaded)
-        if (!searchable(p)) return rejected("normals", "a coordinate is larger than 1e150");
+    for (auto& p : loaded) {
+        p *= scale_;
+        if (!is_finite(p)) return rejected("normals", "a coordinate is not a finite number");
+    }
     auto positions = std::make_shared<const std::vector<glm::dvec3>>(std::move(loaded));
 
     const std::lock_guard lock(mutex_);

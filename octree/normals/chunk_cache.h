@@ -13,13 +13,19 @@ using Positions = std::shared_ptr<const std::vector<glm::dvec3>>;
 
 /// The positions of the chunks used last, so that a chunk is not read again for each of its
 /// neighbours. Thread-safe. Holds at most `bytes` besides what callers hold themselves.
+///
+/// Positions and bounds are multiplied by a power of two that brings the widest extent of the cloud to about
+/// 2^50: floats then hold the squares of all distances from the extent down to its 10^-34th part, whatever the
+/// cloud's unit and size. Scaling by a power of two rounds nothing.
 class ChunkCache {
  public:
-    ChunkCache(const ChunkAccess& chunks, uint64_t bytes) : chunks_(chunks), limit_(bytes) {}
+    ChunkCache(const ChunkAccess& chunks, uint64_t bytes);
 
     const ChunkAccess& chunks() const { return chunks_; }
-    /// Errors: what ChunkAccess::positions reports; coordinates too large for squared distances.
+    double scale() const { return scale_; }
+    /// Scaled. Errors: what ChunkAccess::positions reports; a coordinate that is not a finite number.
     Result<Positions> positions(size_t chunk);
+    Box bounds(size_t chunk) const;  ///< scaled
 
  private:
     struct Entry {
@@ -28,6 +34,7 @@ class ChunkCache {
     };
     const ChunkAccess& chunks_;
     uint64_t limit_, held_ = 0;
+    double scale_;
     std::mutex mutex_;
     std::list<Entry> entries_;  ///< most recently used first
     std::unordered_map<size_t, std::list<Entry>::iterator> found_;

@@ -61,7 +61,7 @@ class CellSet {
  public:
     CellSet(const Box& box, double cell)
         : origin_(box.min),
-          cell_(std::max({cell, widest(box) / (1 << 20), std::numeric_limits<double>::min()})) {}
+          cell_(std::max({cell, widest(box) / kMostCell, std::numeric_limits<double>::min()})) {}
     void add_around(const glm::dvec3& p) {
         const auto c = coordinates(p);
         if (!centres_.insert(morton(c[0], c[1], c[2])).second) return;
@@ -79,9 +79,10 @@ class CellSet {
  private:
     /// Two cells of margin below, so that no neighbour cell is negative.
     std::array<int64_t, 3> coordinates(const glm::dvec3& p) const {
-        const glm::dvec3 c = glm::floor((p - origin_) / cell_) + 2.0;
+        const glm::dvec3 c = glm::clamp(glm::floor((p - origin_) / cell_), -1.0, kMostCell) + 2.0;
         return {static_cast<int64_t>(c.x), static_cast<int64_t>(c.y), static_cast<int64_t>(c.z)};
     }
+    static constexpr double kMostCell = 1 << 20;
     glm::dvec3 origin_;
     double cell_;
     std::unordered_set<uint64_t> centres_, cells_;
@@ -117,7 +118,7 @@ void ChunkNeighbours::find_around() {
     const ChunkAccess& chunks = cache_->chunks();
     for (size_t other = 0; other < chunks.chunk_count(); ++other) {
         if (other == chunk_ || chunks.point_count(other) == 0) continue;
-        const Box bounds = chunks.bounds(other);
+        const Box bounds = cache_->bounds(other);
         around_.push_back({static_cast<uint32_t>(other), bounds, distance2(box_, bounds)});
     }
     std::sort(around_.begin(), around_.end(), [](const Around& a, const Around& b) {
@@ -174,7 +175,7 @@ Result<void> ChunkNeighbours::search(size_t k, const Visit& visit) {
 
 /// As wide a halo first as half of the sites need.
 double ChunkNeighbours::first_radius(std::span<const Pending> pending) const {
-    const double size = widest(cache_->chunks().bounds(chunk_));
+    const double size = widest(cache_->bounds(chunk_));
     std::vector<double> reaches;
     for (const auto& [site, reach] : pending)
         if (std::isfinite(reach)) reaches.push_back(reach);
@@ -186,7 +187,7 @@ double ChunkNeighbours::first_radius(std::span<const Pending> pending) const {
 
 Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t k, const Visit& visit) {
     double radius = first_radius(pending),
-           widest_halo = kWidestHalo * widest(cache_->chunks().bounds(chunk_));
+           widest_halo = kWidestHalo * widest(cache_->bounds(chunk_));
     for (int narrowed = 0; !pending.empty();) {
         LUCARNE_ASSIGN(const bool complete, load_halo(pending, radius));
         if (!complete &&
@@ -226,8 +227,8 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t
         double farthest = 0;
         for (const Pending& p : still) farthest = std::max(farthest, p.radius);
         pending = std::move(still);
-        // Four times as wide, or as wide as is certainly enough.
-        radius = std::min({4 * radius, farthest, widest_halo});
+        // Four times as wide, or as wide as is certainly enough. Places too near for floats are at distance 0.
+        radius = std::min({radius > 0 ? 4 * radius : farthest, farthest, widest_halo});
     }
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -44,19 +45,20 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
     }
 }
 
-/// From each site to the station that saw it: the first point at the site with a station decides; zero where
-/// none is known.
-Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkAccess& chunks, size_t chunk,
+/// From each site to the station that saw it, scaled: the first point at the site with a station decides; zero
+/// where none is known.
+Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkCache& cache, size_t chunk,
                                                  const NormalOptions& options,
                                                  const ChunkNeighbours& neighbours) {
+    const double scale = cache.scale();
     std::vector<glm::dvec3> rays(options.stations.empty() ? 0 : neighbours.site_count(), glm::dvec3(0.0));
     if (rays.empty()) return rays;
-    LUCARNE_ASSIGN(const auto stations, chunks.stations(chunk));
+    LUCARNE_ASSIGN(const auto stations, cache.chunks().stations(chunk));
     for (uint32_t site = 0; site < rays.size(); ++site)
         for (const uint32_t point : neighbours.members(site)) {
             const int32_t station = point < stations.size() ? stations[point] : -1;
             if (station < 0 || static_cast<size_t>(station) >= options.stations.size()) continue;
-            rays[site] = options.stations[static_cast<size_t>(station)] - neighbours.position(site);
+            rays[site] = scale * options.stations[static_cast<size_t>(station)] - neighbours.position(site);
             break;
         }
     return rays;
@@ -77,7 +79,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
                    ChunkNeighbours::load(cache, chunk, options.search, options.memory / kHaloMemory));
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.search, options.neighbours));
     neighbours.drop_indices();
-    LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache.chunks(), chunk, options, neighbours));
+    LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) drop_curtains(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {
@@ -89,8 +91,16 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
 }
 
-/// From sites to points, in their stored order; the points of a site share its area.
-ChunkNormals points_of(const ChunkEstimate& estimate) {
+/// Converts an area in squares of `length` to squares of 1. The marks for unknown and stray stay as they are.
+float in_squares(float area, double length) {
+    if (!(area > kStrayArea)) return area;
+    constexpr double kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(area * length * length, kLeast, kMost));
+}
+
+/// From sites to points, in their stored order; the points of a site share its area. `unit` is that of the
+/// estimate's areas, in the unit wanted.
+ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     const auto sites = static_cast<uint32_t>(estimate.neighbours.site_count());
     const size_t points = estimate.neighbours.point_count();
     ChunkNormals normals;
@@ -101,7 +111,8 @@ ChunkNormals points_of(const ChunkEstimate& estimate) {
         const auto members = estimate.neighbours.members(site);
         for (const uint32_t point : members) {
             normals.normals[point] = estimate.surface.normals[site];
-            normals.areas[point] = estimate.surface.areas[site] / static_cast<float>(members.size());
+            normals.areas[point] =
+                in_squares(estimate.surface.areas[site] / static_cast<float>(members.size()), unit);
             normals.components[point] = estimate.orientation.components[site];
         }
     }
@@ -129,6 +140,7 @@ Result<OrientationSigns> estimate_normals(
                                                     kMostNormalNeighbours));
     const ThreadLimit threads(options.threads);
     ChunkCache cache(chunks, options.memory / 8);
+    const double unit = 1 / cache.scale() / options.area_unit;
     OrientationMerger merger(chunks.chunk_count());
     for (size_t first = 0, last; first < chunks.chunk_count(); first = last) {
         last = wave_end(chunks, first, options.memory / 2);
@@ -149,7 +161,7 @@ Result<OrientationSigns> estimate_normals(
             else
                 merger.add_empty();
         parallel_ranges(wave.size(), 1, [&](size_t i, size_t) {
-            auto done = sink(first + i, wave[i] ? points_of(*wave[i]) : ChunkNormals{});
+            auto done = sink(first + i, wave[i] ? points_of(*wave[i], unit) : ChunkNormals{});
             if (!done) error.report(i, std::move(done).error());
         });
         LUCARNE_TRY(error.result());

@@ -48,6 +48,9 @@ struct NormalOptions {
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may hold in all
     unsigned threads = 0;
     bool normals = true;  ///< false: only areas (the input has its own normals)
+    /// Areas are given in squares of this length. Floats hold the squares of neither 1e30 nor 1e-30, so clouds
+    /// of unknown size take their own extent.
+    double area_unit = 1;
 };
 
 /// The area of a point that hangs in the air, isolated: not a share of anything, and not to be drawn. Small
@@ -57,7 +60,7 @@ inline constexpr float kStrayArea = 1e-30f;
 /// Of one chunk, in the order of its positions.
 struct ChunkNormals {
     std::vector<glm::vec3> normals;    ///< unit, or zero: no stable plane
-    std::vector<float> areas;          ///< surface share (unit squared), 0: unknown, or kStrayArea
+    std::vector<float> areas;          ///< surface share (area_unit squared), 0: unknown, or kStrayArea
     std::vector<uint32_t> components;  ///< which of the chunk's orientation components the point belongs to
 };
 
@@ -67,7 +70,8 @@ using OrientationSigns = std::vector<std::vector<int8_t>>;
 /// Estimates normals and areas of all chunks; neighbours are found across chunk borders. `sink` takes each
 /// chunk as it is done (any order, any thread, one call a chunk); the signs returned make the orientation
 /// whole: toward the station where it is known, else consistent along the surface. Results do not depend on
-/// the thread count.
+/// the thread count. Extents may be of any size; points nearer to each other than 1e-34 of the cloud's extent
+/// have no normal. Errors: a coordinate that is not a finite number, and what ChunkAccess reports.
 Result<OrientationSigns> estimate_normals(
     const ChunkAccess& chunks, const NormalOptions& options,
     const std::function<Result<void>(size_t chunk, ChunkNormals&&)>& sink);

@@ -125,6 +125,7 @@ class LeafSearch final : public Search {
         ChunkCache cache(chunk, 0);
         auto neighbours = ChunkNeighbours::load(cache, 0, NeighbourSearch::leaf, 0);
         if (!neighbours) return false;
+        const double unit2 = 1 / (cache.scale() * cache.scale());
         const auto done = neighbours->search(
             k, [&](uint32_t site, const Patch& nearest, bool, ChunkNeighbours::Surroundings&) {
                 for (const uint32_t point : neighbours->members(site)) {
@@ -133,7 +134,7 @@ class LeafSearch final : public Search {
                     for (size_t i = 0; i < nearest.count && filled < k; ++i)
                         for (const uint32_t other : neighbours->members(nearest.index[i])) {
                             if (filled == k) break;
-                            row[filled++] = {other, nearest.distance2[i]};
+                            row[filled++] = {other, static_cast<float>(nearest.distance2[i] * unit2)};
                         }
                 }
                 return 0.0;

@@ -30,13 +30,10 @@ class PointIndex {
     /// Appends the points within `radius` of a box to `tile`, numbered from `offset`, perhaps some that are
     /// farther, too. False as soon as the tile has more than `most` points: then some are missing.
     virtual bool gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const = 0;
-
-    /// Squares of larger coordinates would overflow inside the search.
-    static constexpr double kLargestCoordinate = 1e150;
 };
 
-/// An index of the kind wanted; none of no points. `points` must be finite, under kLargestCoordinate, outlive
-/// the index, and stand in the order of morton_order().
+/// An index of the kind wanted; none of no points. `points` must be scaled as ChunkCache does it, outlive the
+/// index, and stand in the order of morton_order().
 std::unique_ptr<PointIndex> make_index(NeighbourSearch search, const PointArrays& points);
 /// PCL's usual: FLANN's single kd-tree. In whatever order the points are.
 std::unique_ptr<PointIndex> make_flann_index(const PointArrays& points);

@@ -33,6 +33,8 @@ struct ShownSample {
     std::vector<QuickSurface> surface;
 };
 
+constexpr double kFace = 1;  ///< areas count in faces of the root cube
+
 /// Its records as a cache over `root` would hold them, along that root's Morton curve.
 LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const io::Schema& schema,
                         const Cube& root) {
@@ -50,7 +52,7 @@ LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const
         std::memcpy(record, &sample.points.records[size_t{index} * from.stride], from.stride);
         const QuickSurface& surface = sample.surface[index];
         if (normal) io::store(record + normal->offset, encode_normal(surface.normal));
-        if (area) io::store(record + area->offset, encode_area(surface.area, root.size));
+        if (area) io::store(record + area->offset, encode_area(surface.area, kFace));
         points.codes.push_back(order[i].code);
         points.areas.push_back(area ? surface.area : 0.0f);
     }
@@ -162,9 +164,8 @@ void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte
     for (size_t at = 0; at < shown.size(); at += schema.stride) {
         const std::byte* record = &shown[at];
         root->points.codes.push_back(header.root.place(io::position_of(schema, record)).code());
-        root->points.areas.push_back(area ? static_cast<float>(decode_area(
-                                                io::load<uint16_t>(record + area->offset), header.root.size))
-                                          : 0.0f);
+        const auto code = area ? io::load<uint16_t>(record + area->offset) : kNoArea;
+        root->points.areas.push_back(static_cast<float>(decode_area(code, kFace)));
     }
     while (!roots.empty() && roots.back()->node.key.level > node.key.level &&
            roots.back()->node.key.parent() == node.key)

@@ -75,6 +75,7 @@ void add(Moments& moments, const glm::vec3& p) {
 
 std::vector<QuickSurface> quick_surface(std::span<const glm::dvec3> points, const Cube& root,
                                         std::span<const std::optional<glm::dvec3>> stations) {
+    const double scale = 1 / root.size;  // floats hold the squares of any cloud's distances in root cubes
     const Cube shifted{root.min - glm::dvec3(kShift * root.size), root.size * (1 + 2 * kShift)};
     const std::array<Curve, 2> curves = {Curve(points, root), Curve(points, shifted)};
     std::vector<QuickSurface> surface(points.size());
@@ -89,7 +90,7 @@ std::vector<QuickSurface> quick_surface(std::span<const glm::dvec3> points, cons
                              to = std::min(here + kWindow + 1, points.size());
                 for (size_t at = from; at < to; ++at) {
                     const uint32_t other = curve.order[at].index;
-                    if (other != i) nearest.add(other, glm::vec3(points[other] - points[i]));
+                    if (other != i) nearest.add(other, glm::vec3((points[other] - points[i]) * scale));
                 }
             }
             const auto found = nearest.found();

@@ -14,7 +14,7 @@ namespace lucarne::octree {
 /// A point's normal and share of the surface, as good as a sample shows them.
 struct QuickSurface {
     glm::vec3 normal{0.0f};  ///< unit; zero where there is no plane or nothing says which way it faces
-    float area = 0;          ///< unit squared; kStrayArea: hangs in the air
+    float area = 0;          ///< in faces of the root cube; kStrayArea: hangs in the air
 };
 
 /// Of every point from its nearest neighbours among the points near it along two Morton curves, one of them

@@ -79,7 +79,7 @@ void GrowingSource::link() {
 /// A loose point.
 struct Item {
     uint64_t code = 0;
-    float area = 0;
+    float area = 0;  ///< in faces of the root cube
     uint8_t first_level = 0;  ///< the cells of this level and deeper have it as their first point
     const std::byte* record = nullptr;
 };
@@ -87,7 +87,7 @@ struct Item {
 /// What a call of build() tells the node above.
 struct Part {
     uint64_t points = 0;  ///< in the cube that no ancestor shows; 0: the node is not there
-    double surface = 0;   ///< in the cube
+    double surface = 0;   ///< in the cube, in faces of the root cube
 };
 
 class Top {
@@ -177,7 +177,7 @@ void Top::emit(const NodeInfo& node, size_t first, size_t last, double surface, 
     NodeInfo info = node;
     info.count = data->count;
     info.payload_bytes = static_cast<uint32_t>(data->records.size());
-    info.area_floor = area_floors(inherited, own, surface);
+    info.area_floor = stored_floors(area_floors(inherited, own, surface), root_size_);
     source_.add(info, {std::move(data), {}});
 }
 
@@ -225,7 +225,7 @@ Part Top::build(const NodeKey& key, size_t first, size_t last, size_t first_root
         std::vector<uint64_t> codes;
         for (size_t i = first; i < last; ++i)
             areas.push_back(items_[i].area), codes.push_back(items_[i].code);
-        part = {last - first - above, surface_of(areas, codes, key.level, root_size_)};
+        part = {last - first - above, surface_of(areas, codes, key.level, 1)};
     } else {
         whole = false;
         part = build_children(info, first, last, first_root, last_root);

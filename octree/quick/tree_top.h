@@ -17,7 +17,7 @@ namespace lucarne::octree {
 struct LoosePoints {
     std::vector<std::byte> records;  ///< in the schema of the cache
     std::vector<uint64_t> codes;
-    std::vector<float> areas;  ///< 0: unknown
+    std::vector<float> areas;  ///< in faces of the root cube; 0: unknown
 };
 
 /// A node whose descendants are finished; its points stay loose until its parent is there.

@@ -5,6 +5,8 @@
 
 #include <glm/common.hpp>
 
+#include "octree/normals/area_floor.h"
+
 namespace lucarne::octree {
 namespace {
 
@@ -65,11 +67,10 @@ class JoinedSource final : public NodeSource {
         const Part part{source, static_cast<uint32_t>(nodes_.size()),
                         static_cast<uint32_t>(header_.scans.size()),
                         own.metres_per_unit / header_.metres_per_unit};
-        const auto area_scale = static_cast<float>(part.scale * part.scale);
         for (NodeInfo node : source->nodes()) {
             if (node.parent != kNoNode) node.parent += part.first_node;
             if (node.first_child != kNoNode) node.first_child += part.first_node;
-            for (float& floor : node.area_floor) floor *= area_scale;
+            node.area_floor = stored_floors(node.area_floor, part.scale);
             nodes_.push_back(node);
         }
         if (parts_.empty()) header_.schema = own.schema;

@@ -64,6 +64,12 @@ const Extreme kExtremes[] = {
          Random random(3, i);
          return i ? 1e-3 * glm::dvec3(random.uniform(), random.uniform(), random.uniform()) : glm::dvec3(1e4);
      }},
+    {"TwoPointsFarBeyondTheStars", 2, [](uint64_t i) { return glm::dvec3(i ? 1e30 : 0.0); }},
+    {"AStrayFarBeyondTheStars", 10'001,
+     [](uint64_t i) { return i == 10'000 ? glm::dvec3(1e30, -1e30, 1e30) : on_a_statue(i); }},
+    {"AStatueOfTheLargestSize", 100'000, [](uint64_t i) { return 1e30 * on_a_statue(i); }},
+    {"AStatueOfNoSize", 100'000, [](uint64_t i) { return 1e-30 * on_a_statue(i); }},
+    {"TwoPointsAsNearAsDoublesTell", 2, [](uint64_t i) { return glm::dvec3(i ? 5e-324 : 0.0); }},
 };
 
 class ExtremeBuild : public ::testing::TestWithParam<std::tuple<Extreme, NormalsMode>> {};

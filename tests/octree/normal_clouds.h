@@ -28,7 +28,7 @@ class MemoryChunks final : public ChunkAccess {
         glm::dvec3 low(INFINITY), high(-INFINITY);
         for (const auto& p : cloud.points) low = glm::min(low, p), high = glm::max(high, p);
         const glm::dvec3 size =
-            glm::max((high - low) * 1.0001, glm::dvec3(1e-9)) / static_cast<double>(parts);
+            glm::max((high - low) * 1.0001, glm::dvec3(1e-300)) / static_cast<double>(parts);
         for (uint32_t z = 0; z < parts; ++z)
             for (uint32_t y = 0; y < parts; ++y)
                 for (uint32_t x = 0; x < parts; ++x)

@@ -149,6 +149,66 @@ TEST(Normals, AnIsolatedPointIsMarkedAndDoesNotLoadTheWorld) {
     }
 }
 
+TEST(Normals, CloudsOfAnyExtentHaveTheSameNormals) {
+    const Cloud cloud = sphere(5000, 0.005);
+    const Estimate usual = estimate(cloud, {}, 2);
+    for (const double size : {1e-290, 1e-154, 1e-30, 1e-19, 1e19, 1e20, 1e30, 1e38, 1e150, 1e300}) {
+        Cloud scaled = cloud;
+        for (auto& p : scaled.points) p *= size;
+        for (const auto search : {NeighbourSearch::leaf, NeighbourSearch::flann}) {
+            NormalOptions options;
+            options.search = search;
+            options.area_unit = size;
+            const Estimate found = estimate(scaled, options, 2);
+            double worst = 1;
+            size_t marked = 0;
+            for (size_t i = 0; i < cloud.points.size(); ++i) {
+                marked += found.normals[i] == glm::vec3(0.0f) && usual.normals[i] != glm::vec3(0.0f);
+                if (found.normals[i] != glm::vec3(0.0f) && usual.normals[i] != glm::vec3(0.0f))
+                    worst = std::min(worst, double{glm::dot(found.normals[i], usual.normals[i])});
+            }
+            EXPECT_GT(worst, 0.999) << size;
+            EXPECT_LT(marked, 5u) << size;
+            EXPECT_NEAR(score(scaled, found).area, 4 * kPi, 0.5) << size;
+        }
+    }
+}
+
+TEST(Normals, AStrayAtAnyDistanceLeavesTheOthersTheirNormals) {
+    for (const double distance : {1e15, 1e20, 1e30}) {
+        Cloud cloud = sphere(5000);
+        cloud.points.push_back(glm::dvec3(distance));
+        cloud.normals.push_back({0, 0, 1});
+        const Estimate found = estimate(cloud);
+        EXPECT_EQ(found.normals.back(), glm::vec3(0.0f)) << distance;
+        const Score s = score(cloud, found);
+        EXPECT_LT(s.marked, 0.01) << distance;
+        EXPECT_LT(s.angle, 3) << distance;
+    }
+}
+
+TEST(Normals, PlacesTooNearToEachOtherForTheExtentEndWithoutNormals) {
+    for (const uint32_t parts : {1u, 4u}) {
+        Cloud cloud;  // a cluster of 10^-40 of the extent
+        for (const glm::dvec3& p : plane(3000).points) cloud.points.push_back(1e-40 * p);
+        cloud.points.push_back(glm::dvec3(1.0));
+        cloud.normals.resize(cloud.points.size(), glm::dvec3(0, 0, 1));
+        const Estimate found = estimate(cloud, {}, parts);
+        for (const float area : found.areas) EXPECT_TRUE(area >= 0 && std::isfinite(area));
+    }
+}
+
+TEST(Normals, CoordinatesThatAreNoNumbersAreRefused) {
+    for (const double bad : {static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+        Cloud cloud = plane(100);
+        const MemoryChunks chunks(cloud, 1);
+        cloud.points[50].y = bad;
+        const auto found = estimate_normals(chunks, {}, [](size_t, ChunkNormals&&) { return Result<void>(); });
+        ASSERT_FALSE(found);
+        EXPECT_NE(found.error().line().find("not a finite number"), std::string::npos);
+    }
+}
+
 /// The share of points whose result differs from that of the cloud in one piece.
 double changed(const Estimate& a, const Estimate& b) {
     size_t different = 0;
@@ -236,8 +296,9 @@ TEST(Normals, ReportsBadArgumentsCoordinatesAndReadErrors) {
     NormalOptions options;
     options.neighbours = 2;
     EXPECT_EQ(estimate_normals(MemoryChunks(cloud, 1), options, ignore).error().kind, ErrorKind::arguments);
-    cloud.points[7].x = 1e200;
-    EXPECT_EQ(estimate_normals(MemoryChunks(cloud, 1), {}, ignore).error().kind, ErrorKind::input_rejected);
+    const MemoryChunks chunks(cloud, 1);
+    cloud.points[7].x = NAN;
+    EXPECT_EQ(estimate_normals(chunks, {}, ignore).error().kind, ErrorKind::input_rejected);
     cloud.points[7].x = 0;
     const auto full = [](size_t, ChunkNormals&&) -> Result<void> { return failed("x.luc", "disk full"); };
     EXPECT_EQ(estimate_normals(MemoryChunks(cloud, 1), {}, full).error().why, "disk full");
