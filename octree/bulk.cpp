@@ -23,9 +23,18 @@ constexpr size_t kMostLoaded = 64;
 constexpr uint32_t kFineLevel = 6;  ///< whose cubes are told by their place alone
 constexpr uint32_t kPointsOfANode = 64;
 
+/// Places in a node that a device tells apart, a side (gi::kFractionSteps), and how many the bulk must span to
+/// be seen.
+constexpr double kNodeSteps = 1 << 16, kLeastSteps = 256;
+
 struct Weighted {
     glm::dvec3 low, high;
     double points;
+};
+
+struct Parts {
+    std::vector<Weighted> all;
+    double coarsest = 0;  ///< the largest step between places, of nodes that hold more than strays
 };
 
 /// The place on an axis that `share` of the points are below.
@@ -50,14 +59,15 @@ uint32_t deepest(std::span<const NodeInfo> nodes) {
 
 /// What divides the points: leaves, and the nodes of the deepest level with all below them. What nodes above
 /// hold is an even sample of space, in which strays would weigh as much as rooms.
-std::vector<Weighted> parts_of(const NodeSource& source) {
+Parts parts_of(const NodeSource& source) {
     const auto nodes = source.nodes();
     const uint32_t level = deepest(nodes);
     std::vector<uint32_t> coarse;
-    std::vector<Weighted> parts;
+    Parts parts;
+    const double strays = kStrays * static_cast<double>(source.header().points);
     const auto add_cube = [&](uint32_t i) {
         const Cube cube = source.cube(i);
-        parts.push_back({cube.min, cube.min + cube.size, static_cast<double>(nodes[i].subtree_count)});
+        parts.all.push_back({cube.min, cube.min + cube.size, static_cast<double>(nodes[i].subtree_count)});
     };
     for (uint32_t i = 0; i < nodes.size(); ++i) {
         const bool leaf = !nodes[i].child_mask;
@@ -72,12 +82,14 @@ std::vector<Weighted> parts_of(const NodeSource& source) {
         const auto data = n < kMostLoaded ? source.load(coarse[n]) : Result<NodeData>(NodeData{});
         const uint32_t count = data ? std::min(data->count, kPointsOfANode) : 0;
         if (count == 0) add_cube(coarse[n]);
+        if (nodes[coarse[n]].count > strays)
+            parts.coarsest = std::max(parts.coarsest, source.cube(coarse[n]).size / kNodeSteps);
         const SourcePart part = source.part_of(coarse[n]);
         const io::Schema& schema = part.header.schema;
         for (uint32_t k = 0; k < count; ++k) {
             const glm::dvec3 p =
                 io::position_of(schema, &data->records[size_t{k} * schema.stride]) * part.scale;
-            parts.push_back({p, p, static_cast<double>(nodes[coarse[n]].count) / count});
+            parts.all.push_back({p, p, static_cast<double>(nodes[coarse[n]].count) / count});
         }
     }
     return parts;
@@ -92,13 +104,14 @@ std::array<glm::dvec3, 2> bulk_of(const NodeSource& source) {
     auto parts = parts_of(source);
     glm::dvec3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = quantile(parts, axis, false, kStrays);
-        high[axis] = quantile(parts, axis, true, 1 - kStrays);
+        low[axis] = quantile(parts.all, axis, false, kStrays);
+        high[axis] = quantile(parts.all, axis, true, 1 - kStrays);
     }
     low = glm::max(low, header.min);
     high = glm::min(high, header.max);
     const double all = glm::length(header.max - header.min), bulk = glm::length(high - low);
-    return bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false for what is no number
+    const bool seen = bulk >= kLeastSteps * parts.coarsest;
+    return seen && bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false for what is no number
 }
 
 }  // namespace lucarne::octree

@@ -14,14 +14,14 @@ namespace {
 using lucarne::test::ComputedSource;
 using lucarne::test::TempFolder;
 
-/// A room of 8 x 8 x 3, with one of `every` points up to a kilometre away; 0: none.
-std::array<glm::dvec3, 2> bulk_with_strays(uint64_t points, uint64_t every) {
+/// A room of 8 x 8 x 3, with one of `every` points up to `far` away; 0: none.
+std::array<glm::dvec3, 2> bulk_with_strays(uint64_t points, uint64_t every, double far = 1000) {
     const TempFolder folder;
-    const ComputedSource source(io::Schema{}, points, [every](uint64_t index, std::byte* record) {
+    const ComputedSource source(io::Schema{}, points, [every, far](uint64_t index, std::byte* record) {
         Random random(7, index);
         glm::dvec3 p(8 * random.uniform(), 8 * random.uniform(), index % 2 ? 0 : 3);
         if (every && index % every == 0)
-            p = 1000.0 * glm::dvec3(random.uniform() - .5, random.uniform() - .5, random.uniform());
+            p = far * glm::dvec3(random.uniform() - .5, random.uniform() - .5, random.uniform());
         io::store(record, p);
     });
     BuildOptions options;
@@ -49,6 +49,13 @@ TEST(Bulk, IsEverythingWhereNothingStraysOrTooManyDo) {
     EXPECT_NEAR(high.z - low.z, 3, .01);
     const auto scattered = bulk_with_strays(300'000, 3);
     EXPECT_GT(scattered[1].x - scattered[0].x, 900);
+}
+
+TEST(Bulk, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
+    const auto [low, high] = bulk_with_strays(9'999, 0);
+    EXPECT_LT(high.x - low.x, 9);
+    const auto far = bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as everything
+    EXPECT_GT(far[1].x - far[0].x, 1e6);
 }
 
 TEST(Bulk, OfOnePointIsThatPoint) {

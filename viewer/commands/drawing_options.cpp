@@ -46,6 +46,19 @@ bool all_have_normals(const octree::NodeSource& source) {
     });
 }
 
+/// Lights, cameras and the device's floats are made for scans of rooms up to those of countries.
+void warn_of_extent(const octree::SourceHeader& header) {
+    constexpr double kLeast = 0.01, kMost = 1e6;  // m
+    const glm::dvec3 extent = (header.max - header.min) * header.metres_per_unit;
+    const double widest = std::max({extent.x, extent.y, extent.z});
+    if (widest >= kLeast && widest <= kMost) return;
+    if (widest > 0)
+        log::warn(
+            "the points span {:.3g} m: pictures are right from 1 cm to 1000 km; convert with the right --unit, or "
+            "remove stray points with lucarne delete",
+            widest);
+}
+
 }  // namespace
 
 void add_drawing_options(CLI::App& command, DrawingOptions& options) {
@@ -189,6 +202,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
         log::warn(
             "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
             "convert with --normals estimate for correct light");
+    warn_of_extent(source->header());
     LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));
     LUCARNE_TRY(pipeline->set_engine(options.render.engine));
     pipeline->set_settings(drawing.preset.engine);
