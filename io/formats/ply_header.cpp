@@ -45,7 +45,7 @@ class HeaderParser {
             LUCARNE_ASSIGN(auto line, input_.line(header_.line_end));
             if (!line) return rejected(name_, "ends inside its PLY header, or the header is over 1 MiB");
             std::string_view rest = *line;
-            const auto word = next_word(rest);
+            const std::string word = lower(next_word(rest));
             if (number == 1 || word.empty()) continue;  // "ply", recognised before
             if (word == "end_header") break;
             if (word == "comment" || word == "obj_info") {
@@ -61,7 +61,7 @@ class HeaderParser {
             } else if (word == "property") {
                 understood = property(rest);
             } else {
-                understood = wrong(fmt::format("the word '{}' is not known", word));
+                understood = wrong(fmt::format("the word '{}' is not known", printable(word)));
             }
             if (!understood)
                 return rejected(name_,
@@ -93,7 +93,7 @@ class HeaderParser {
     }
 
     Result<void> format(std::string_view rest) {
-        const auto word = next_word(rest);
+        const std::string word = lower(next_word(rest));
         const auto version = next_word(rest);
         if (word == "ascii")
             header_.encoding = Encoding::ascii;
@@ -110,6 +110,8 @@ class HeaderParser {
     Result<void> element(std::string_view rest) {
         Element e;
         e.name = std::string(next_word(rest));
+        for (const std::string_view known : {"vertex", "face"})
+            if (same_letters(e.name, known)) e.name = known;
         const auto count = parse_number<uint64_t>(next_word(rest));
         if (e.name.empty() || !count) return wrong("an element needs a name and a count");
         if (header_.elements.size() == kMostElements) return wrong("there are too many elements");
@@ -127,12 +129,12 @@ class HeaderParser {
         auto& properties = header_.elements.back().properties;
         if (properties.size() == kMostProperties) return wrong("the element has too many properties");
         Property p;
-        auto word = next_word(rest);
+        std::string word = lower(next_word(rest));
         if (word == "list") {
-            p.count = type_of(next_word(rest));
+            p.count = type_of(lower(next_word(rest)));
             if (!p.count || *p.count == ScalarType::f32 || *p.count == ScalarType::f64)
                 return wrong("a list needs an integer type for its length");
-            word = next_word(rest);
+            word = lower(next_word(rest));
         }
         const auto type = type_of(word);
         if (!type) return wrong(fmt::format("the type '{}' is not known", word));
@@ -157,7 +159,7 @@ class HeaderParser {
         header_.vertex = static_cast<size_t>(found - all.begin());
         for (const std::string_view axis : {"x", "y"})
             if (std::none_of(found->properties.begin(), found->properties.end(),
-                             [&](const Property& p) { return p.name == axis && !p.count; }))
+                             [&](const Property& p) { return same_letters(p.name, axis) && !p.count; }))
                 return rejected(name_, fmt::format("has vertices without a property {}", axis));
         return {};
     }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "io/formats/format.h"
+#include "io/formats/text.h"
 
 namespace lucarne::io::ply {
 namespace {
@@ -12,6 +13,12 @@ using Triple = std::array<std::string_view, 3>;
 constexpr std::array<Triple, 3> kColorNames = {
     {{"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}}};
 constexpr std::array<Triple, 2> kNormalNames = {{{"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}}};
+
+constexpr std::array kKnown = {names::intensity,         names::classification,      names::return_number,
+                               names::number_of_returns, names::scan_direction,      names::edge_of_flight_line,
+                               names::class_flags,       names::scanner_channel,     names::scan_angle_rank,
+                               names::scan_angle,        names::user_data,           names::point_source_id,
+                               names::gps_time,          names::nir};
 
 class LayoutMaker {
  public:
@@ -31,7 +38,7 @@ class LayoutMaker {
         for (size_t i = 0; i < properties_.size(); ++i) {
             if (done_[i] || properties_[i].name.empty()) continue;
             if (group(i, kColorNames, names::color) || group(i, kNormalNames, names::normal)) continue;
-            std::string name = properties_[i].name;
+            std::string name = attribute_name(i);
             // These names promise a shape that a single property does not have.
             for (const auto reserved : {names::color, names::normal, names::normal_oct, names::area})
                 if (name == reserved) name.insert(0, "ply_");
@@ -43,10 +50,14 @@ class LayoutMaker {
     }
 
  private:
-    size_t index(std::string_view name) const {
-        const auto found = std::find_if(properties_.begin(), properties_.end(),
-                                        [&](const Property& p) { return p.name == name; });
-        return static_cast<size_t>(found - properties_.begin());
+    size_t index(std::string_view name) const { return index_of_name(properties_, name, &Property::name); }
+
+    /// What a property is called as an attribute: one of io::names, whatever the case of its letters.
+    std::string attribute_name(size_t property) const {
+        const std::string& theirs = properties_[property].name;
+        for (const std::string_view ours : kKnown)
+            if (same_letters(theirs, ours) && index(ours) == property) return std::string(ours);
+        return theirs;
     }
 
     void position() {
@@ -90,7 +101,10 @@ class LayoutMaker {
         if (layout_.schema.find(name)) return false;
         for (const Triple& triple : spellings) {
             // Of thousands of properties few are looked for among all.
-            if (std::find(triple.begin(), triple.end(), properties_[first].name) == triple.end()) continue;
+            if (std::ranges::none_of(triple, [&](auto name_of_one) {
+                    return same_letters(name_of_one, properties_[first].name);
+                }))
+                continue;
             const std::array<size_t, 3> members = {index(triple[0]), index(triple[1]), index(triple[2])};
             if (std::find(members.begin(), members.end(), first) == members.end()) continue;
             if (*std::max_element(members.begin(), members.end()) == properties_.size()) continue;

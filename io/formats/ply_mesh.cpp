@@ -23,11 +23,15 @@ constexpr size_t kNowhere = ~size_t{0};
 
 /// The index of a property, of these names the first that is there.
 size_t property_of(const Element& element, std::initializer_list<std::string_view> names, bool list) {
+    size_t alike = kNowhere;  // but for the case of its letters
     for (const auto name : names)
-        for (size_t i = 0; i < element.properties.size(); ++i)
-            if (element.properties[i].name == name && element.properties[i].count.has_value() == list)
-                return i;
-    return kNowhere;
+        for (size_t i = 0; i < element.properties.size(); ++i) {
+            const Property& p = element.properties[i];
+            if (p.count.has_value() != list || !same_letters(p.name, name)) continue;
+            if (p.name == name) return i;
+            alike = std::min(alike, i);
+        }
+    return alike;
 }
 size_t indices_of(const Element& element) {
     return property_of(element, {"vertex_indices", "vertex_index"}, true);

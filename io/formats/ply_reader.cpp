@@ -303,7 +303,7 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> f
 
 bool is_ply(std::string_view head) {
     head = without_mark(head);
-    return head.starts_with("ply") && head.size() > 3 && (is_blank(head[3]) || head[3] == '\n');
+    return head.size() > 3 && same_letters(head.substr(0, 3), "ply") && (is_blank(head[3]) || head[3] == '\n');
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 #include <optional>
 #include <string_view>
 
@@ -32,6 +34,35 @@ inline std::string_view next_word(std::string_view& line) {
     const auto word = line.substr(first, last - first);
     line.remove_prefix(last);
     return word;
+}
+
+/// ASCII letters in lower case.
+inline std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+/// Whether two words differ only in the case of ASCII letters.
+constexpr bool same_letters(std::string_view a, std::string_view b) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i)
+        if (small(a[i]) != small(b[i])) return false;
+    return true;
+}
+
+/// The index of what is called `name`; where nothing is, of the first whose name differs only in case; else the size.
+template <class List, class NameOf>
+size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
+    size_t alike = list.size();
+    for (size_t i = 0; i < list.size(); ++i) {
+        const std::string_view theirs = std::invoke(name_of, list[i]);
+        if (theirs == name) return i;
+        if (alike == list.size() && same_letters(theirs, name)) alike = i;
+    }
+    return alike;
 }
 
 /// Whether the float nearest to a decimal is that nearest to the double nearest to it: not where that double

@@ -73,6 +73,40 @@ class Body {
     bool big_;
 };
 
+TEST_F(Ply, TheCaseOfWordsAndPropertiesDoesNotMatter) {
+    const auto records = read(
+        "PLY\nFormat ASCII 1.0\nElement Vertex 2\nProperty Float X\nproperty FLOAT Y\nproperty float Z\n"
+        "property uchar Red\nproperty uchar Green\nproperty uchar BLUE\n"
+        "property float NX\nproperty float NY\nproperty float NZ\nproperty float Intensity\n"
+        "property float Own\nEnd_Header\n1 2 3 4 5 6 0 0 1 .5 7\n4 5 6 7 8 9 1 0 0 .25 8\n");
+    ASSERT_TRUE(records) << records.error().line();
+    ASSERT_EQ(records->count, 2u);
+    EXPECT_EQ(position(*records, 1), glm::dvec3(4, 5, 6));
+    EXPECT_EQ(value(*records, 0, names::color, 2), 6);
+    EXPECT_EQ(value(*records, 1, names::normal, 0), 1);
+    EXPECT_EQ(value(*records, 1, names::intensity), .25);
+    EXPECT_EQ(value(*records, 1, "Own"), 8) << "names that mean nothing here stay as they are";
+}
+
+TEST_F(Ply, OfPropertiesThatDifferInCaseTheUsualOneCounts) {
+    const auto records = read(header("ascii", "element vertex 1\nproperty float X\n" + kXyz +
+                                                  "property float Intensity\nproperty float intensity\n") +
+                              "9 1 2 3 4 5\n");
+    ASSERT_TRUE(records) << records.error().line();
+    EXPECT_EQ(position(*records, 0), glm::dvec3(1, 2, 3));
+    EXPECT_EQ(value(*records, 0, "X"), 9);
+    EXPECT_EQ(value(*records, 0, names::intensity), 5);
+    EXPECT_EQ(value(*records, 0, "Intensity"), 4);
+}
+
+TEST_F(Ply, FacesAreFoundWhateverTheCaseOfTheirNames) {
+    const auto scan = open(header("ascii", "element Vertex 3\n" + kXyz +
+                                               "element FACE 1\nproperty list uchar int Vertex_Indices\n") +
+                           "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    ASSERT_TRUE(scan) << scan.error().line();
+    EXPECT_THAT((*scan)->info().format, HasSubstr("mesh"));
+}
+
 TEST_F(Ply, AllEncodingsGiveTheSamePoints) {
     const std::string properties =
         "property uchar red\nproperty double z\nproperty list uchar short ignored\nproperty double "

@@ -86,13 +86,13 @@ void read_materials(std::string_view text, const std::filesystem::path& folder, 
         std::string_view rest = text.substr(0, end);
         text.remove_prefix(end == text.npos ? text.size() : end + 1);
         const auto word = next_word(rest);
-        if (word == "newmtl") {
+        if (same_letters(word, "newmtl")) {
             const auto [at, fresh] =
                 by_name.emplace(trimmed(rest), static_cast<uint32_t>(mesh.materials.size()));
             material = fresh ? &mesh.materials.emplace_back() : nullptr;
-        } else if (material && word == "Kd") {
+        } else if (material && same_letters(word, "Kd")) {
             material->color = color_of(rest);
-        } else if (material && word == "map_Kd") {
+        } else if (material && same_letters(word, "map_Kd")) {
             const auto name = texture_options(rest, *material);
             if (!name.empty()) material->texture = companions.texture(name, folder);
         }

@@ -42,6 +42,14 @@ std::optional<ScalarType> type_of(char letter, uint32_t size) {
     }
 }
 
+/// Entries and types are in upper case by the format; some writers use lower case.
+std::string upper(std::string_view word) {
+    std::string result(word);
+    for (char& c : result)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return result;
+}
+
 class HeaderParser {
  public:
     explicit HeaderParser(const std::shared_ptr<const InputFile>& file)
@@ -60,7 +68,7 @@ class HeaderParser {
                 header_.comments.emplace_back(rest);
                 continue;
             }
-            const auto key = next_word(rest);
+            const std::string key = upper(next_word(rest));
             if (key.empty()) continue;
             LUCARNE_TRY(entry(key, rest));
         }
@@ -89,7 +97,7 @@ class HeaderParser {
             names_.assign(words.begin(), words.end());
         } else if (key == "TYPE") {
             letters_.clear();
-            for (const auto word : words) letters_ += word.size() == 1 ? word[0] : '?';
+            for (const auto word : words) letters_ += word.size() == 1 ? upper(word)[0] : '?';
         } else if (key == "SIZE" || key == "COUNT") {
             auto& numbers = key == "SIZE" ? sizes_ : counts_;
             numbers.clear();
@@ -111,9 +119,9 @@ class HeaderParser {
             }
         } else if (key == "DATA") {
             const auto word = words.size() == 1 ? words[0] : std::string_view();
-            if (word == "ascii") encoding_ = Encoding::ascii;
-            if (word == "binary") encoding_ = Encoding::binary;
-            if (word == "binary_compressed") encoding_ = Encoding::compressed;
+            if (same_letters(word, "ascii")) encoding_ = Encoding::ascii;
+            if (same_letters(word, "binary")) encoding_ = Encoding::binary;
+            if (same_letters(word, "binary_compressed")) encoding_ = Encoding::compressed;
             if (!encoding_) return wrong(fmt::format("has unknown DATA '{}'", printable(word)));
         } else if (key != "VERSION") {
             return wrong(fmt::format("has an unknown entry '{}'", printable(key)));
@@ -141,10 +149,9 @@ class HeaderParser {
             header_.fields.push_back({names_[i], *type, count});
         }
         for (const std::string_view axis : {"x", "y", "z"}) {
-            const auto is_axis = [&](const Field& f) { return f.name == axis; };
-            const auto found = std::find_if(header_.fields.begin(), header_.fields.end(), is_axis);
-            if (found == header_.fields.end() || found->count != 1 ||
-                std::count_if(header_.fields.begin(), header_.fields.end(), is_axis) != 1)
+            const size_t found = index_of_name(header_.fields, axis, &Field::name);
+            if (found == header_.fields.size() || header_.fields[found].count != 1 ||
+                std::ranges::count(header_.fields, header_.fields[found].name, &Field::name) != 1)
                 return wrong(fmt::format("does not have one field {}", axis));
         }
         return {};

@@ -4,18 +4,23 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/text.h"
+
 namespace lucarne::io::pcd {
 namespace {
 
+bool has_alpha(const Field& field) {
+    return same_letters(field.name, "rgba");
+}
 bool is_packed_color(const Field& field) {
-    return (field.name == "rgb" || field.name == "rgba") && field.bytes() == 4 && field.count == 1;
+    return (same_letters(field.name, "rgb") || has_alpha(field)) && field.bytes() == 4 && field.count == 1;
 }
 
 /// The names of a field's values; empty for what is left out.
 std::vector<ply::Property> properties_of(const Field& field, bool packed) {
     std::vector<ply::Property> properties;
     if (packed)  // 0xAARRGGBB, little-endian
-        for (const char* name : {"blue", "green", "red", field.name == "rgba" ? "alpha" : ""})
+        for (const char* name : {"blue", "green", "red", has_alpha(field) ? "alpha" : ""})
             properties.push_back({name, ScalarType::u8, std::nullopt});
     else
         for (uint32_t i = 0; i < field.count; ++i)
@@ -80,7 +85,7 @@ Layout make_layout(const Header& header) {
                                place_of(layout.rows.schema, column[2]),
                                field->name,
                                {}};
-            if (field->name == "rgba") packed.alpha = place_of(layout.rows.schema, column[3]);
+            if (has_alpha(*field)) packed.alpha = place_of(layout.rows.schema, column[3]);
             layout.rows.fields.push_back(packed);
             column += 4;
         } else {

@@ -269,7 +269,7 @@ Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> f
 bool is_pcd(std::string_view head) {
     auto line = first_statement(head);
     const auto word = next_word(line);
-    return word == "VERSION" || word == "FIELDS" || without_mark(head).starts_with("# .PCD");
+    return same_letters(word, "VERSION") || same_letters(word, "FIELDS") || without_mark(head).starts_with("# .PCD");
 }
 
 }  // namespace
