@@ -1,13 +1,14 @@
 #include "io/core/error.h"
 
+#include "io/core/terminal.h"
+
 namespace lucarne {
 
 std::string Error::line() const {
-    std::string text = what;
-    if (!why.empty()) text += (text.empty() ? "" : ": ") + why;
-    if (!todo.empty()) text += "; " + todo;
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';  // one line, whatever a file is called
+    constexpr size_t kMost = 1000;  // bytes of each part: of what a file holds, some is enough to find it
+    std::string text = shown(what, kMost);
+    if (!why.empty()) text += (text.empty() ? "" : ": ") + shown(why, kMost);
+    if (!todo.empty()) text += "; " + shown(todo, kMost);
     return text;
 }
 

@@ -8,7 +8,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "io/core/error.h"
+#include "io/core/terminal.h"
 
 namespace lucarne::log {
 
@@ -43,18 +43,15 @@ spdlog::logger& logger() {
     return *instance;
 }
 
-/// As an error's line: names of files may hold control characters.
-std::string one_line(std::string_view text) {
-    return Error{ErrorKind::failed, std::string(text), "", ""}.line();
-}
+constexpr size_t kMostBytes = 2000;  ///< of a line: a file's names may be of any length
 
 }  // namespace
 
 void info(std::string_view text) {
-    logger().info("{}", one_line(text));
+    logger().info("{}", shown(text, kMostBytes));
 }
 void warn(std::string_view text) {
-    const std::string line = one_line(text);
+    const std::string line = shown(text, kMostBytes);
     const auto& said = said_by_thread();
     if (!said || said->is_new(line)) logger().warn("{}", line);
 }

@@ -1,5 +1,7 @@
 #include "io/core/progress.h"
 
+#include "io/core/terminal.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -24,7 +26,7 @@ std::string count_text(double n) {
 }  // namespace
 
 Progress::Progress(std::string label, uint64_t total, std::string unit)
-    : label_(std::move(label)), unit_(std::move(unit)), total_(total),
+    : label_(shown(label)), unit_(std::move(unit)), total_(total),
       start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {
     next_print_ms_ = terminal_ ? 100 : 10'000;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/core/log.h"
+#include "io/core/terminal.h"
 #include "io/formats/copc.h"
 #include "io/formats/format.h"
 #include "io/formats/las_extras.h"
@@ -25,25 +26,6 @@ std::string_view foreign_format(std::string_view head) {
     if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
     if (head.starts_with("PK\x03\x04") || head.starts_with("\x1f\x8b")) return "a compressed archive";
     return {};
-}
-
-/// How many bytes the first character takes; 0 where it is no valid UTF-8 (RFC 3629), or one that is not seen:
-/// control characters, ends of lines, marks that turn the direction of what follows.
-size_t shown_bytes(std::string_view text) {
-    const auto first = static_cast<unsigned char>(text[0]);
-    if (first < 0x80) return first >= 0x20 && first != 0x7f;
-    if (first < 0xc2 || first > 0xf4) return 0;
-    const size_t bytes = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-    if (text.size() < bytes) return 0;
-    uint32_t code = first & (0x7fu >> bytes);
-    for (const char c : text.substr(1, bytes - 1)) {
-        if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) return 0;
-        code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
-    }
-    constexpr std::array<uint32_t, 5> kLeast = {0, 0, 0xa0, 0x800, 0x10000};  // in so many bytes; C1 ends at 0xa0
-    const bool no_character = code < kLeast[bytes] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
-    const bool not_seen = (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-    return no_character || not_seen ? 0 : bytes;
 }
 
 }  // namespace

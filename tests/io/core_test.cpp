@@ -14,6 +14,7 @@
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
+#include "io/core/terminal.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne {
@@ -276,6 +277,32 @@ TEST(Options, BytesAreWrittenAsPeopleReadThem) {
     EXPECT_EQ(bytes_text(1023), "1023 B");
     EXPECT_EQ(bytes_text(1536), "1.5 KiB");
     EXPECT_EQ(bytes_text(uint64_t{3} << 40), "3.0 TiB");
+}
+
+TEST(Shown, HasNoControlCharactersAndIsValidUtf8) {
+    EXPECT_EQ(shown("Straße 日本 🙂"), "Straße 日本 🙂");
+    EXPECT_EQ(shown("\x1b[2J\r\n\t\x7f"), "?[2J????");
+    EXPECT_EQ(shown("a\xc2\x9b" "2Jb"), "a??2Jb") << "the control characters of 8 bits";
+    EXPECT_EQ(shown("a\xffz\xc3"), "a?z?") << "bytes that are no UTF-8";
+    EXPECT_EQ(shown("\xe2\x80\xae" "fdp.exe"), "???fdp.exe") << "the mark that turns the direction";
+    EXPECT_EQ(shown(""), "");
+}
+
+TEST(Shown, OfLongTextsTheMiddleIsLeftOutBetweenCharacters) {
+    EXPECT_EQ(shown("0123456789", 10), "0123456789");
+    EXPECT_EQ(shown("0123456789abcdef", 11), "012 ... def");
+    std::string text;
+    for (int i = 0; i < 1000; ++i) text += "日";
+    for (size_t most = 20; most < 40; ++most) {
+        const std::string part = shown(text, most);
+        EXPECT_LE(part.size(), most);
+        EXPECT_EQ(part, shown(part)) << most;
+    }
+}
+
+TEST(Errors, AreShortWhateverTheyQuote) {
+    const std::string noise(100'000, 'x');
+    EXPECT_LT((Error{ErrorKind::failed, noise, noise, noise}).line().size(), 4000u);
 }
 
 TEST(Errors, AreOneLineWhateverAFileIsCalled) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <string>
 
 namespace {
@@ -48,6 +49,23 @@ TEST(Structure, NoEngineIncludesAnother) {
                     EXPECT_FALSE(other != engine && starts_with(include, "gi/" + other + "/")) << entry.path() << " includes " << include;
         }
     }
+}
+
+/// Hostile names and texts reach a terminal only through io/core/terminal.h, which makes them harmless.
+TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
+    const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",
+                                           "viewer/main.cpp"};
+    const std::regex writes("^[^/]*(, std(out|err)\\)|\\(std(out|err)[,)]|std::cout|std::cerr|fmt::print|\\b(printf|puts|perror)\\()");
+    const std::filesystem::path root = LUCARNE_SOURCE_DIR;
+    for (const std::string& folder : kOrder)
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+            const auto extension = entry.path().extension();
+            if ((extension != ".cpp" && extension != ".h") || allowed.contains(entry.path().lexically_relative(root)))
+                continue;
+            std::ifstream in(entry.path());
+            for (std::string line; std::getline(in, line);)
+                EXPECT_FALSE(std::regex_search(line, writes)) << entry.path() << ": " << line;
+        }
 }
 
 }  // namespace

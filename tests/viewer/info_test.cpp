@@ -25,6 +25,37 @@ TEST(InfoCommand, ListsTheScansAndStationsOfAnE57File) {
     EXPECT_TRUE(info["images"].empty());
 }
 
+TEST(InfoCommand, WritesNoControlCharacterOfAFileOrItsNameToTheTerminal) {
+    const TemporaryFolder folder;
+    const std::string hostile = "\x1b]0;title\x07 \xc2\x9b" "2J \xff";
+    const auto is_clean = [](const std::string& output) {
+        for (size_t i = 0; i < output.size(); ++i) {
+            const auto byte = static_cast<unsigned char>(output[i]);
+            const bool eight_bits = byte == 0xc2 && i + 1 < output.size() && (output[i + 1] & 0xe0) == 0x80;
+            if ((byte < 0x20 && byte != '\n') || byte == 0x7f || byte == 0xff || eight_bits) return false;
+        }
+        return true;
+    };
+    const std::string ply = folder / (hostile + ".ply"), cut = folder / (hostile + "cut.ply"),
+                      xyz = folder / (hostile + ".xyz");
+    const std::string head = "ply\nformat ascii 1.0\ncomment " + hostile + "\nelement vertex 2\nproperty float x\n"
+                             "property float y\nproperty float z\nproperty float " + hostile + "q\nend_header\n";
+    std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                          "property float z\nproperty float \x1bq\nend_header\n1 2 3 4\n";
+    std::ofstream(cut) << head << "1 2 3";
+    std::ofstream(xyz) << "x y z \x1b[2J\n1 2 3 4\n5 6 7 8\n";
+    for (const std::string& path : {ply, cut, xyz, folder / (hostile + "missing")}) {
+        const auto outcome = lucarne("info '" + path + "'");
+        EXPECT_TRUE(is_clean(outcome.output)) << ::testing::PrintToString(outcome.output);
+    }
+    const auto both = lucarne("info '" + ply + "' '" + cut + "' '" + xyz + "'");
+    EXPECT_TRUE(is_clean(both.output)) << ::testing::PrintToString(both.output);
+    const std::string cache = folder / (hostile + ".luc");
+    ASSERT_EQ(lucarne("convert '" + ply + "' -o '" + cache + "'").code, 0);
+    for (const char* command : {"info", "verify"})
+        EXPECT_TRUE(is_clean(lucarne(command + (" '" + cache + "'")).output)) << command;
+}
+
 /// A number of what `lucarne info` says of a file.
 double info_number(const TemporaryFolder& folder, const std::string& arguments, const std::string& key) {
     const std::string json_file = folder / "number.json";

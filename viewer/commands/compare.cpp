@@ -16,6 +16,7 @@
 #include "gi/post/tone_map.h"
 #include "io/core/file.h"
 #include "io/core/json.h"
+#include "io/core/terminal.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
@@ -100,14 +101,14 @@ Result<Figures> figures(const Pictures& pictures, std::span<const float> flip,
 
 void print(const char* which, const Figures& f) {
     const auto& m = f.metrics;
-    fmt::print("{}: {} pixels, mean luminance {:.6g} against {:.6g} ({:+.2f} %)\n", which, m.pixels,
+    print_line("{}: {} pixels, mean luminance {:.6g} against {:.6g} ({:+.2f} %)", which, m.pixels,
                m.mean_luminance, m.reference_mean_luminance, 100 * m.luminance_error);
-    fmt::print(
+    print_line(
         "  relMSE {:.4g}, without the worst {} pixels {:.4g}, RMSE {:.4g}, p99 of the relative error {:.4g}, "
-        "FLIP {:.4g}\n",
+        "FLIP {:.4g}",
         m.rel_mse, m.trimmed_pixels, m.rel_mse_trimmed, m.rmse, m.p99, f.flip);
     if (f.halves)
-        fmt::print("  relMSE free of the reference's noise {:.4g} +- {:.2g}; the noise itself {:.2g}\n",
+        print_line("  relMSE free of the reference's noise {:.4g} +- {:.2g}; the noise itself {:.2g}",
                    f.halves->rel_mse, f.halves->standard_error, f.halves->reference_rel_mse);
 }
 
@@ -170,7 +171,7 @@ Result<void> compare(const CompareOptions& options) {
               at_edges);
         report["edges"].update(to_json(at_edges));
     } else {
-        fmt::print("no edges in the {}\n", source);
+        print_line("no edges in the {}", source);
     }
     if (!options.error_picture.empty()) LUCARNE_TRY(write_error_picture(options, pictures, flip));
     if (options.json.empty()) return {};

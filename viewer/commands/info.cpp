@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "io/core/file.h"
 #include "io/core/json.h"
 #include "io/core/options.h"
+#include "io/core/terminal.h"
 #include "io/formats/scan.h"
 #include "io/core/progress.h"
 #include "octree/cache.h"
@@ -103,19 +103,19 @@ void print(const json& described) {
     for (const auto& [name, value] : described.items()) {
         if (name == "unit_stated") continue;
         if (name == "min" || name == "max") {
-            fmt::print("{:<17} {}\n", name, coordinates_text(value));
+            print_line("{:<17} {}", name, coordinates_text(value));
             continue;
         }
         if (name == "unit" && assumed) {
-            fmt::print("{:<17} {} (assumed)\n", name, value.get<std::string>());
+            print_line("{:<17} {} (assumed)", name, value.get<std::string>());
             continue;
         }
         if (!value.is_array() || value.empty() || !value[0].is_object()) {
-            fmt::print("{:<17} {}\n", name, value.is_string() ? value.get<std::string>() : text_of(value));
+            print_line("{:<17} {}", name, value.is_string() ? value.get<std::string>() : text_of(value));
             continue;
         }
-        fmt::print("{}\n", name);
-        for (const auto& item : value) fmt::print("    {}\n", text_of(item));
+        print_line(name);
+        for (const auto& item : value) print_line("    {}", text_of(item));
     }
 }
 
@@ -128,7 +128,7 @@ Result<void> info(const Options& options) {
     for (const std::string& input : list.files) {
         auto described = describe(input, options);
         if (described) {
-            if (!all.empty()) fmt::print("\n");
+            if (!all.empty()) print_line("");
             print(*described);
             all.push_back(std::move(*described));
         } else {

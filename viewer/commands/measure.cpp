@@ -10,6 +10,7 @@
 
 #include "io/core/file.h"
 #include "io/core/log.h"
+#include "io/core/terminal.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/input.h"
@@ -92,7 +93,7 @@ Result<void> measure(const Options& options) {
         all.insert(all.end(), std::make_move_iterator(loaded.begin()), std::make_move_iterator(loaded.end()));
     }
     if (options.output.empty())
-        fmt::print("{}", measurements_text(all, units));
+        print_lines(measurements_text(all, units));
     else
         LUCARNE_TRY(save_measurements(options.output, all, units, options.overwrite));
     if (!options.json_file.empty())
