@@ -92,7 +92,7 @@ las::Vlr info_record(const Info& info) {
 Result<std::unique_ptr<NodeWriter>> NodeWriter::create(const std::filesystem::path& path,
                                                        const Schema& schema, const ScanInfo& info,
                                                        const WriteOptions& options, const Info& cube) {
-    LUCARNE_ASSIGN(auto target, las::make_target(path.string(), schema, info, options, true));
+    LUCARNE_ASSIGN(auto target, las::make_target(path.string(), schema, info, options, las::Container::copc));
     auto& records = target.header.vlrs;
     std::erase_if(records, [](const las::Vlr& vlr) { return vlr.user_id == kUser; });
     records.insert(records.begin(), info_record(cube));

@@ -21,9 +21,9 @@ namespace {
 constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
 
 /// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
-void choose_format(Header& header, const Schema& schema, bool from_las, bool compress) {
+void choose_format(Header& header, const Schema& schema, bool from_las, Container container) {
     const auto has = [&](std::string_view name) { return schema.find(name) != nullptr; };
-    bool extended = compress || has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
+    bool extended = container == Container::copc || has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
     if (from_las)
         extended = extended || extended_format(header.point_format);
     else if (!has(names::scan_angle_rank))  // not out of an older LAS file: let every class and return fit
@@ -226,7 +226,7 @@ bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
 }
 
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
-                           const WriteOptions& options, bool compress) {
+                           const WriteOptions& options, Container container) {
     const auto details = nlohmann::json::parse(info.details, nullptr, false);
     const bool from_las = details.is_object() && details.value("format", nlohmann::json()) == "las";
     Target target;
@@ -236,14 +236,14 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     } else {
         header.software = "Lucarne";
     }
-    header.compressed = compress;
+    header.compressed = container != Container::las;
     const bool was_extended = from_las && extended_format(header.point_format);
-    choose_format(header, schema, from_las, compress);
+    choose_format(header, schema, from_las, container);
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
     if (details.is_object()) state_merged(path, header, details, from_las);
     state_unit(path, header, info.metres_per_unit);
-    if (extended_format(header.point_format) && (compress || !was_extended)) prefer_wkt(path, header);
+    if (extended_format(header.point_format) && (header.compressed || !was_extended)) prefer_wkt(path, header);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));

@@ -36,6 +36,8 @@ class Converter {
     double rounded_ = 0;
 };
 
+enum class Container { las, laz, copc };
+
 struct Target {
     Header header;
     Schema schema;  ///< make_schema(header)
@@ -46,8 +48,8 @@ struct Target {
 /// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
 /// bytes (where it does not fit, the field gets what comes near: las_extras.h). Positions that are not
 /// integers yet get the lattice of `options`, else the decimals that its preview shows, else the finest its
-/// box allows. To be compressed (LAZ), point formats 6 to 8.
+/// box allows. COPC has point formats 6 to 8 only.
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
-                           const WriteOptions& options, bool compress);
+                           const WriteOptions& options, Container container);
 
 }  // namespace lucarne::io::las

@@ -135,7 +135,7 @@ Writer::Writer(OutputFile file, std::string path, Target target, uint32_t in_str
 
 Result<void> Writer::begin(uint32_t chunk_points) {
     if (target_.header.compressed) {
-        const auto compression = laz::layered_compression(target_.header, chunk_points);
+        const auto compression = laz::usual_compression(target_.header, chunk_points);
         target_.header.vlrs.push_back(laz::compression_record(compression));
         compressed_.emplace(file_, compression, target_.header.record_length);
     }
@@ -230,8 +230,8 @@ namespace {
 
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options,
-                                            bool compress) {
-    LUCARNE_ASSIGN(auto target, make_target(path.string(), schema, info, options, compress));
+                                            Container container) {
+    LUCARNE_ASSIGN(auto target, make_target(path.string(), schema, info, options, container));
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, options.overwrite));
     auto writer = std::make_unique<Writer>(std::move(file), path.string(), std::move(target), schema.stride);
     LUCARNE_TRY(writer->begin());
@@ -242,13 +242,13 @@ Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, c
 
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options) {
-    return create(path, schema, info, options, false);
+    return create(path, schema, info, options, Container::las);
 }
 
 Result<std::unique_ptr<PointWriter>> create_compressed(const std::filesystem::path& path,
                                                        const Schema& schema, const ScanInfo& info,
                                                        const WriteOptions& options) {
-    return create(path, schema, info, options, true);
+    return create(path, schema, info, options, Container::laz);
 }
 
 }  // namespace lucarne::io::las

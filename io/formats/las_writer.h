@@ -59,7 +59,7 @@ class Writer final : public PointWriter {
 /// See create_scan.
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options);
-/// LAZ, point formats 6 to 8.
+/// LAZ: the same header and records, compressed.
 Result<std::unique_ptr<PointWriter>> create_compressed(const std::filesystem::path& path,
                                                        const Schema& schema, const ScanInfo& info,
                                                        const WriteOptions& options);

@@ -116,9 +116,9 @@ TEST(LazCoder, NeverReadsBeyondItsBytesAndSaysSo) {
 /// pulses.
 class RestlessSource final : public PointSource {
  public:
-    RestlessSource(uint8_t format, uint64_t points, unsigned seed) {
+    RestlessSource(uint8_t format, uint64_t points, unsigned seed) : extended_(las::extended_format(format)) {
         las::Header header;
-        header.minor = 4;
+        header.minor = format < 6 ? 2 : 4;
         header.point_format = format;
         header.record_length = static_cast<uint16_t>(las::record_bytes(format));
         schema_ = las::make_schema(header);
@@ -156,13 +156,15 @@ class RestlessSource final : public PointSource {
     const std::vector<std::byte>& records() const { return records_; }
 
  private:
-    static uint32_t bits_of(std::string_view name) {
+    uint32_t bits_of(std::string_view name) const {
         if (name == names::return_number || name == names::number_of_returns || name == names::class_flags)
-            return 4;
+            return extended_ ? 4 : 3;
+        if (name == names::classification && !extended_) return 5;
         if (name == names::scanner_channel) return 2;
         return name == names::scan_direction || name == names::edge_of_flight_line ? 1 : 0;
     }
 
+    bool extended_;
     Schema schema_;
     ScanInfo info_;
     std::vector<std::byte> records_;
@@ -170,7 +172,7 @@ class RestlessSource final : public PointSource {
 
 TEST(LazWriter, WhatItWritesIsReadBackInItsOrderBitByBit) {
     const testing::TemporaryFolder folder;
-    for (const uint8_t format : {6, 7, 8})
+    for (const uint8_t format : {0, 1, 2, 3, 6, 7, 8})
         for (const uint64_t points : {1, 2, 3'000, 120'001}) {
             const RestlessSource source(format, points, format);
             const auto path = folder / "written.laz";
@@ -181,6 +183,8 @@ TEST(LazWriter, WhatItWritesIsReadBackInItsOrderBitByBit) {
             const auto opened = open_scan(path);
             ASSERT_TRUE(opened) << opened.error().line();
             EXPECT_EQ((*opened)->schema().attributes, source.schema().attributes);
+            EXPECT_THAT((*opened)->info().format,
+                        ::testing::EndsWith("point format " + std::to_string(format)));
             EXPECT_EQ((*opened)->info().declared_points, points);
             const auto records = read_all(**opened, 777);
             ASSERT_TRUE(records) << records.error().line();
@@ -226,13 +230,6 @@ class LazChannels : public ::testing::TestWithParam<int> {
     static uint32_t channel(uint64_t i) {
         return i < 80 ? i / 5 % 4 : i < 160 ? value(4 * i, 3) % 4 : 2;
     }
-    /// The compressed points of a file of one chunk.
-    static std::string chunk(const std::string& path) {
-        const std::string bytes = testing::read_bytes(path);
-        const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
-        const auto points = load<uint32_t>(b + 96);
-        return bytes.substr(points + 8, load<uint64_t>(b + points) - points - 8);
-    }
 };
 
 TEST_P(LazChannels, EveryValueIsThatOfItsPoint) {
@@ -268,20 +265,38 @@ TEST_P(LazChannels, EveryValueIsThatOfItsPoint) {
     }
 }
 
-TEST_P(LazChannels, WrittenAgainTheyAreTheSameBytesAsLaszips) {
+INSTANTIATE_TEST_SUITE_P(Formats, LazChannels, ::testing::Values(6, 7, 8),
+                         [](const auto& format) { return "Of" + std::to_string(format.param); });
+
+/// The compressed points of a file of one chunk.
+std::string chunk_of(const std::string& path) {
+    const std::string bytes = testing::read_bytes(path);
+    const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
+    const auto points = load<uint32_t>(b + 96);
+    return bytes.substr(points + 8, load<uint64_t>(b + points) - points - 8);
+}
+
+/// Files by LASzip: point formats 0 to 3 (tests/oracles/laz_items.py) and 6 to 8 (laz_channels.py).
+class LaszipFile : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(LaszipFile, WrittenAgainItHasTheSameBytesAndPointFormat) {
+    const std::string file = std::string(LUCARNE_SOURCE_DIR "/tests/io/") + GetParam() + ".laz";
     const testing::TemporaryFolder folder;
-    const auto scan = open_scan(file());
+    const auto scan = open_scan(file);
     ASSERT_TRUE(scan) << scan.error().line();
     const auto all = read_all(**scan);
     ASSERT_TRUE(all) << all.error().line();
     const auto writer = create_scan(folder / "again.laz", (*scan)->schema(), (*scan)->info(), {});
     ASSERT_TRUE(writer) << writer.error().line();
     ASSERT_TRUE((*writer)->write(all->bytes) && (*writer)->finish());
-    EXPECT_EQ(chunk(folder / "again.laz"), chunk(file()));
+    EXPECT_EQ((*open_scan(folder / "again.laz"))->info().format, (*scan)->info().format);
+    EXPECT_EQ(chunk_of(folder / "again.laz"), chunk_of(file));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, LazChannels, ::testing::Values(6, 7, 8),
-                         [](const auto& format) { return "Of" + std::to_string(format.param); });
+INSTANTIATE_TEST_SUITE_P(Formats, LaszipFile,
+                         ::testing::Values("items0", "items1", "items2", "items3", "channels6", "channels7",
+                                           "channels8"),
+                         [](const auto& file) { return file.param; });
 
 class LazFile : public ::testing::TestWithParam<const char*> {
  protected:

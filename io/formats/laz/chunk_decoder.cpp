@@ -3,73 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/formats/laz/color.h"
 #include "io/formats/laz/layered.h"
+#include "io/formats/laz/point_wise.h"
 
 namespace lucarne::io::laz {
 namespace {
-
-uint32_t record_bytes(const Compression& compression) {
-    uint32_t bytes = 0;
-    for (const ItemLayout& item : compression.items) bytes += item.bytes;
-    return bytes;
-}
-
-/// Point formats 0 to 3: all items of a point in one stream, one after the other.
-class PointWise {
- public:
-    PointWise(const Compression& compression, std::span<const std::byte> bytes)
-        : decoder_(bytes.subspan(record_bytes(compression))) {
-        const std::byte* first = bytes.data();
-        for (const ItemLayout& item : compression.items) {
-            switch (item.item) {
-                case Item::point10:
-                    point_.start(first);
-                    break;
-                case Item::gps_time:
-                    time_.emplace(true).start(load<uint64_t>(first));
-                    break;
-                case Item::color:
-                    color_.emplace();
-                    std::memcpy(last_color_.data(), first, sizeof last_color_);
-                    break;
-                default:
-                    extra_.assign(item.bytes, SymbolModel(256));
-                    last_extra_.assign(first, first + item.bytes);
-            }
-            first += item.bytes;
-        }
-    }
-
-    void decode(std::byte* to) {
-        point_.decode(decoder_, to);
-        to += Point10Decoder::kBytes;
-        if (time_) {
-            store(to, time_->decode(decoder_));
-            to += sizeof(uint64_t);
-        }
-        if (color_) {
-            last_color_ = color_->code(decoder_, last_color_, {});
-            std::memcpy(to, last_color_.data(), sizeof last_color_);
-            to += sizeof last_color_;
-        }
-        for (size_t i = 0; i < extra_.size(); ++i)
-            to[i] = last_extra_[i] =
-                static_cast<std::byte>(static_cast<uint32_t>(last_extra_[i]) + decoder_.symbol(extra_[i]));
-    }
-    bool failed() const { return decoder_.failed(); }
-    const std::byte* end() const { return decoder_.position(); }
-    bool at_end() const { return decoder_.at_end(); }
-
- private:
-    Decoder decoder_;
-    Point10Decoder point_;
-    std::optional<GpsTimeModel> time_;
-    std::optional<ColorModel> color_;
-    Color last_color_{};
-    std::vector<SymbolModel> extra_;
-    std::vector<std::byte> last_extra_;
-};
 
 auto cut_off(const std::string& file) {
     return rejected(file, "has compressed points that are cut off or damaged");
@@ -129,12 +67,12 @@ struct ChunkDecoder::State {
     uint32_t record_bytes = 0;
     const std::byte* begin = nullptr;
     std::span<const std::byte> first;  ///< the first point as it is; empty once it is given out
-    std::optional<PointWise> point_wise;
+    std::optional<PointWise<Decoder>> point_wise;
     std::optional<Layered<Decoder>> layered;
     const std::byte* layers_end = nullptr;
 
     bool failed() {
-        if (point_wise) return point_wise->failed();
+        if (point_wise) return point_wise->coder().failed();
         const auto layers = layered->layers();
         return std::any_of(layers.begin(), layers.end(),
                            [](const auto& layer) { return layer.changes && layer.coder.failed(); });
@@ -160,7 +98,7 @@ Result<ChunkDecoder> ChunkDecoder::create(const std::string& file, const Compres
         state->layers_end = layers.end;
         state->layered.emplace(compression, std::move(layers.layers), bytes.data());
     } else {
-        state->point_wise.emplace(compression, bytes);
+        state->point_wise.emplace(compression, Decoder(bytes.subspan(state->record_bytes)), bytes.data());
     }
     return ChunkDecoder(std::move(state));
 }
@@ -173,20 +111,20 @@ Result<void> ChunkDecoder::decode(uint64_t count, std::byte* records) {
         --count;
     }
     for (; count > 0; --count, records += state_->record_bytes)
-        state_->layered ? state_->layered->code(records) : state_->point_wise->decode(records);
+        state_->layered ? state_->layered->code(records) : state_->point_wise->code(records);
     if (state_->failed()) return cut_off(state_->file);
     return {};
 }
 
 bool ChunkDecoder::ends_well() const {
-    if (state_->point_wise) return state_->point_wise->at_end();
+    if (state_->point_wise) return state_->point_wise->coder().at_end();
     const auto layers = state_->layered->layers();
     return std::all_of(layers.begin(), layers.end(),
                        [](const auto& layer) { return !layer.changes || layer.coder.at_end(); });
 }
 
 uint64_t ChunkDecoder::consumed() const {
-    const std::byte* end = state_->layered ? state_->layers_end : state_->point_wise->end();
+    const std::byte* end = state_->layered ? state_->layers_end : state_->point_wise->coder().position();
     return static_cast<uint64_t>(end - state_->begin);
 }
 

@@ -1,21 +1,38 @@
 #include "io/formats/laz/chunk_encoder.h"
 
 #include "io/formats/laz/layered.h"
+#include "io/formats/laz/point_wise.h"
 
 namespace lucarne::io::laz {
+namespace {
 
-std::vector<std::byte> encode_chunk(const Compression& compression, std::span<const std::byte> records) {
-    uint32_t record_bytes = 0;
-    for (const ItemLayout& item : compression.items) record_bytes += item.bytes;
+using Records = std::span<const std::byte>;
+
+/// All but the first, which stands before the code as it is.
+template <class Coding>
+void code_rest(Coding& coding, Records records, size_t record_bytes) {
+    std::vector<std::byte> record(record_bytes);
+    for (size_t at = record_bytes; at < records.size(); at += record_bytes) {
+        std::memcpy(record.data(), &records[at], record_bytes);
+        coding.code(record.data());
+    }
+}
+
+std::vector<std::byte> encode_point_wise(const Compression& compression, Records records, size_t record_bytes) {
+    PointWise<Encoder> points(compression, Encoder(), records.data());
+    code_rest(points, records, record_bytes);
+    std::vector<std::byte> chunk(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
+    const auto code = points.coder().finish();
+    chunk.insert(chunk.end(), code.begin(), code.end());
+    return chunk;
+}
+
+std::vector<std::byte> encode_layered(const Compression& compression, Records records, size_t record_bytes) {
     const auto count = static_cast<uint32_t>(records.size() / record_bytes);
-    std::vector<std::byte> chunk(records.begin(), records.begin() + record_bytes);
+    std::vector<std::byte> chunk(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
     Layered<Encoder> layered(
         compression, std::vector<Layer<Encoder>>(Layered<Encoder>::layer_count(compression)), records.data());
-    std::vector<std::byte> record(record_bytes);
-    for (uint32_t i = 1; i < count; ++i) {
-        std::memcpy(record.data(), &records[size_t{i} * record_bytes], record_bytes);
-        layered.code(record.data());
-    }
+    code_rest(layered, records, record_bytes);
     const auto put = [&](uint32_t number) {
         chunk.resize(chunk.size() + sizeof number);
         store(chunk.data() + chunk.size() - sizeof number, number);
@@ -31,6 +48,14 @@ std::vector<std::byte> encode_chunk(const Compression& compression, std::span<co
     }
     chunk.insert(chunk.end(), layers.begin(), layers.end());
     return chunk;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_chunk(const Compression& compression, std::span<const std::byte> records) {
+    const size_t bytes = record_bytes(compression);
+    return compression.layered ? encode_layered(compression, records, bytes)
+                               : encode_point_wise(compression, records, bytes);
 }
 
 }  // namespace lucarne::io::laz

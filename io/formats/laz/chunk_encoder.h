@@ -6,7 +6,7 @@
 
 namespace lucarne::io::laz {
 
-/// One chunk of point formats 6 to 8, as it stands in a file.
+/// One chunk, as it stands in a file.
 std::vector<std::byte> encode_chunk(const Compression& compression, std::span<const std::byte> records);
 
 }  // namespace lucarne::io::laz

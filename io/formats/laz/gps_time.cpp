@@ -60,7 +60,11 @@ void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {
         const int32_t step = trains_[current_].step;
         const uint32_t ahead = trains_ahead(time);
         SymbolModel& model = step == 0 ? first_ : steps_;
-        const uint32_t full = step == 0 ? 1 : kFull;
+        if (unchanged_ && time == trains_[current_].time) {
+            encoder.symbol(model, step == 0 ? 0 : kFull);
+            return;
+        }
+        const uint32_t full = unchanged_ + (step == 0 ? 1 : kFull);
         if (ahead == trains_.size()) {
             encoder.symbol(model, full);
             return new_train(encoder, time);
@@ -68,19 +72,24 @@ void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {
         if (ahead == 0) {
             const int32_t by = *step_between(trains_[current_].time, time);
             if (step == 0) {
-                encoder.symbol(model, 0);
+                encoder.symbol(model, unchanged_);
                 return first_step(encoder, by);
             }
-            const auto count = static_cast<int32_t>(std::clamp(std::round(static_cast<double>(by) / step),
-                                                               -double{kMostBackward}, double{kMostSteps}));
-            const uint32_t symbol =
-                count < 0 ? kMostSteps - static_cast<uint32_t>(count) : static_cast<uint32_t>(count);
+            const uint32_t symbol = steps_symbol(by, step);
             encoder.symbol(model, symbol);
             return steps(encoder, symbol, by);
         }
         encoder.symbol(model, full + ahead);
         current_ = (current_ + ahead) & 3;
     }
+}
+
+uint32_t GpsTimeModel::steps_symbol(int32_t by, int32_t step) {
+    // In single precision, as LASzip computes it, so that its bytes come out.
+    const float steps = static_cast<float>(by) / static_cast<float>(step);
+    const float count = std::trunc(
+        std::clamp(steps + (steps < 0 ? -0.5f : 0.5f), -float{kMostBackward}, float{kMostSteps}));
+    return count < 0 ? kMostSteps + static_cast<uint32_t>(-count) : static_cast<uint32_t>(count);
 }
 
 std::optional<int32_t> GpsTimeModel::step_between(uint64_t from, uint64_t to) {

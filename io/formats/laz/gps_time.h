@@ -18,9 +18,12 @@ class GpsTimeModel {
         : unchanged_(tells_unchanged ? 1 : 0), first_(5 + unchanged_), steps_(kFull + 4 + unchanged_) {}
 
     void start(uint64_t time) { trains_[0].time = time; }
-    uint64_t decode(Decoder& decoder);
-    /// The inverse, for POINT14 alone: `time` is another than the last.
-    void encode(Encoder& encoder, uint64_t time);
+    /// The next time; what the decoder takes has no meaning. POINT14 encodes only times that change.
+    uint64_t code(Decoder& decoder, uint64_t = 0) { return decode(decoder); }
+    uint64_t code(Encoder& encoder, uint64_t time) {
+        encode(encoder, time);
+        return time;
+    }
 
  private:
     /// Symbols of the number of steps: 0 something else, 1 to 500 that many, 501 to 510 as many backward,
@@ -34,6 +37,8 @@ class GpsTimeModel {
         int32_t step = 0;
         uint32_t exceptions = 0;
     };
+    uint64_t decode(Decoder& decoder);
+    void encode(Encoder& encoder, uint64_t time);
     void advance(int32_t by) {
         Train& train = trains_[current_];
         train.time += static_cast<uint64_t>(int64_t{by});
@@ -48,6 +53,8 @@ class GpsTimeModel {
     void first_step(Coder& coder, int32_t by);
     template <class Coder>
     void steps(Coder& coder, uint32_t count, int32_t by);
+    /// The symbol of the number of steps that is nearest to `by`.
+    static uint32_t steps_symbol(int32_t by, int32_t step);
 
     uint32_t unchanged_;
     std::array<Train, 4> trains_{};

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "io/formats/laz/decoder.h"
+#include "io/formats/laz/encoder.h"
 #include "io/formats/laz/integers.h"
 #include "io/formats/laz/median.h"
 
@@ -25,12 +26,14 @@ class SparseModels {
 };
 
 /// The 20 bytes that point formats 0 to 3 share (LASzip item POINT10, version 2).
-class Point10Decoder {
+template <class Coder>
+class Point10Coder {
  public:
     static constexpr size_t kBytes = 20;
 
     void start(const std::byte* first);
-    void decode(Decoder& decoder, std::byte* record);
+    /// The next record, read or written.
+    void code(Coder& coder, std::byte* record);
 
  private:
     struct Point {
@@ -40,7 +43,10 @@ class Point10Decoder {
         uint16_t point_source;
     };
     static_assert(sizeof(Point) == kBytes);
-    void decode_changed(Decoder& decoder, uint32_t changed);
+    /// Which fields are not those of the last point.
+    uint32_t changes(const Point& next) const;
+    void code_changed(Coder& coder, const Point& next, uint32_t changed);
+    void code_place(Coder& coder, const Point& next, uint32_t context);
 
     Point last_{};
     std::array<Median5, 16> x_steps_, y_steps_;

@@ -216,12 +216,7 @@ void Point14Coder<Coder>::code_rest(Channel& channel, const Point& next, uint32_
             last.point_source = static_cast<uint16_t>(
                 channel.point_source.code(sources->coder, last.point_source, next.point_source));
     if (time_changes)
-        if (auto* times = layer(kTime, true)) {
-            if constexpr (Coder::kEncodes)
-                channel.time.encode(times->coder, last.time = next.time);
-            else
-                last.time = channel.time.decode(times->coder);
-        }
+        if (auto* times = layer(kTime, true)) last.time = channel.time.code(times->coder, next.time);
 }
 
 template class Point14Coder<Decoder>;

@@ -6,8 +6,6 @@ namespace lucarne::io::laz {
 namespace {
 
 constexpr size_t kFixedBytes = 34, kItemBytes = 6;
-enum : uint16_t { kNoCompressor = 0, kPointWise = 1, kPointWiseChunked = 2, kLayeredChunked = 3 };
-
 auto refused(const std::string& file, const std::string& why) {
     return rejected(file, why, "recompress it with LASzip 3, or decompress it to LAS");
 }
@@ -32,6 +30,12 @@ std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version) {
     return items;
 }
 
+uint32_t record_bytes(const Compression& compression) {
+    uint32_t bytes = 0;
+    for (const ItemLayout& item : compression.items) bytes += item.bytes;
+    return bytes;
+}
+
 Result<Compression> read_compression(const std::string& file, const las::Header& header) {
     const las::Vlr* record = header.find(kUser, kRecord);
     if (!record) return rejected(file, "has compressed points and no LASzip record that says how");
@@ -41,7 +45,7 @@ Result<Compression> read_compression(const std::string& file, const las::Header&
     const auto count = load<uint16_t>(data.data() + 32);
     if (coder != 0)
         return refused(file, fmt::format("is compressed with the unknown LASzip coder {}", coder));
-    if (compressor == kNoCompressor || compressor > kLayeredChunked)
+    if (compressor == kUncompressed || compressor > kLayeredChunked)
         return refused(file, fmt::format("is compressed with the unknown LASzip compressor {}", compressor));
     if (data.size() < kFixedBytes + count * kItemBytes || count == 0)
         return rejected(file, "has a LASzip record that is cut off");

@@ -11,6 +11,8 @@ inline constexpr std::string_view kUser = "laszip encoded";
 inline constexpr uint16_t kRecord = 22204;
 inline constexpr uint32_t kVariableChunks = UINT32_MAX;
 
+enum Compressor : uint16_t { kUncompressed = 0, kPointWise = 1, kPointWiseChunked = 2, kLayeredChunked = 3 };
+
 enum class Item : uint16_t {
     bytes = 0,
     point10 = 6,
@@ -39,6 +41,9 @@ struct Compression {
 
 /// The items of the header's point format and extra bytes.
 std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version);
+
+/// Of all items together.
+uint32_t record_bytes(const Compression& compression);
 
 /// What the record says, checked against the point format and the length of the records. Errors: no such
 /// record, another coder, a compressor or an item that is not read (its name is in the reason), items that

@@ -11,7 +11,7 @@
 namespace lucarne::io::laz {
 namespace {
 
-constexpr uint16_t kLayeredItems = 3, kLayeredChunked = 3;
+constexpr uint16_t kPointWiseItems = 2, kLayeredItems = 3;
 constexpr uint8_t kMajor = 3, kMinor = 4;  ///< of the LASzip that first wrote such files as these
 
 template <class T>
@@ -27,14 +27,17 @@ size_t side_by_side() {
 
 }  // namespace
 
-Compression layered_compression(const las::Header& header, uint32_t chunk_points) {
-    return {true, true, chunk_points, items_of(header, kLayeredItems)};
+Compression usual_compression(const las::Header& header, uint32_t chunk_points) {
+    const bool layered = las::extended_format(header.point_format);
+    return {true, layered, chunk_points, items_of(header, layered ? kLayeredItems : kPointWiseItems)};
 }
 
 las::Vlr compression_record(const Compression& compression) {
     las::Vlr record{std::string(kUser), kRecord, "LAZ compressed points", false, {}};
     std::vector<std::byte>& data = record.data;
-    put(data, kLayeredChunked);
+    put<uint16_t>(data, compression.layered    ? kLayeredChunked
+                        : compression.chunked ? kPointWiseChunked
+                                              : kPointWise);
     put<uint16_t>(data, 0);  // the arithmetic coder
     put(data, kMajor);
     put(data, kMinor);

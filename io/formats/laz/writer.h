@@ -5,9 +5,11 @@
 
 namespace lucarne::io::laz {
 
-/// Compression of point formats 6 to 8 in layers, and the record that says so.
 inline constexpr uint32_t kUsualChunk = 50'000;  ///< points; LASzip's own
-Compression layered_compression(const las::Header& header, uint32_t chunk_points = kUsualChunk);
+/// How a file is compressed: point formats 0 to 3 point by point (item version 2, which LASzip 2 reads as well), 6 to 8
+/// in layers (item version 3).
+Compression usual_compression(const las::Header& header, uint32_t chunk_points = kUsualChunk);
+/// The record that says so.
 las::Vlr compression_record(const Compression& compression);
 
 /// The points of a LAZ file, written behind what the file holds when it is made: the place of the chunk
