@@ -183,6 +183,17 @@ void warn_of_poses(const std::string& name, const e57::Document& document) {
                   document.scans.size());
 }
 
+/// E57 is metres by definition, whatever its coordinate system counts in.
+void warn_of_unit(const std::string& name, const e57::Document& document) {
+    const SystemUnits units = wkt_units(document.coordinate_system);
+    if (units.degrees)
+        log::warn("{}: its coordinate system counts in degrees, but E57 in metres; metres are taken", name);
+    else if (units.horizontal.value_or(1.0) != 1.0)
+        log::warn("{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
+                  "--unit if it does not",
+                  name, *units.horizontal);
+}
+
 Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
                                               const ReadOptions& options) {
     const std::string name = file->path().string();
@@ -192,6 +203,7 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> f
     LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
     e57.salvage = options.salvage;
     if (!options.quiet) warn_of_poses(name, e57.document);
+    if (!options.quiet && !options.metres_per_unit) warn_of_unit(name, e57.document);
     uint64_t constant = 0;
     for (e57::Scan& scan : e57.document.scans) {
         Result<e57::Section> section;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
+#include "io/formats/crs_registry.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -15,41 +16,25 @@ namespace {
 constexpr uint16_t kWktBit = 1 << 4;  // of the global encoding
 constexpr uint16_t kModelTypeKey = 1024, kLinearUnitsKey = 3076, kLinearUnitSizeKey = 3077;
 constexpr uint16_t kProjectedKey = 3072, kGeodeticKey = 2048, kGeoTextsRecord = 34737;
+constexpr uint16_t kVerticalKey = 4096, kVerticalUnitsKey = 4099;
 constexpr std::array<uint16_t, 3> kCitations = {3073, 1026, 2049};
+constexpr double kSameHeights = 1e-5;  ///< feet of the USA and of the world are the same for heights
 constexpr uint16_t kModelGeographic = 2, kUserDefined = 32767;
 
 bool plausible(double metres) {
     return metres > 1e-9 && metres < 1e9;
 }
 
-/// EPSG codes of units of length (EPSG registry, "units of measure").
-std::optional<double> epsg_unit(uint16_t code) {
-    switch (code) {
-        case 9001:
-            return 1.0;
-        case 9002:
-            return 0.3048;  // international foot
-        case 9003:
-            return 1200.0 / 3937.0;  // US survey foot
-        case 9005:
-            return 0.3047972654;  // Clarke's foot
-        case 9014:
-            return 1.8288;  // fathom
-        case 9030:
-            return 1852.0;  // nautical mile
-        case 9036:
-            return 1000.0;
-        case 9080:
-            return 0.304799510248;  // Indian foot
-        case 9084:
-            return 0.3047995;  // Indian foot of 1975
-        default:
-            return std::nullopt;
-    }
+/// The usual units of length are known by heart (EPSG registry, "units of measure").
+std::optional<double> unit_of_code(uint16_t code) {
+    if (code == 9001) return 1.0;
+    if (code == 9002) return 0.3048;           // international foot
+    if (code == 9003) return 1200.0 / 3937.0;  // US survey foot
+    return registered_unit(code);
 }
 
 struct GeoKeys {
-    std::optional<uint16_t> model, unit, projected, geodetic;
+    std::optional<uint16_t> model, unit, projected, geodetic, vertical, vertical_unit;
     std::array<std::string, 3> names;  ///< of the projected system, of all, of the geodetic system
     std::optional<double> unit_size;
 };
@@ -72,6 +57,8 @@ GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte
         const auto value = load<uint16_t>(&directory[at + 6]);
         if (id == kProjectedKey && location == 0) keys.projected = value;
         if (id == kGeodeticKey && location == 0) keys.geodetic = value;
+        if (id == kVerticalKey && location == 0) keys.vertical = value;
+        if (id == kVerticalUnitsKey && location == 0) keys.vertical_unit = value;
         for (size_t i = 0; i < kCitations.size(); ++i)
             if (id == kCitations[i] && location == kGeoTextsRecord)
                 keys.names[i] = citation(texts, value, load<uint16_t>(&directory[at + 4]));
@@ -89,35 +76,74 @@ std::span<const std::byte> doubles_of(const Header& header) {
     return doubles ? std::span<const std::byte>(doubles->data) : std::span<const std::byte>{};
 }
 
-}  // namespace
-
-std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directory,
-                                              std::span<const std::byte> doubles) {
-    const GeoKeys keys = geo_keys(directory, doubles);
-    if (keys.unit == kUserDefined && keys.unit_size && plausible(*keys.unit_size)) return keys.unit_size;
-    return keys.unit ? epsg_unit(*keys.unit) : std::nullopt;
+/// Whether the text counts, or the GeoTIFF keys beside it.
+bool text_counts(const Header& header) {
+    return (header.global_encoding & kWktBit) || !header.find(kProjectionUser, kGeoKeyRecord);
 }
 
-std::optional<double> stated_unit(const std::string& file, const Header& header) {
+Units units_of_text(std::string_view text) {
+    if (text.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == text.npos) return {};  // nothing is stated
+    Units units{wkt_units(text), {}};
+    if (units.known()) return units;
+    if (const auto understood = understood_units(text)) static_cast<SystemUnits&>(units) = *understood;
+    if (!units.known()) units.unknown = "its well-known text has none";
+    return units;
+}
+
+/// The unit of heights: its own key, else that of their system. Codes below 4096 and user-defined ones tell nothing.
+std::optional<double> vertical_unit(const GeoKeys& keys) {
+    if (keys.vertical_unit) return unit_of_code(*keys.vertical_unit);
+    if (!keys.vertical || *keys.vertical == kUserDefined) return std::nullopt;
+    const auto system = registered_units(*keys.vertical);
+    return system ? system->vertical : std::nullopt;
+}
+
+Units units_of_keys(const GeoKeys& keys) {
+    Units units;
+    units.vertical = vertical_unit(keys);
+    units.degrees = keys.model == kModelGeographic || (!keys.model && !keys.projected && keys.geodetic);
+    if (units.degrees) return units;
+    if (keys.unit == kUserDefined && keys.unit_size && plausible(*keys.unit_size)) {
+        units.horizontal = keys.unit_size;
+    } else if (keys.unit && *keys.unit != kUserDefined) {
+        units.horizontal = unit_of_code(*keys.unit);
+        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
+    } else if (keys.projected && *keys.projected != kUserDefined) {
+        const auto system = registered_units(*keys.projected);
+        if (system) units.horizontal = system->horizontal;
+        if (!units.vertical && system) units.vertical = system->vertical;
+        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
+    } else {
+        units.unknown = "its GeoTIFF keys have none";
+    }
+    return units;
+}
+
+}  // namespace
+
+Units units_of(const Header& header) {
     const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
     const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
-    if (wkt && ((header.global_encoding & kWktBit) || !keys)) {
-        if (const auto unit = wkt_metres_per_unit(wkt->text())) return unit;
-        if (wkt->text().starts_with("GEOGCS"))
-            log::warn("{}: its coordinates are degrees, not lengths", file);
-    }
-    if (!keys) return std::nullopt;
-    const auto numbers = doubles_of(header);
-    if (geo_keys(keys->data, numbers).model == kModelGeographic)
-        log::warn("{}: its coordinates are degrees, not lengths", file);
-    return geotiff_metres_per_unit(keys->data, numbers);
+    if (wkt && text_counts(header)) return units_of_text(wkt->text());
+    return keys ? units_of_keys(geo_keys(keys->data, doubles_of(header))) : Units{};
+}
+
+void warn_of_units(const std::string& file, const Units& units, bool given) {
+    if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
+    if (!units.unknown.empty() && !given)
+        log::warn("{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is another",
+                  file, units.unknown);
+    if (units.vertical && units.horizontal && std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
+        log::warn("{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for the latter, "
+                  "heights are not converted",
+                  file, *units.vertical, *units.horizontal);
 }
 
 CoordinateSystem coordinate_system(const Header& header) {
     const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
     const Vlr* directory = header.find(kProjectionUser, kGeoKeyRecord);
     const Vlr* texts = header.find(kProjectionUser, kGeoTextsRecord);
-    if (wkt && ((header.global_encoding & kWktBit) || !directory)) return wkt_system(wkt->text());
+    if (wkt && text_counts(header)) return wkt_system(wkt->text());
     if (!directory) return {};
     const GeoKeys keys = geo_keys(directory->data, {}, texts ? texts->text() : std::string_view());
     const bool geographic = keys.model == kModelGeographic;
@@ -163,8 +189,8 @@ void prefer_wkt(const std::string& file, Header& header) {
     const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
     if (!keys || header.find(kProjectionUser, kWktRecord)) return;
     const CoordinateSystem system = coordinate_system(header);
-    const auto unit = geotiff_metres_per_unit(keys->data, doubles_of(header));
-    const auto wkt = unit.value_or(1.0) == 1.0 ? utm_wkt(system.epsg) : std::nullopt;
+    const bool metres = units_of_keys(geo_keys(keys->data, doubles_of(header))).metres() == 1.0;
+    const auto wkt = metres ? utm_wkt(system.epsg) : std::nullopt;
     if (wkt)
         header.vlrs.push_back(wkt_record(*wkt));
     else

@@ -11,13 +11,18 @@
 // The coordinate system: its unit of length, to bring the light to metres, and what it is called.
 namespace lucarne::io::las {
 
-/// Metres per unit from GeoTIFF keys (OGC 19-008r4): ProjLinearUnitsGeoKey 3076, or 3077 for a user's own unit.
-/// `directory` and `doubles` are the data of the records 34735 and 34736.
-std::optional<double> geotiff_metres_per_unit(std::span<const std::byte> directory,
-                                              std::span<const std::byte> doubles);
+struct Units : SystemUnits {
+    std::string unknown;  ///< why the unit of the horizontal coordinates is not known, where there is a system
+    double metres() const { return horizontal.value_or(1.0); }
+};
 
-/// Metres per unit from whichever the header has; none where neither says. Warns when the coordinates are angles.
-std::optional<double> stated_unit(const std::string& file, const Header& header);
+/// From well-known text or GeoTIFF keys (OGC 19-008r4), whichever counts: ProjLinearUnitsGeoKey 3076, or 3077 for a
+/// user's own unit, else the unit that the EPSG registry has for ProjectedCRSGeoKey 3072; heights by 4099 or 4096.
+Units units_of(const Header& header);
+
+/// Warns of degrees, of a unit that is not known (unless the user has given it), and of heights in another unit than the
+/// horizontal coordinates.
+void warn_of_units(const std::string& file, const Units& units, bool given);
 
 /// What a system is called that says a unit of length and nothing else: of files that have none, but are no metres.
 inline constexpr const char* kLocalSystem = "local";

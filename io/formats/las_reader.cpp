@@ -105,9 +105,11 @@ class LasSource final : public PointSource {
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
+        const las::Units units = las::units_of(header_);
+        las::warn_of_units(name, units, options.metres_per_unit.has_value());
         const auto system = las::coordinate_system(header_);
-        auto unit = las::stated_unit(name, header_);
-        if (!unit && (!system.name.empty() || system.epsg)) unit = 1.0;  // most systems are in metres
+        auto unit = units.horizontal;
+        if (!unit && (!system.name.empty() || system.epsg)) unit = 1.0;  // a system has a unit: the one that is assumed
         set_unit(info_, options, unit);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;

@@ -117,7 +117,7 @@ void state_merged(const std::string& path, Header& header, const nlohmann::json&
 /// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
 /// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
 void state_unit(const std::string& path, Header& header, double metres) {
-    const double stated = stated_unit(path, header).value_or(1.0);
+    const double stated = units_of(header).metres();
     if (same_unit(stated, metres)) return;
     if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
         log::warn("{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open it",

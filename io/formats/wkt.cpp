@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <initializer_list>
 #include <span>
 
 #include <fmt/format.h>
+
+#include "io/formats/text.h"
 
 namespace lucarne::io {
 namespace {
@@ -14,7 +17,8 @@ constexpr size_t kMostDepth = 32, kLongestName = 256, kLongestText = size_t{64} 
 
 std::string_view word_before(std::string_view text, size_t bracket) {
     size_t first = bracket;
-    while (first > 0 && ((text[first - 1] >= 'A' && text[first - 1] <= 'Z') || text[first - 1] == '_')) --first;
+    const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; };
+    while (first > 0 && letter(text[first - 1])) --first;
     return text.substr(first, bracket - first);
 }
 
@@ -57,58 +61,68 @@ T number_behind(std::string_view text, size_t at) {
     return value;
 }
 
-bool is_projected(std::string_view word) {
-    return word == "PROJCS" || word == "PROJCRS" || word == "PROJECTEDCRS";
+bool is_any(std::string_view word, std::initializer_list<std::string_view> keywords) {
+    return std::ranges::any_of(keywords, [&](std::string_view keyword) { return same_letters(word, keyword); });
 }
 bool holds_lengths(std::string_view word) {
-    return is_projected(word) || word == "LOCAL_CS" || word == "ENGCRS" || word == "ENGINEERINGCRS" ||
-           word == "GEOCCS";
+    return is_any(word, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "GEOCCS"});
 }
-bool is_horizontal(std::string_view word) {
-    return holds_lengths(word) || word == "GEOGCS" || word == "GEOGCRS" || word == "GEODCRS";
+bool is_geographic(std::string_view word) {
+    return is_any(word, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"});
+}
+bool is_vertical(std::string_view word) {
+    return is_any(word, {"VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"});
+}
+bool is_compound(std::string_view word) {
+    return is_any(word, {"COMPD_CS", "COMPOUNDCRS"});
 }
 
 }  // namespace
 
-std::optional<double> wkt_metres_per_unit(std::string_view wkt) {
+SystemUnits wkt_units(std::string_view wkt) {
     wkt = wkt.substr(0, kLongestText);
-    std::optional<double> found;
+    SystemUnits units;
     walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
-        // UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
         const size_t depth = words.size();
-        if ((words.back() != "UNIT" && words.back() != "LENGTHUNIT") || depth < 2) return false;
-        const auto parent = words[depth - 2];
-        if (!holds_lengths(parent) && !(parent == "AXIS" && depth > 2 && holds_lengths(words[depth - 3])))
-            return false;
+        // The base of a projected system is geographic as well, and counts for nothing.
+        const bool outer = depth == 1 || (depth == 2 && is_compound(words[0]));
+        if (outer && is_geographic(words.back())) units.degrees = true;
+        // UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
+        if (depth < 2 || !is_any(words.back(), {"UNIT", "LENGTHUNIT"})) return false;
+        auto parent = words[depth - 2];
+        if (same_letters(parent, "AXIS") && depth > 2) parent = words[depth - 3];
+        auto& unit = is_vertical(parent) ? units.vertical : units.horizontal;
+        if (unit || !(holds_lengths(parent) || is_vertical(parent))) return false;
         size_t at = bracket;
         if (!quoted(wkt, at)) return false;
         const auto metres = number_behind<double>(wkt, at);
-        if (metres > 1e-9 && metres < 1e9) found = metres;
-        return found.has_value();
+        if (metres > 1e-9 && metres < 1e9) unit = metres;
+        return units.horizontal && units.vertical;
     });
-    return found;
+    return units;
 }
 
 CoordinateSystem wkt_system(std::string_view wkt) {
     wkt = wkt.substr(0, kLongestText);
     CoordinateSystem system;
     uint32_t horizontal = 0;
+    bool compound = false;
     walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
         const size_t depth = words.size();
         size_t at = bracket;
         if (depth == 1) {
+            compound = compound || is_compound(words[0]);
             for (const char c : quoted(wkt, at).value_or("").substr(0, kLongestName))
                 system.name += c >= ' ' && c < 0x7f ? c : '?';
-        } else if (words.back() == "AUTHORITY" || words.back() == "ID") {
+        } else if (is_any(words.back(), {"AUTHORITY", "ID"})) {
             const bool epsg = quoted(wkt, at) == std::optional<std::string_view>("EPSG");
             const auto code = epsg ? number_behind<uint32_t>(wkt, at) : 0;
             if (depth == 2 && system.epsg == 0) system.epsg = code;
-            if (depth == 3 && is_horizontal(words[1]) && horizontal == 0) horizontal = code;
+            if (depth == 3 && (holds_lengths(words[1]) || is_geographic(words[1])) && horizontal == 0) horizontal = code;
         }
         return false;
     });
     // The horizontal part of a system that is not compound is that of its base, in degrees.
-    const bool compound = wkt.find("COMPD_CS") != wkt.npos || wkt.find("COMPOUNDCRS") != wkt.npos;
     if (system.epsg == 0 && compound) system.epsg = horizontal;
     return system;
 }

@@ -8,9 +8,15 @@
 // What is needed of a coordinate system in well-known text (OGC 01-009 "WKT 1" or ISO 19162 "WKT 2").
 namespace lucarne::io {
 
-/// Metres per unit: the unit of its projected, local or geocentric system. Empty where it has none
-/// (geographic systems count in degrees).
-std::optional<double> wkt_metres_per_unit(std::string_view wkt);
+/// In what a coordinate system counts.
+struct SystemUnits {
+    std::optional<double> horizontal;  ///< metres per unit of a projected, local or geocentric system
+    std::optional<double> vertical;    ///< metres per unit of heights, where these have a system of their own
+    bool degrees = false;              ///< geographic: horizontal coordinates are angles
+    bool known() const { return horizontal || degrees; }
+};
+/// What the text states. Keywords count in either case.
+SystemUnits wkt_units(std::string_view wkt);
 
 struct CoordinateSystem {
     std::string name;   ///< printable ASCII; empty where there is none
