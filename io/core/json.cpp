@@ -7,36 +7,70 @@
 #include <fmt/ranges.h>
 
 #include "io/core/file.h"
+#include "io/core/terminal.h"
 
 namespace lucarne {
 namespace {
 
 constexpr uint64_t kLargestFile = uint64_t{16} << 20;
 
-/// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ..." without its
-/// head.
-std::string_view reason(std::string_view what) {
-    const size_t column = what.find("column ");
-    const size_t colon = column == std::string_view::npos ? column : what.find(": ", column);
-    return colon == std::string_view::npos ? what : what.substr(colon + 2);
-}
+/// Finds where a text stops being JSON; the library's exceptions do not always tell.
+class MistakeFinder final : public nlohmann::json::json_sax_t {
+ public:
+    explicit MistakeFinder(std::string_view text) : text_(text) {}
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(int64_t) override { return true; }
+    bool number_unsigned(uint64_t) override { return true; }
+    bool number_float(double, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(nlohmann::json::binary_t&) override { return true; }
+    bool start_object(size_t) override { return true; }
+    bool key(std::string&) override { return true; }
+    bool end_object() override { return true; }
+    bool start_array(size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(size_t position, const std::string& token, const nlohmann::json::exception& error) override {
+        constexpr size_t kMostQuoted = 40;
+        constexpr std::string_view kExpected = "; expected ";  // the end of the library's reason
+        const bool too_large = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;
+        const std::string found = shown(token, kMostQuoted);
+        const std::string_view reason = error.what();
+        const size_t expected = reason.rfind(kExpected);
+        at_ = std::min(text_.size(), position - std::min(position, too_large ? token.size() : 1));
+        if (too_large)
+            why_ = fmt::format("the number {} is too large", found);
+        else if (position > text_.size())
+            why_ = "the text ends early";
+        else if (expected != reason.npos)
+            why_ = fmt::format("{} is expected, not {}",
+                               shown(reason.substr(expected + kExpected.size()), kMostQuoted), found);
+        else
+            why_ = fmt::format("{} is no JSON", found);
+        return false;
+    }
+
+    std::string reason() const {
+        const std::string_view before = text_.substr(0, at_);
+        const size_t start = before.rfind('\n');
+        return fmt::format("line {}, column {}: {}", 1 + std::ranges::count(before, '\n'),
+                           before.size() - (start == before.npos ? 0 : start + 1) + 1, why_);
+    }
+
+ private:
+    std::string_view text_;
+    size_t at_ = 0;
+    std::string why_ = "is no JSON";
+};
 
 }  // namespace
 
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name) {
-    try {
-        return nlohmann::json::parse(text);
-    } catch (const nlohmann::json::parse_error& error) {
-        const std::string_view before =
-            text.substr(0, std::min(text.size(), error.byte ? error.byte - 1 : 0));
-        const auto line = 1 + std::ranges::count(before, '\n');
-        const size_t start = before.rfind('\n');
-        const size_t column = before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1;
-        return rejected(name, fmt::format("line {}, column {}: {}", line, column, reason(error.what())),
-                        "correct the JSON there");
-    } catch (const nlohmann::json::exception& error) {
-        return rejected(name, error.what(), "correct the JSON");
-    }
+    auto parsed = nlohmann::json::parse(text, nullptr, false);
+    if (!parsed.is_discarded()) return parsed;
+    MistakeFinder finder(text);
+    nlohmann::json::sax_parse(text, &finder);
+    return rejected(name, finder.reason(), "correct the JSON there");
 }
 
 Result<std::string> load_text(const std::filesystem::path& path) {

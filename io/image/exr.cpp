@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "io/core/file.h"
+#include "io/core/terminal.h"
 #include "io/image/exr_header.h"
 #include "io/image/image.h"
 
@@ -59,6 +60,7 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
+constexpr size_t kMostReason = 120;  ///< bytes of what the library says
 constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
 
 /// Lines from `line` on into `pixels`, the channels of these names into its components.
@@ -141,7 +143,7 @@ Result<void> write_exr(const std::filesystem::path& path, const Image& image, bo
     try {
         encode(image, alpha, encoded);
     } catch (const std::exception& error) {
-        return failed(name, fmt::format("cannot be encoded as EXR ({})", error.what()));
+        return failed(name, fmt::format("cannot be encoded as EXR ({})", shown(error.what(), kMostReason)));
     }
     return write_file(path, encoded.data(), overwrite);
 }
@@ -152,7 +154,7 @@ Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels) 
     try {
         return decode(file, most_pixels);
     } catch (const std::exception& error) {
-        return rejected(path.string(), fmt::format("is no usable EXR picture ({})", error.what()));
+        return rejected(path.string(), fmt::format("is no usable EXR picture ({})", shown(error.what(), kMostReason)));
     }
 }
 

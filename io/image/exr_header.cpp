@@ -191,6 +191,9 @@ std::string_view problem_of(Bytes header, uint64_t file_bytes) {
 Result<void> check_exr_header(const InputFile& file) {
     std::vector<char> front(std::min(file.size(), kMostHeaderBytes));
     LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(front))));
+    constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
+    if (!std::string_view(front.data(), front.size()).starts_with(kMagic))
+        return rejected(file.path().string(), "is no EXR picture");
     const auto problem = problem_of(Bytes({front.data(), front.size()}), file.size());
     if (problem.empty()) return {};
     return rejected(file.path().string(), fmt::format("is no usable EXR picture ({})", problem));

@@ -160,6 +160,11 @@ class ExrHeader : public ::testing::Test {
     std::string bytes_;
 };
 
+TEST(Exr, WhatIsNoneIsCalledThat) {
+    for (const char* bytes : {"", "hello", "a text that is longer than a header of EXR has to be"})
+        EXPECT_THAT(refusal_of_exr(bytes), ::testing::EndsWith(": is no EXR picture"));
+}
+
 TEST_F(ExrHeader, AnAttributeLargerThanTheFileIsRefusedBeforeItIsMadeRoomFor) {
     insert("comments", "unheard", "1234");
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("data block"))

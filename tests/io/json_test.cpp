@@ -28,6 +28,27 @@ TEST(Json, ASyntaxErrorNamesItsLineAndColumn) {
         EXPECT_FALSE(parse_json(bad, "f")) << bad;
 }
 
+TEST(Json, ASyntaxErrorIsOneShortLineInOurWords) {
+    const std::string digits(5000, '9');
+    const std::pair<std::string, std::string> cases[] = {
+        {"{\n  \"a\": 1e999\n}", "f: line 2, column 8: the number 1e999 is too large; correct the JSON there"},
+        {"{\n  \"a\": -" + digits + "e9\n}", "line 2, column 8: the number -99"},
+        {"{\"a\": 1", "line 1, column 8: the text ends early"},
+        {"", "line 1, column 1: the text ends early"},
+        {"{\"a\" 2}", "line 1, column 6: ':' is expected, not "},
+        {"[\"" + digits + "\n\"]", "line 1"},
+        {"{" + digits + "}", "is expected, not "},
+        {"[\x1b[2J]", "line 1, column 2: "},
+    };
+    for (const auto& [text, line] : cases) {
+        const auto parsed = parse_json(text, "f");
+        ASSERT_FALSE(parsed) << text;
+        EXPECT_THAT(parsed.error().line(), HasSubstr(line));
+        EXPECT_THAT(parsed.error().line(), testing::Not(HasSubstr("json.exception")));
+        EXPECT_LT(parsed.error().line().size(), 200u);
+    }
+}
+
 TEST(Json, DeeplyNestedTextIsNoDanger) {
     const std::string deep(2000000, '[');
     EXPECT_FALSE(parse_json(deep, "f"));
