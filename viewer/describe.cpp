@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
+#include "io/formats/mesh/source.h"
 #include "viewer/tools/units.h"
 
 namespace lucarne::viewer {
@@ -44,6 +45,14 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
         described["min"] = vector_json(contents->min);
         described["max"] = vector_json(contents->max);
     }
+    const json details = json::parse(info.details, nullptr, false);
+    const bool known = details.is_object();
+    if (!contents && io::mesh::is_sampled(info)) {
+        const json& mesh = details["mesh"];
+        described.update({{"expected_points", mesh["samples"]}, {"min", mesh["min"]}, {"max", mesh["max"]}});
+    }
+    for (const char* box : {"stated_min", "stated_max"})
+        if (known && details.contains(box)) described[box] = details[box];
     described["bytes_per_point"] = schema.stride;
     described["coordinate_system"] = info.coordinate_system;
     described["epsg"] = info.epsg ? json(info.epsg) : json();
@@ -53,9 +62,8 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
     described["stations"] = std::move(stations);
     described["attributes"] = attributes_json(schema);
     described["left_out"] = losses_json(contents ? contents->losses : info.losses);
-    const json details = json::parse(info.details, nullptr, false);
     for (const char* list : {"scans", "images", "mesh"})
-        if (details.is_object() && details.contains(list)) described[list] = details[list];
+        if (known && details.contains(list)) described[list] = details[list];
     return described;
 }
 

@@ -24,6 +24,7 @@ StatedBounds::StatedBounds(const Header& header) {
         if (!(side >= 0) || !usable(header.low[axis]) || !usable(header.high[axis])) return;
         longest = std::max(longest, side);
     }
+    sound_ = true;
     stated_ = longest > 0;
     for (int axis = 0; axis < 3 && stated_; ++axis) {
         const auto integer = [&](double at) { return clamped((at - header.offset[axis]) / header.scale[axis]); };

@@ -15,6 +15,8 @@ namespace lucarne::io::las {
 class StatedBounds {
  public:
     explicit StatedBounds(const Header& header);
+    /// Whether what the header states is a box at all.
+    bool sound() const { return sound_; }
 
     /// The first of every `step`th record (x, y, z as 32-bit integers in front) that is far outside; none where all are
     /// inside or the header states no box.
@@ -22,7 +24,7 @@ class StatedBounds {
 
  private:
     std::array<std::pair<int32_t, int32_t>, 3> range_;  ///< of the integers
-    bool stated_ = false;
+    bool sound_ = false, stated_ = false;
 };
 
 }  // namespace lucarne::io::las

@@ -306,6 +306,7 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
         log::warn("{}: corners name {} texture coordinates or normals that are not there, they have none",
                   info.path, parser.missing());
     }
+    if (parser.faces() > 0) details["mesh"]["faces"] = parser.faces();
     mesh.finish();
     if (parser.faces() > 0 && mesh.triangles.empty() && !options.quiet)
         log::warn("{}: has no whole face with an area; its vertices are read", info.path);

@@ -66,6 +66,11 @@ class MeshLoader {
     }
     mesh::Mesh& mesh() { return mesh_; }
     uint64_t state() const { return companions_.state(); }
+    uint64_t faces() const {
+        uint64_t count = 0;
+        for (const Element& element : header_.elements) count += is_face(element) ? element.count : 0;
+        return count;
+    }
     const Losses& vertex_losses() const { return vertex_losses_; }
     const Losses& face_losses() const { return face_losses_; }
 
@@ -264,8 +269,8 @@ Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Head
     add_losses(info.losses, loader.vertex_losses());
     add_losses(info.losses, faces.losses);
     info.format += ", mesh";
-    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info),
-                                             nlohmann::json::object(), loader.state(), options));
+    const nlohmann::json details = {{"mesh", {{"faces", loader.faces()}}}};
+    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), details, loader.state(), options));
     return faces;
 }
 

@@ -61,11 +61,11 @@ std::optional<std::string> savable(const PointSource& scan) {
             losses, [&](const Loss& loss) { return std::ranges::find(kDamage, loss.what) != kDamage.end(); });
     };
     // Nobody wants to wait for the samples of a mesh only to have them counted.
-    const auto details = nlohmann::json::parse(info.details, nullptr, false);
-    if (const auto mesh = details.find("mesh"); mesh != details.end() && mesh->contains("spacing_m")) {
+    if (mesh::is_sampled(info)) {
         if (!damaged(info.losses)) return std::nullopt;
+        const auto details = nlohmann::json::parse(info.details);
         return fmt::format("{}, about {}, can be saved with --salvage",
-                           counted(mesh->at("triangles").get<uint64_t>(), "whole triangles"),
+                           counted(details.at("mesh").at("triangles").get<uint64_t>(), "whole triangles"),
                            counted(info.declared_points, "points"));
     }
     const auto contents = survey(scan);

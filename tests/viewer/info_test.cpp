@@ -65,6 +65,57 @@ double info_number(const TemporaryFolder& folder, const std::string& arguments, 
     return nlohmann::json::parse(in).value(key, -1.0);
 }
 
+/// All that `lucarne info` says of a file.
+nlohmann::json info_of(const TemporaryFolder& folder, const std::string& arguments) {
+    const std::string json_file = folder / "all.json";
+    const auto outcome = lucarne("info " + arguments + " --overwrite --json " + json_file);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    std::ifstream in(json_file);
+    return nlohmann::json::parse(in);
+}
+
+TEST(InfoCommand, SaysWhatAMeshHoldsWithoutSamplingIt) {
+    const TemporaryFolder folder;
+    const std::string obj = folder / "square.obj", ply = folder / "square.ply";
+    std::ofstream(obj) << "v 0 0 0\nv 100 0 0\nv 100 100 5\nv 0 100 5\nv 999 0 0\nf 1 2 3 4\n";
+    std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                          "0 0 0\n100 0 0\n100 100 5\n0 100 5\n4 0 1 2 3\n";
+    for (const std::string& path : {obj, ply}) {
+        const auto info = info_of(folder, path + " --mesh-points 1G");  // minutes, if they were made
+        EXPECT_FALSE(info.contains("points"));
+        EXPECT_NEAR(info["expected_points"].get<double>(), 1e9, 1e6);
+        EXPECT_EQ(info["min"], nlohmann::json({0.0, 0.0, 0.0}));
+        EXPECT_EQ(info["max"], nlohmann::json({100.0, 100.0, 5.0}));
+        EXPECT_EQ(info["mesh"]["faces"], 1);
+        EXPECT_EQ(info["mesh"]["triangles"], 2);
+        EXPECT_NEAR(info["mesh"]["area_m2"].get<double>(), 10012.5, 0.1);
+    }
+}
+
+TEST(InfoCommand, TellsTheBoxOfThePointsFromTheOneThatAHeaderStates) {
+    const TemporaryFolder folder;
+    const std::string las = folder / "cornell.las", cache = folder / "cornell.luc", copc = folder / "cornell.copc.laz",
+                      laz = folder / "cornell.laz";
+    ASSERT_EQ(lucarne("generate cornell --points 2k -o " + las).code, 0);
+    ASSERT_EQ(lucarne("convert " + las + " -o " + cache).code, 0);
+    ASSERT_EQ(lucarne("export " + cache + " -o " + copc).code, 0);
+    ASSERT_EQ(lucarne("export " + cache + " -o " + laz).code, 0);
+    for (const std::string& path : {las, laz, copc}) {
+        std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+        const double lie = 1.25;
+        file.seekp(179);  // the largest x
+        file.write(reinterpret_cast<const char*>(&lie), sizeof lie);
+        file.close();
+        const auto info = info_of(folder, path);
+        EXPECT_GT(info["max"][0].get<double>(), 1.3) << path;
+        EXPECT_EQ(info["stated_max"][0], lie) << path;
+        const auto quick = info_of(folder, path + " --quick");
+        EXPECT_FALSE(quick.contains("max")) << path;
+        EXPECT_EQ(quick["stated_max"][0], lie) << path;
+    }
+}
+
 TEST(UnitOption, IsTheUnitOfFilesOfEveryFormatAndOfTheCachesMadeOfThem) {
     const TemporaryFolder folder;
     const std::vector<std::pair<std::string, std::string>> files = {

@@ -11,6 +11,7 @@
 #include "io/core/json.h"
 #include "io/core/options.h"
 #include "io/core/terminal.h"
+#include "io/formats/mesh/source.h"
 #include "io/formats/scan.h"
 #include "io/core/progress.h"
 #include "octree/cache.h"
@@ -74,7 +75,8 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
 Result<json> describe_scan(const std::string& path, const Options& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
-    if (options.quick) return scan_json(scan->info(), scan->schema(), nullptr);
+    // A mesh of a few bytes may have millions of samples.
+    if (options.quick || io::mesh::is_sampled(scan->info())) return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
     const uint64_t declared = scan->info().declared_points;
     if (declared > kLong) progress.emplace("looking through", declared, "points");
@@ -87,7 +89,14 @@ Result<json> describe_scan(const std::string& path, const Options& options) {
 Result<json> describe(const std::string& path, const Options& options) {
     if (!octree::is_octree(path)) return describe_scan(path, options);
     LUCARNE_ASSIGN(const auto source, octree::open_octree(path));
-    return describe_octree(*source, octree::is_cache(path) ? "cache" : "copc");
+    if (octree::is_cache(path)) return describe_octree(*source, "cache");
+    // Its octree knows only the box that the header states.
+    json described = describe_octree(*source, "copc");
+    LUCARNE_ASSIGN(const json scan, describe_scan(path, options));
+    for (const char* key : {"min", "max"}) described.erase(key);
+    for (const char* key : {"min", "max", "stated_min", "stated_max", "left_out"})
+        if (scan.contains(key)) described[key] = scan[key];
+    return described;
 }
 
 /// What a double has beyond 15 digits are no digits of the file.
@@ -102,7 +111,7 @@ void print(const json& described) {
     const bool assumed = !described.value("unit_stated", true);
     for (const auto& [name, value] : described.items()) {
         if (name == "unit_stated") continue;
-        if (name == "min" || name == "max") {
+        if (name.ends_with("min") || name.ends_with("max")) {
             print_line("{:<17} {}", name, coordinates_text(value));
             continue;
         }
@@ -154,7 +163,8 @@ void add_info(CLI::App& app, Command& chosen) {
         ->required()
         ->type_name("INPUT");
     command->add_flag("--quick", options->quick,
-                      "Do not read the points of scans: no bounds, and what was left out as far as it is known");
+                      "Do not read the points of scans: no bounds but those that headers state, and what was left out as far as it "
+                      "is known");
     add_read_options(*command, options->read);
     command->add_option("--json", options->json_file, "Write it there as well, for machines: an object, of several inputs a list")
         ->type_name("FILE");

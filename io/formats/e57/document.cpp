@@ -139,6 +139,19 @@ Result<void> parse_limits(const std::string& file, pugi::xml_node node, Scan& sc
     return {};
 }
 
+/// None where a side is missing or no number: nothing follows from it.
+std::optional<std::array<glm::dvec3, 2>> parse_bounds(pugi::xml_node node) {
+    std::array<glm::dvec3, 2> bounds{};
+    for (int axis = 0; axis < 3; ++axis)
+        for (size_t end = 0; end < 2; ++end) {
+            const std::string name = fmt::format("{}{}", "xyz"[axis], end == 0 ? "Minimum" : "Maximum");
+            const auto side = parse_number<double>(node.child(name.c_str()).text().get());
+            if (!side || !usable(*side)) return std::nullopt;
+            bounds[end][axis] = *side;
+        }
+    return bounds;
+}
+
 Result<Scan> parse_scan(const std::string& file, pugi::xml_node node) {
     Scan scan;
     scan.name = text_of(node.child("name"));
@@ -167,6 +180,7 @@ Result<Scan> parse_scan(const std::string& file, pugi::xml_node node) {
         LUCARNE_ASSIGN(scan.pose, parse_pose(file, pose));
     }
     LUCARNE_TRY(parse_limits(file, node, scan));
+    scan.bounds = parse_bounds(node.child("cartesianBounds"));
     return scan;
 }
 
@@ -206,6 +220,11 @@ nlohmann::json describe(const Scan& scan) {
     }
     if (scan.intensity_limits) json["intensity_limits"] = *scan.intensity_limits;
     if (scan.color_maximum) json["color_maximum"] = *scan.color_maximum;
+    if (scan.bounds) {
+        const auto& [low, high] = *scan.bounds;
+        json["stated_min"] = {low.x, low.y, low.z};
+        json["stated_max"] = {high.x, high.y, high.z};
+    }
     return json;
 }
 

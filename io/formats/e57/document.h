@@ -47,6 +47,8 @@ struct Scan {
     std::optional<Pose> pose;
     std::optional<std::array<double, 2>> intensity_limits;
     std::optional<double> color_maximum;  ///< the largest of the three limits
+    /// The box of its points in its own frame, as the file states it, true or not: the least, the largest.
+    std::optional<std::array<glm::dvec3, 2>> bounds;
 
     /// The index of the field `name`, none where there is none.
     std::optional<size_t> find(std::string_view name) const;

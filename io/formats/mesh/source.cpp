@@ -172,6 +172,11 @@ void describe(const Mesh& mesh, nlohmann::json& of_mesh) {
 
 }  // namespace
 
+bool is_sampled(const ScanInfo& info) {
+    const auto details = nlohmann::json::parse(info.details, nullptr, false);
+    return details.is_object() && details.contains("mesh") && details["mesh"].contains("spacing_m");
+}
+
 Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann::json details, uint64_t state,
                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(const double spacing, spacing_of(mesh, info, options));
@@ -192,6 +197,9 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann:
     describe(mesh, details["mesh"]);
     details["mesh"]["area_m2"] = mesh.area() * metres * metres;
     details["mesh"]["spacing_m"] = spacing * metres;
+    details["mesh"]["samples"] = info.declared_points;
+    details["mesh"]["min"] = {mesh.low.x, mesh.low.y, mesh.low.z};
+    details["mesh"]["max"] = {mesh.high.x, mesh.high.y, mesh.high.z};
     details["color_bits"] = info.color_bits = 8;
     info.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     // A cache of these samples is another one as soon as any of this differs.
