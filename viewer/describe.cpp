@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
+#include "io/formats/las_bounds.h"
 #include "io/formats/mesh/source.h"
 #include "viewer/tools/units.h"
 
@@ -51,8 +52,10 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
         const json& mesh = details["mesh"];
         described.update({{"expected_points", mesh["samples"]}, {"min", mesh["min"]}, {"max", mesh["max"]}});
     }
-    for (const char* box : {"stated_min", "stated_max"})
-        if (known && details.contains(box)) described[box] = details[box];
+    if (const auto stated = io::las::stated_box(info.path)) {
+        described["stated_min"] = vector_json(stated->front());
+        described["stated_max"] = vector_json(stated->back());
+    }
     described["bytes_per_point"] = schema.stride;
     described["coordinate_system"] = info.coordinate_system;
     described["epsg"] = info.epsg ? json(info.epsg) : json();

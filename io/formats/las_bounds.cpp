@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "io/formats/format.h"
@@ -17,6 +18,20 @@ int32_t clamped(double value) {
 
 }  // namespace
 
+std::optional<std::array<glm::dvec3, 2>> stated_box(const std::filesystem::path& path) {
+    constexpr size_t kBox = 179;  // in the header: max x, min x, max y, min y, max z, min z
+    const auto file = InputFile::open(path);
+    std::array<std::byte, kBox + 48> header{};
+    if (!file || !file->read_at(0, header) || std::memcmp(header.data(), "LASF", 4) != 0) return std::nullopt;
+    std::array<glm::dvec3, 2> box{};
+    for (int axis = 0; axis < 3; ++axis) {
+        box[1][axis] = load<double>(&header[kBox + 16 * static_cast<size_t>(axis)]);
+        box[0][axis] = load<double>(&header[kBox + 16 * static_cast<size_t>(axis) + 8]);
+        if (!usable(box[0][axis]) || !usable(box[1][axis]) || box[0][axis] > box[1][axis]) return std::nullopt;
+    }
+    return box;
+}
+
 StatedBounds::StatedBounds(const Header& header) {
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -24,7 +39,6 @@ StatedBounds::StatedBounds(const Header& header) {
         if (!(side >= 0) || !usable(header.low[axis]) || !usable(header.high[axis])) return;
         longest = std::max(longest, side);
     }
-    sound_ = true;
     stated_ = longest > 0;
     for (int axis = 0; axis < 3 && stated_; ++axis) {
         const auto integer = [&](double at) { return clamped((at - header.offset[axis]) / header.scale[axis]); };

@@ -125,10 +125,6 @@ class LasSource final : public PointSource {
         kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
         nlohmann::json details = las::to_details(kept);
         details["color_bits"] = info_.color_bits;
-        if (bounds_.sound()) {
-            details["stated_min"] = {header_.low.x, header_.low.y, header_.low.z};
-            details["stated_max"] = {header_.high.x, header_.high.y, header_.high.z};
-        }
         info_.details = details.dump();
         return {};
     }
