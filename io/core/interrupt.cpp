@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -63,7 +64,7 @@ void handle_interrupts() {
         if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&caught, number);
     }
     ::pthread_sigmask(SIG_BLOCK, &caught, nullptr);
-    std::thread([caught] {
+    const auto receive = [caught] {
         int number = SIGTERM;
         do {
             if (::sigwait(&caught, &number) != 0) return;
@@ -71,7 +72,12 @@ void handle_interrupts() {
         ::pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
         run_actions();
         ::raise(number);
-    }).detach();
+    };
+    try {
+        std::thread(receive).detach();
+    } catch (const std::system_error&) {  // no thread can be started: they end the program as usual
+        ::pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
+    }
 }
 
 InterruptRequest::InterruptRequest() {

@@ -62,7 +62,8 @@ double info_number(const TemporaryFolder& folder, const std::string& arguments, 
     const auto outcome = lucarne("info " + arguments + " --overwrite --json " + json_file);
     EXPECT_EQ(outcome.code, 0) << outcome.output;
     std::ifstream in(json_file);
-    return nlohmann::json::parse(in).value(key, -1.0);
+    const auto value = nlohmann::json::parse(in).value(key, nlohmann::json(-1.0));
+    return value.is_boolean() ? value.get<bool>() : value.get<double>();
 }
 
 /// All that `lucarne info` says of a file.

@@ -118,10 +118,15 @@ VideoWriter::~VideoWriter() {
         kill(pid_, SIGKILL);
         waitpid(pid_, nullptr, 0);
     }
+    remove_folder();
+}
+
+void VideoWriter::remove_folder() {
     if (folder_.empty()) return;
     const std::string part = part_.filename().string();
     remove_private_folder(folder_, std::span(&part, 1));
     forget_interrupt(folder_);
+    folder_.clear();
 }
 
 tl::unexpected<Error> VideoWriter::broken() const {
@@ -190,7 +195,9 @@ Result<void> VideoWriter::finish() {
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return broken();
     LUCARNE_TRY(check_output(file_, overwrite_));  // it may have come meanwhile
-    return file_io::name_written(part_, file_);
+    LUCARNE_TRY(file_io::name_written(part_, file_));
+    remove_folder();
+    return {};
 }
 
 }  // namespace lucarne::viewer

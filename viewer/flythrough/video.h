@@ -40,6 +40,7 @@ class VideoWriter {
     Result<void> launch(double rate);
     Result<void> wait_to_write();
     void read_words(int milliseconds);
+    void remove_folder();
     tl::unexpected<Error> broken() const;
 
     const std::atomic<bool>& stop_;
