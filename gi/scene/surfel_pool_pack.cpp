@@ -9,6 +9,7 @@
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/attributes.h"
+#include "octree/point_normals.h"
 
 namespace lucarne::gi {
 namespace {
@@ -30,11 +31,10 @@ class Packer {
         : header_(header),
           scene_(scene),
           cube_(header.root.of(node.key)),
+          normals_(header.schema),
           colouring_(header.schema, scene.look, first_scan),
           baked_(scene.albedo.flatten > 0 ? baked : nullptr) {
         color_ = find(io::names::color, 3);
-        normal_ = find(io::names::normal, 3);
-        normal_oct_ = find(io::names::normal_oct, 3);
         area_ = find(io::names::area, 1);
         classification_ = find(io::names::classification, 1);
         scan_ = find(io::names::scan, 1);
@@ -61,7 +61,7 @@ class Packer {
         // A hidden point is one that hangs in the air: not drawn, and no share of any surface.
         const bool hidden = is_hidden(record);
         surfel.b = at.z | (hidden ? kStrayArea : area(record)) << 16 | material(position, record, scan) << 24;
-        const glm::vec3 n = hidden ? glm::vec3(0.0f) : normal(record);
+        const glm::vec3 n = hidden ? glm::vec3(0.0f) : normals_.of(record);
         const auto shown = colouring_.colour(record, position.z, scan, n);
         surfel.d = shown ? *shown : albedo(position, record, scan);
         const bool has_normal = n != glm::vec3(0.0f);
@@ -137,27 +137,13 @@ class Packer {
         return pack_colour(srgb);
     }
 
-    /// Unit, or zero. The file's own normals come before estimated ones.
-    glm::vec3 normal(const std::byte* record) const {
-        if (normal_) {
-            const glm::dvec3 n = vector_at(*normal_, record);
-            const double length = std::sqrt(glm::dot(n, n));
-            if (length > 0 && std::isfinite(length)) return glm::vec3(n / length);
-        }
-        if (normal_oct_ && normal_oct_->type == io::ScalarType::u8) {
-            octree::NormalCode code;
-            std::memcpy(code.data(), record + normal_oct_->offset, code.size());
-            return octree::decode_normal(code).value_or(glm::vec3(0.0f));
-        }
-        return glm::vec3(0.0f);
-    }
-
     const octree::SourceHeader& header_;
     const Scene& scene_;
     const octree::Cube cube_;
+    const octree::PointNormals normals_;
     const Colouring colouring_;
     const BakedLight* const baked_;
-    const Attribute *color_, *normal_, *normal_oct_, *area_, *classification_, *scan_;
+    const Attribute *color_, *area_, *classification_, *scan_;
 };
 
 /// Shares add up to the surface in the node. Where a hostile file claims more than any node can hold, all of

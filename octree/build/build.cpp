@@ -141,7 +141,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     const auto folder = !options.temp_folder.empty()       ? options.temp_folder
                         : options.output.has_parent_path() ? options.output.parent_path()
                                                            : std::filesystem::path(".");
-    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs));
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));

@@ -15,8 +15,8 @@ namespace lucarne::octree {
 enum class NormalsMode {
     automatic,  ///< keep where every input has them, else estimate
     keep,       ///< the inputs' own; areas are estimated
-    estimate,
-    none  ///< neither normals nor areas
+    estimate,   ///< in place of the inputs' own, which stay as an attribute of another name
+    none        ///< neither normals nor areas
 };
 
 class BuildListener;

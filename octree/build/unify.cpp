@@ -5,17 +5,12 @@
 #include <fmt/format.h>
 
 #include "octree/cache_format.h"
+#include "octree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {
 
 using io::ScalarType;
-
-std::string unified_name(const io::Attribute& attribute) {
-    for (const auto ours : {io::names::normal_oct, io::names::area, io::names::scan})
-        if (attribute.name == ours) return attribute.name + std::string(kForeign);
-    return attribute.name;
-}
 
 bool is_float(ScalarType t) {
     return t == ScalarType::f32 || t == ScalarType::f64;
@@ -60,26 +55,28 @@ std::optional<ScalarType> common_type(ScalarType a, ScalarType b) {
 
 }  // namespace
 
-Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources) {
+Result<Unifier> Unifier::create(std::vector<const io::PointSource*> sources, bool replace_normals) {
     if (sources.empty()) return bad_arguments("inputs", "there are none");
     if (sources.size() > 0xffff)
         return bad_arguments("inputs", fmt::format("{} are more than 65535", sources.size()));
     Unifier unifier;
     unifier.sources_ = std::move(sources);
+    unifier.replace_normals_ = replace_normals;
     unifier.unify_positions();
     LUCARNE_TRY(unifier.unify_attributes());
     if (unifier.schema_.stride > format::kMaxStride / 2)
         return rejected(unifier.sources_[0]->info().path,
                         fmt::format("{} bytes a point are more than 32 KiB", unifier.schema_.stride));
     for (const auto* source : unifier.sources_)
-        unifier.maps_.emplace_back(source->schema(), unifier.schema_, unified_name);
+        unifier.maps_.emplace_back(source->schema(), unifier.schema_, [&](const io::Attribute& attribute) {
+            return stored_name(attribute, replace_normals);
+        });
     return unifier;
 }
 
 bool Unifier::has_normals(size_t input) const {
     const auto* normal = sources_[input]->schema().find(io::names::normal);
-    return normal && (normal->type == ScalarType::f32 || normal->type == ScalarType::f64) &&
-           normal->components == 3;
+    return normal && is_normal(*normal);
 }
 
 void Unifier::unify_positions() {
@@ -103,7 +100,7 @@ Result<void> Unifier::unify_attributes() {
     std::vector<io::Attribute> all;
     for (const auto* source : sources_)
         for (const auto& attribute : source->schema().attributes) {
-            const std::string name = unified_name(attribute);
+            const std::string name = stored_name(attribute, replace_normals_);
             const auto known =
                 std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == name; });
             if (known == all.end()) {

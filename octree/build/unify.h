@@ -12,11 +12,12 @@ namespace lucarne::octree {
 /// integer positions stay so where all inputs share scale and offset and become doubles otherwise; an
 /// attribute takes the narrowest type that holds those of all inputs (8-bit colour becomes 16-bit colour) and
 /// is zero for points of inputs without it. With several inputs, `scan` says which one a point came from.
-/// Attributes of the inputs that are called like one of ours get the suffix kForeign.
+/// Attributes of the inputs are called as octree/stored_names.h says.
 class Unifier {
  public:
-    /// `sources` must outlive the unifier. Errors: attributes that no common type can hold, too many inputs.
-    static Result<Unifier> create(std::vector<const io::PointSource*> sources);
+    /// `sources` must outlive the unifier. `replace_normals`: estimated normals will stand in place of the inputs'
+    /// own. Errors: attributes that no common type can hold, too many inputs.
+    static Result<Unifier> create(std::vector<const io::PointSource*> sources, bool replace_normals = false);
 
     const io::Schema& schema() const { return schema_; }
     size_t inputs() const { return sources_.size(); }
@@ -32,12 +33,9 @@ class Unifier {
     void unify_positions();
 
     std::vector<const io::PointSource*> sources_;
+    bool replace_normals_ = false;
     io::Schema schema_;
     std::vector<RecordMap> maps_;
 };
-
-/// What is appended to the name of an input's attribute that is called `normal_oct`, `area` or `scan`; export
-/// takes it off again.
-inline constexpr std::string_view kForeign = "_in_file";
 
 }  // namespace lucarne::octree

@@ -10,6 +10,7 @@
 #include "octree/build/scan_stage.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
+#include "octree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {
@@ -26,7 +27,7 @@ class CacheSchema final : public io::PointSource {
         schema_.stride = static_cast<uint32_t>(io::position_bytes(from.position));
         for (const auto& a : from.attributes)
             if (a.name != io::names::scan && a.name != io::names::normal_oct && a.name != io::names::area)
-                schema_.add(a.name, a.type, a.components);
+                schema_.add(name_in_file(a.name), a.type, a.components);
         info_.path = cache.file().path().string();
     }
     const io::Schema& schema() const override { return schema_; }
@@ -188,7 +189,7 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
         return skipped;
     }
     warn_of_differences(all);
-    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(sources));
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(sources, replaces_normals(before.schema)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes, 1));
     sources.erase(sources.begin());  // the cache
     for (const auto* scan : sources) warn_of_assumed_unit(scan->info(), before.metres_per_unit);

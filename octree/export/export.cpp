@@ -7,9 +7,8 @@
 #include "io/core/progress.h"
 #include "io/formats/copc_writer.h"
 #include "io/formats/merged_info.h"
-#include "octree/attributes.h"
 #include "octree/build/node_sampler.h"
-#include "octree/build/unify.h"
+#include "octree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {
@@ -29,8 +28,18 @@ std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
 
 }  // namespace
 
-Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : source_(source) {
+Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
+    : source_(source), normals_(source.header().schema) {
     const auto& header = source.header();
+    const bool estimated = header.schema.find(io::names::normal_oct) &&
+                           (options.normals || replaces_normals(header.schema));
+    // Where another attribute is written under a name, the input's keeps its stored name, and so do longer ones.
+    const auto taken = [&](std::string_view name) {
+        const bool normal = name == io::names::normal;
+        const bool written =
+            (normal && estimated) || ((normal || name == io::names::scan) && header.schema.find(name));
+        return written && header.schema.find(std::string(name).append(kForeign)) != nullptr;
+    };
     schema_.position = header.schema.position;
     schema_.scale = header.schema.scale;
     schema_.offset = header.schema.offset;
@@ -38,17 +47,14 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options) : sou
     copies_.push_back({0, 0, schema_.stride});
     for (const auto& attribute : header.schema.attributes) {
         if (attribute.name == io::names::normal_oct || attribute.name == io::names::area) continue;
-        std::string name = attribute.name;
-        if (name.ends_with(kForeign)) {
-            const auto original = name.substr(0, name.size() - kForeign.size());
-            if (!header.schema.find(original) || original != io::names::scan) name = original;
-        }
-        schema_.add(std::move(name), attribute.type, attribute.components);
+        const bool keeps = taken(reserved_name(attribute.name));
+        schema_.add(keeps ? attribute.name : name_in_file(attribute.name), attribute.type, attribute.components);
         copies_.push_back(
             {attribute.offset, schema_.attributes.back().offset, static_cast<uint32_t>(attribute.bytes())});
     }
-    if (options.normals) estimated_ = header.schema.find(io::names::normal_oct);
-    if (estimated_) schema_.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+    if (estimated && !schema_.find(io::names::normal))
+        schema_.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+    if (estimated) normal_ = *schema_.find(io::names::normal);
 
     info_ = io::merged_info(header.scans);
     info_.declared_points = header.points;
@@ -79,9 +85,12 @@ void Exporter::append(const NodeData& data, size_t first, size_t count,
         std::byte* out = &records[begin + i * schema_.stride];
         for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
         if (!spread_.narrow.empty()) spread_colour(in, out);
-        if (!estimated_) continue;
-        const auto normal = decode_normal(io::load<NormalCode>(in + estimated_->offset));
-        io::store(out + schema_.attributes.back().offset, normal.value_or(glm::vec3(0.0f)));
+        if (!normal_) continue;
+        const glm::vec3 normal = normals_.of(in);
+        for (int axis = 0; axis < 3; ++axis)
+            io::store_scalar(normal_->type,
+                             out + normal_->offset + static_cast<size_t>(axis) * io::scalar_bytes(normal_->type),
+                             normal[axis]);
     }
 }
 

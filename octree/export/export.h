@@ -2,17 +2,22 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "io/formats/scan.h"
+#include "octree/point_normals.h"
 #include "octree/source.h"
 
 namespace lucarne::octree {
 
 struct ExportOptions {
-    bool normals = false;  ///< write the estimated normals as `normal`, f32 x3
+    /// Write the normals that are drawn as `normal` where these are estimated. Caches whose estimated normals stand
+    /// in place of the inputs' own are always written so.
+    bool normals = false;
 };
 
-/// What of a cache goes back into a scan file: the inputs' attributes without those that the build added.
+/// What of a cache goes back into a scan file: the inputs' attributes without those that the build added. Inputs'
+/// own normals that estimated ones replace keep the name that the cache gives them (octree/stored_names.h).
 class Exporter {
  public:
     Exporter(const NodeSource& source, const ExportOptions& options);
@@ -53,7 +58,8 @@ class Exporter {
         std::vector<bool> narrow;      ///< scans whose colours are spread over 16 bits; empty: none
         uint32_t scan = 0, color = 0;  ///< where these stand, in the cache's records and in ours
     } spread_;
-    const io::Attribute* estimated_ = nullptr;  ///< in the cache's schema, where normals are wanted
+    PointNormals normals_;
+    std::optional<io::Attribute> normal_;  ///< of our schema, where it is written from normals_
 };
 
 }  // namespace lucarne::octree

@@ -102,7 +102,8 @@ Result<void> GrowingBuild::State::take_first() {
     std::vector<const io::PointSource*> sources;
     for (const auto& input : inputs) sources.push_back(input.get());
     options.build.inputs = sources;
-    LUCARNE_ASSIGN(unifier, Unifier::create(std::move(sources)));
+    LUCARNE_ASSIGN(unifier, Unifier::create(std::move(sources),
+                                            options.build.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(*unifier));
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
     schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();

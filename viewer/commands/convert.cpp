@@ -221,7 +221,8 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->type_name("CACHE.luc");
     command
         ->add_option("--normals", options->build.normals,
-                     "auto keeps what the inputs have and estimates the rest")
+                     "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
+                     "them; estimate puts estimated ones in place of the inputs' own, which stay as normal_in_file")
         ->transform(CLI::CheckedTransformer(kModes))
         ->type_name("auto|keep|estimate|none")
         ->default_str("auto");

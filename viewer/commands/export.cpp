@@ -52,7 +52,7 @@ void add_export(CLI::App& app, Command& chosen) {
     command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         ->required()
         ->type_name("FILE");
-    command->add_flag("--normals", options->content.normals, "Write the estimated normals as well");
+    command->add_flag("--normals", options->content.normals, "Write estimated normals, too, as normal (always where convert was told to estimate them)");
     command->add_flag("--overwrite", options->overwrite, "Replace the output if it exists");
     command->callback([options, &chosen] { chosen = [options] { return export_cache(*options); }; });
 }

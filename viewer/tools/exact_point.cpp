@@ -123,8 +123,8 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
     if (attribute.name == io::names::area) return std::nullopt;
     if (attribute.name == io::names::normal_oct && bytes && attribute.components == 3) {
         const auto normal = octree::decode_normal(io::load<octree::NormalCode>(at));
-        if (!normal) return PointField{"normal (estimated)", "none"};
-        return PointField{"normal (estimated)",
+        if (!normal) return PointField{std::string(kEstimatedNormal), "none"};
+        return PointField{std::string(kEstimatedNormal),
                           fmt::format("{:.3f} {:.3f} {:.3f}", normal->x, normal->y, normal->z)};
     }
     PointField field{attribute.name, plain_value(attribute, record)};

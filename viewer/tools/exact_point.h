@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -9,6 +10,9 @@
 #include "octree/source.h"
 
 namespace lucarne::viewer {
+
+/// The field of a normal that was estimated when the scan was converted.
+inline constexpr std::string_view kEstimatedNormal = "normal (estimated)";
 
 /// An attribute of a point as people read it: "classification", "2 ground".
 struct PointField {

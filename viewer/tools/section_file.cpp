@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/core/file.h"
+#include "octree/stored_names.h"
 #include "viewer/axis_marks.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/section.h"
@@ -21,8 +22,11 @@ std::vector<std::string> columns_of(const octree::NodeSource& source) {
     std::vector<std::string> names;
     for (const uint32_t root : source.roots())
         for (const io::Attribute& attribute : source.part_of(root).header.schema.attributes) {
-            if (attribute.name == io::names::area || attribute.name == io::names::normal_oct) continue;
-            if (std::ranges::find(names, attribute.name) == names.end()) names.push_back(attribute.name);
+            if (attribute.name == io::names::area) continue;
+            const bool estimated = attribute.name == io::names::normal_oct;
+            if (estimated && !octree::replaces_normals(source.part_of(root).header.schema)) continue;
+            const std::string name = estimated ? std::string(kEstimatedNormal) : attribute.name;
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
         }
     return names;
 }

@@ -323,6 +323,21 @@ Scene one_material() {
     return scene;
 }
 
+TEST(PackSurfels, TheFilesOwnNormalsAreDrawnUnlessEstimatedOnesReplaceThem) {
+    const glm::vec3 own(1, 0, 0), estimated(0, 0, 1);
+    for (const std::string name : {"normal", "normal_in_file"}) {
+        Records records;
+        records.header.schema.add(name, io::ScalarType::f32, 3);
+        std::byte* record =
+            records.add({105, 210, 315}, {1, 1, 1}, octree::encode_normal(estimated), 0.02, 2, 0);
+        io::store(record + records.header.schema.find(name)->offset, own);
+        const auto surfels = records.pack(one_material());
+        ASSERT_EQ(surfels.size(), 1u);
+        const glm::vec3 expected = name == "normal" ? own : estimated;
+        EXPECT_GT(glm::dot(decode_octahedral(surfels[0].c), expected), 0.999f) << name;
+    }
+}
+
 TEST(PackSurfels, RecordsKeepPlaceColourNormalAndArea) {
     Records records;
     const glm::vec3 normal = glm::normalize(glm::vec3(1, -2, 3));

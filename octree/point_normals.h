@@ -1,0 +1,23 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "io/points.h"
+
+namespace lucarne::octree {
+
+/// The normal of a point, for everything that draws, shows or writes normals. The input's own (`normal`) where it
+/// points anywhere, else the estimated one (`normal_oct`). `--normals estimate` stores the input's own under
+/// another name (octree/stored_names.h), so that the estimated ones are used.
+class PointNormals {
+ public:
+    explicit PointNormals(const io::Schema& schema);
+
+    /// Unit, or zero where the point has none.
+    glm::vec3 of(const std::byte* record) const;
+
+ private:
+    const io::Attribute *own_ = nullptr, *estimated_ = nullptr;  ///< in the schema, which outlives this
+};
+
+}  // namespace lucarne::octree
