@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include "io/core/log.h"
@@ -31,12 +32,14 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Runs one stage and writes down what it took.
+/// Runs one stage and writes down what it took. What it freed goes back to the system: else the allocator keeps it
+/// in pools of each thread, where the next stage's memory comes on top.
 template <class Stage>
 auto timed(BuildReport& report, const char* name, const Stage& stage) {
     const auto wall = std::chrono::steady_clock::now();
     const double cpu = cpu_seconds();
     auto result = stage();
+    ::malloc_trim(0);
     report.stages.push_back({name,
                              std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
                              cpu_seconds() - cpu});
@@ -92,6 +95,7 @@ Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, con
                                const MemoryPlan& memory, BuildListener* listener) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
     ChunkStore store(std::move(file), inputs.schema(), facts.root);
+    const ThreadLimit readers(memory.readers);
     Steps steps(listener, "sorting into chunks", 2 * facts.points);
     const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
     LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory));
@@ -155,7 +159,10 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
                        return resumable(work, "scan", ScanFacts::restore,
-                                        [&] { return scan_inputs(inputs, memory.batch_bytes); });
+                                        [&] {
+                                            const ThreadLimit readers(memory.readers);
+                                            return scan_inputs(inputs, memory.batch_bytes);
+                                        });
                    }));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;

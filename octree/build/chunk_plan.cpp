@@ -12,7 +12,8 @@ namespace {
 
 constexpr uint64_t kMaxChunkPoints = 1'000'000;  // larger chunks sort slower and share out worse
 constexpr uint64_t kMinMemory = uint64_t{16} << 20;
-constexpr uint64_t kMinMemoryNormals = uint64_t{32} << 20;
+/// What a thread that decodes LAZ holds (io/formats/laz/reader.cpp), and the share of the memory for all of them.
+constexpr uint64_t kReaderBytes = uint64_t{8} << 20, kReaderShare = 8;
 constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, chunk number
 /// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
 /// samples.
@@ -25,9 +26,9 @@ constexpr uint64_t kWorkPerCandidate = 48;
 }  // namespace
 
 Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
-    if (const uint64_t least = work.normals ? kMinMemoryNormals : kMinMemory; bytes < least)
+    if (bytes < kMinMemory)
         return bad_arguments("--memory", fmt::format("{} is too little", bytes_text(bytes)),
-                             fmt::format("give at least {}", bytes_text(least)));
+                             fmt::format("give at least {}", bytes_text(kMinMemory)));
     const uint64_t per_point = 2 * uint64_t{work.record} + kWorkPerPoint;
     const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
     // Points that each of so many workers has room for. The assembly samples as well; a single worker takes
@@ -44,6 +45,8 @@ Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
     plan.grid_bytes = bytes / 4;
     plan.buffer_bytes = bytes / 2;
     plan.batch_bytes = std::min<uint64_t>(bytes / 16, 1 << 20);
+    plan.readers = static_cast<unsigned>(
+        std::clamp<uint64_t>(bytes / kReaderShare / kReaderBytes, 1, std::max(1u, work.threads)));
     return plan;
 }
 

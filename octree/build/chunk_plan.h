@@ -40,6 +40,7 @@ struct MemoryPlan {
     uint64_t grid_bytes = 0;    ///< for counting
     uint64_t buffer_bytes = 0;  ///< for dealing points out to chunks
     uint64_t batch_bytes = 0;   ///< of points read at a time
+    unsigned readers = 1;       ///< threads that read an input; each holds some of it
 };
 
 /// Counts the points of a cube in a regular grid of cells and joins sparse cells to chunks: cubes of the

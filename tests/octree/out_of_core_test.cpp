@@ -11,6 +11,7 @@
 
 #include "io/core/options.h"
 #include "io/core/random.h"
+#include "io/formats/scan.h"
 #include "octree/build/build.h"
 #include "octree/cache.h"
 #include "tests/octree/test_sources.h"
@@ -59,8 +60,10 @@ TEST(OutOfCore, DISABLED_BuildAndWriteDownThePeak) {
     const char* memory = std::getenv("LUCARNE_TEST_NORMALS_MEMORY");
     if (!points || !output) GTEST_SKIP() << "run by the test below";
     const auto source = rooms(std::stoull(points));
+    const char* scan = std::getenv("LUCARNE_TEST_SCAN");
+    const auto opened = scan ? io::open_scan(scan).value() : nullptr;
     BuildOptions options;
-    options.inputs = {&source};
+    options.inputs = {opened ? opened.get() : &source};
     options.output = output;
     options.normals = memory ? NormalsMode::estimate : NormalsMode::none;
     options.memory = memory ? std::stoull(memory) : kMemory;
@@ -118,7 +121,7 @@ TEST(OutOfCore, StaysUnderTheMemoryCapWithNormals) {
 #endif
     const test::TempFolder folder;
     const uint64_t points = 2'000'000;
-    for (const uint64_t memory : {uint64_t{32} << 20, uint64_t{64} << 20}) {
+    for (const uint64_t memory : {uint64_t{16} << 20, uint64_t{32} << 20, uint64_t{64} << 20}) {
         ::setenv("LUCARNE_TEST_NORMALS_MEMORY", std::to_string(memory).c_str(), 1);
         const Measured base = build_in_child(folder / fmt::format("tiny-{}.luc", memory), 1000);
         const Measured full = build_in_child(folder / fmt::format("large-{}.luc", memory), points);
@@ -131,6 +134,37 @@ TEST(OutOfCore, StaysUnderTheMemoryCapWithNormals) {
         EXPECT_LE(held, memory + kSlack);
         EXPECT_GT(full.chunks, 10u);
     }
+}
+
+TEST(OutOfCore, StaysUnderTheMemoryCapWhileItReadsLaz) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "AddressSanitizer's own memory hides the program's";
+#endif
+    const test::TempFolder folder;
+    const auto scan = folder / "rooms.laz";
+    {
+        const auto source = rooms(600'000);
+        io::WriteOptions options;
+        options.bounds = std::array{glm::dvec3(3e5, 5e6, 0), glm::dvec3(3e5 + 100, 5e6 + 10, 5)};
+        const auto writer = io::create_scan(scan, source.schema(), source.info(), options);
+        ASSERT_TRUE(writer) << writer.error().line();
+        const auto reader = source.open();
+        io::PointBatch batch;
+        while ((*reader)->read(batch, 50'000).value_or(0) > 0) {
+            const auto written = (*writer)->write(batch.bytes);
+            ASSERT_TRUE(written) << written.error().line();
+        }
+        ASSERT_TRUE((*writer)->finish());
+    }
+    const Measured base = build_in_child(folder / "tiny.luc", 1000);
+    ::setenv("LUCARNE_TEST_SCAN", scan.c_str(), 1);
+    const Measured full = build_in_child(folder / "laz.luc", 1);
+    ::unsetenv("LUCARNE_TEST_SCAN");
+    const uint64_t held = full.peak - std::min(full.peak, base.peak);
+    std::printf("LAZ: %s resident, %s of it for an empty process; the cap is %s\n", bytes_text(full.peak).c_str(),
+                bytes_text(base.peak).c_str(), bytes_text(kMemory).c_str());
+    EXPECT_LE(held, kMemory + kSlack);
+    EXPECT_GT(full.chunks, 1u);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "octree/build/build.h"
 #include "octree/edit/edit.h"
 #include "octree/normals/normals.h"
+#include "viewer/commands/build_memory.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
 #include "viewer/commands/outputs.h"
@@ -168,7 +169,7 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
 
 Result<void> convert(ConvertOptions options) {
     auto& build = options.build;
-    LUCARNE_ASSIGN(build.memory, parse_bytes("--memory", options.memory));
+    LUCARNE_ASSIGN(build.memory, build_memory(options.memory));
     const std::string output = build.output.string();
     if (names_scan(output))
         return bad_arguments(output, "has the name of a scan",
@@ -228,7 +229,7 @@ void add_convert(CLI::App& app, Command& chosen) {
         ->default_str("auto");
     command
         ->add_option("--memory", options->memory,
-                     "Cap on memory, however large the input is (32M or more; 16M without normals)")
+                     "Cap on the memory of the process, however large the input is (32M or more)")
         ->capture_default_str()
         ->type_name("BYTES");
     command->add_option("--threads", options->build.threads, "0: all cores")

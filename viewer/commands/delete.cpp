@@ -9,6 +9,7 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "octree/edit/edit.h"
+#include "viewer/commands/build_memory.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
 
@@ -37,7 +38,7 @@ Result<octree::Selection> selection_of(const DeleteOptions& options) {
 
 Result<void> erase(const DeleteOptions& given) {
     auto options = given;
-    LUCARNE_ASSIGN(options.edit.memory, parse_bytes("--memory", options.memory));
+    LUCARNE_ASSIGN(options.edit.memory, build_memory(options.memory));
     if (options.box.empty() && options.scan.empty())
         return bad_arguments("delete", "nothing says which points", "give --box, --scan or both");
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, false));
@@ -63,7 +64,7 @@ void add_delete(CLI::App& app, Command& chosen) {
     command->add_option("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
         ->expected(1)
         ->type_name("N");
-    command->add_option("--memory", options->memory, "Cap on memory, besides the cache's directory")
+    command->add_option("--memory", options->memory, "Cap on the memory of the process, besides the cache's directory (32M or more)")
         ->capture_default_str()
         ->type_name("BYTES");
     command->add_option("--threads", options->edit.threads, "0: all cores")

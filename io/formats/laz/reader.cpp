@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "io/core/parallel.h"
 #include "io/formats/format.h"
@@ -79,7 +78,7 @@ class Reader final : public PointReader {
     Reader(const Points& points, const Schema& schema)
         : points_(points),
           schema_(schema),
-          side_by_side_(std::max(1u, std::thread::hardware_concurrency())) {}
+          side_by_side_(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
         while (taken_ == ready_.size() && (large_.decoder || next_ < points_.chunks.size()))
@@ -204,12 +203,12 @@ class Reader final : public PointReader {
     size_t most_chunks() const {
         constexpr uint64_t kModels = uint64_t{256} << 20;
         const uint64_t each = model_bytes(points_.compression);
-        return static_cast<size_t>(std::clamp<uint64_t>(kModels / each, 1, 4 * side_by_side_));
+        return std::clamp<size_t>(kModels / each, 1, side_by_side_ > 1 ? 4 * side_by_side_ : 1);
     }
 
     const Points& points_;
     const Schema& schema_;
-    unsigned side_by_side_;
+    size_t side_by_side_;  ///< threads that may decode: one chunk is held for one, several for each of many
     size_t next_ = 0;  ///< chunk
     OpenChunk large_;
     std::vector<std::byte> ready_;
