@@ -12,6 +12,9 @@ namespace {
 /// The least c >= 0 with sum(max(a_i, c)) = surface; reorders `areas`. Bisects over the values themselves:
 /// what lies above c keeps its own area, what lies below shares the rest evenly.
 double floor_of(std::span<float> areas, double surface) {
+    // Areas that add up to the surface but for rounding have a floor of 0, and not the least of them.
+    constexpr double kRounding = 1e-9;
+    if (std::accumulate(areas.begin(), areas.end(), 0.0) >= surface * (1 - kRounding)) return 0.0;
     size_t below = 0;    // known to lie under c
     double above = 0.0;  // sum of those known to lie at or over c
     while (!areas.empty()) {

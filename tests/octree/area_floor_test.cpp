@@ -56,6 +56,12 @@ TEST(AreaFloor, GrowsAsThePrefixShrinks) {
     EXPECT_LT(floors[2], floors[3]);
 }
 
+TEST(AreaFloor, IsZeroWhereTheAreasAddUpToTheSurfaceButForRounding) {
+    const auto own = random_areas(3000, 6);
+    for (const double rounding : {-1e-13, 0.0, 1e-13})
+        EXPECT_EQ(area_floors({}, own, floored_sum(own, 0) * (1 + rounding))[0], 0.0f) << rounding;
+}
+
 TEST(AreaFloor, UnknownAreasShareTheSurfaceEvenly) {
     const std::vector<float> own(64, 0.0f), inherited(16, 0.0f);
     const auto floors = area_floors(inherited, own, 8.0);
