@@ -1,7 +1,6 @@
 // Programs that are killed or lose their power between any two calls of a commit, from the last write before
 // the first sync to the end of the program: the cache is the old state or the new one, and sound.
 #include <functional>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -70,12 +69,7 @@ class Commit : public ::testing::Test {
         for (const auto& entry : fs::directory_iterator(at_)) fs::remove_all(entry.path());
     }
     std::vector<std::string> trace(const std::string& arguments) const {
-        const auto traced = lucarne_with_fault("trace:" + (folder_ / "calls").string(), arguments);
-        EXPECT_EQ(traced.code, 0) << traced.text;
-        std::istringstream lines(read_bytes(folder_ / "calls"));
-        std::vector<std::string> calls;
-        for (std::string call; std::getline(lines, call);) calls.push_back(call);
-        return calls;
+        return test::traced_calls(folder_ / "calls", arguments);
     }
     /// Every position in the cache, sorted; none where there is no cache. It verifies.
     std::vector<std::string> state(const std::string& when) const {

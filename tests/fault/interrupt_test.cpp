@@ -1,7 +1,6 @@
 // SIGINT, SIGTERM and SIGHUP: what can be gone on from is kept and said, nothing else is left.
 #include <array>
 #include <csignal>
-#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -32,14 +31,9 @@ class Interrupt : public ::testing::Test {
     /// The number of the call of this name, from 1; the last of them, or the first.
     size_t call_of(const std::string& name, bool last, const std::string& arguments,
                    const std::string& before = {}) {
-        const auto traced = lucarne_with_fault("trace:" + (folder_ / "calls").string(), arguments, before);
-        EXPECT_EQ(traced.code, 0) << traced.text;
-        std::istringstream calls(read_bytes(folder_ / "calls"));
-        size_t found = 0, number = 0;
-        for (std::string call; std::getline(calls, call);) {
-            ++number;
-            if (call == name && (last || !found)) found = number;
-        }
+        const auto calls = test::traced_calls(folder_ / "calls", arguments, before);
+        const auto first = static_cast<size_t>(std::ranges::find(calls, name) - calls.begin()) + 1;
+        const size_t found = last ? test::last_call(calls, name) : first % (calls.size() + 1);
         EXPECT_GT(found, 0u) << name;
         fs::remove_all(out_);
         fs::create_directory(out_);

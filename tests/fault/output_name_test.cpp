@@ -15,7 +15,7 @@ using io::testing::read_bytes;
 using test::lucarne_with_fault;
 using test::quoted;
 
-/// Commands that write one file; syncing its folder is their last call.
+/// Commands that write one file; their last sync is that of its folder.
 class OutputNames : public testing::Test {
  protected:
     struct Case {
@@ -28,14 +28,13 @@ class OutputNames : public testing::Test {
                 {cache, "convert --normals none " + quoted(scan) + " -o " + quoted(cache)},
                 {text, "export " + quoted(cache) + " -o " + quoted(text)}};
     }
-    /// Runs the command with its last call failing.
+    /// Runs the command with its last sync failing.
     test::Outcome run_with(const Case& tested, int error) {
         std::filesystem::remove(tested.output);
-        const auto counted = lucarne_with_fault("count:" + (folder_ / "calls").string(), tested.command);
-        EXPECT_EQ(counted.code, 0) << counted.text;
+        const auto calls = test::traced_calls(folder_ / "calls", tested.command);
         whole_ = read_bytes(tested.output);
         std::filesystem::remove(tested.output);
-        const std::string last = std::to_string(std::stoull(read_bytes(folder_ / "calls")));
+        const std::string last = std::to_string(test::last_call(calls, "fsync"));
         return lucarne_with_fault("error:" + last + ":" + std::to_string(error), tested.command);
     }
 

@@ -1,6 +1,5 @@
 // Conversions that are killed, run out of space or lose what was not synced, and go on.
 #include <algorithm>
-#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -29,12 +28,9 @@ class Conversion : public testing::Test {
  protected:
     void SetUp() override {
         ASSERT_EQ(lucarne("generate two-rooms --points 30k -o " + quoted(scan_)).code, 0);
-        ASSERT_EQ(lucarne_with_fault("trace:" + (folder_ / "calls").string(), convert("")).code, 0);
-        std::istringstream calls(read_bytes(folder_ / "calls"));
-        for (std::string call; std::getline(calls, call);) {
-            ++calls_;
-            if (call == "fsync" && last_write_ == 0) last_write_ = calls_ - 1;
-        }
+        const auto calls = test::traced_calls(folder_ / "calls", convert(""));
+        calls_ = calls.size();
+        last_write_ = static_cast<uint64_t>(std::ranges::find(calls, "fsync") - calls.begin());
         reference_ = read_bytes(cache_);
         fs::remove(cache_);
         ASSERT_GT(calls_, 10u);
@@ -131,10 +127,11 @@ TEST_F(Conversion, ReportsADiskThatIsFullAtAnyWriteAndLeavesNothing) {
 TEST_F(Conversion, ReportsAnyCallThatFails) {
     for (uint64_t call = 1; call <= calls_; call += 1 + calls_ / 30) {
         const auto outcome = lucarne_with_fault("error:" + std::to_string(call), convert(""));
-        if (outcome.code != 0) {
-            ASSERT_EQ(outcome.code, 1) << call << outcome.text;
-            ASSERT_FALSE(fs::exists(cache_)) << call;
-        } else {  // the sync of the folder, which not every file system has
+        // A hint may fail, and behind the name there is only the folder's sync.
+        const bool named = fs::exists(cache_);
+        ASSERT_EQ(outcome.code, named && outcome.text.find("cannot be synced") == std::string::npos ? 0 : 1)
+            << call << outcome.text;
+        if (named) {
             ASSERT_TRUE(read_bytes(cache_) == reference_) << call;
             fs::remove(cache_);
         }

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <vector>
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 // The program as a user runs it.
@@ -38,6 +42,22 @@ inline Outcome lucarne_with_fault(const std::string& fault, const std::string& a
     // The sanitizers' library wants to be the first, but does not need to.
     return run(before + " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS "' LUCARNE_FAULT='" +
                fault + "' exec " LUCARNE_BINARY " " + arguments);
+}
+
+/// The calls that change files, by name and in order, of a command that succeeds. `scratch` is a file for the preloaded
+/// library to write to.
+inline std::vector<std::string> traced_calls(const std::filesystem::path& scratch, const std::string& arguments,
+                                             const std::string& before = {}) {
+    const auto traced = lucarne_with_fault("trace:" + scratch.string(), arguments, before);
+    EXPECT_EQ(traced.code, 0) << traced.text;
+    std::ifstream lines(scratch);
+    std::vector<std::string> calls;
+    for (std::string call; std::getline(lines, call);) calls.push_back(call);
+    return calls;
+}
+/// The number of the last call of this name, from 1, as faults count; 0: there is none.
+inline size_t last_call(const std::vector<std::string>& calls, const std::string& name) {
+    return static_cast<size_t>(calls.rend() - std::find(calls.rbegin(), calls.rend(), name));
 }
 
 inline std::string quoted(const std::filesystem::path& path) {

@@ -56,6 +56,7 @@ struct MeasuredScan {
         });
         scan.info().path = "/survey/walls.las";
         scan.info().metres_per_unit = kFoot;
+        scan.info().unit_stated = true;
         octree::BuildOptions options;
         options.inputs = {&scan};
         options.output = file();
