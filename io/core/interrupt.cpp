@@ -1,16 +1,14 @@
 #include "io/core/interrupt.h"
 
 #include <csignal>
-#include <cstdio>
 #include <map>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
 
-#include <unistd.h>
-
 #include "io/core/log.h"
+#include "io/core/progress.h"
 
 namespace lucarne {
 namespace {
@@ -32,7 +30,7 @@ void run_actions() {
     for (const auto& [unfinished, action] : all.of) {
         const std::string line = action();
         if (line.empty()) continue;
-        if (::isatty(STDERR_FILENO)) std::fputc('\n', stderr);  // below the progress bar
+        Progress::end_line();
         log::warn("{}", line);
     }
 }

@@ -73,4 +73,8 @@ void Progress::print(bool last) {
     std::fflush(stderr);
 }
 
+void Progress::end_line() {
+    if (isatty(STDERR_FILENO)) std::fputc('\n', stderr);
+}
+
 }  // namespace lucarne

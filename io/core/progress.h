@@ -23,6 +23,8 @@ class Progress {
 
     /// Turns all output off, for tests and `--quiet`.
     static void set_silent(bool silent);
+    /// Moves below a bar that may be on the terminal, before a last line when the program is interrupted.
+    static void end_line();
 
  private:
     void print(bool last);
