@@ -6,9 +6,9 @@
 
 namespace lucarne::octree {
 
-/// The normal of a point, for everything that draws, shows or writes normals. The input's own (`normal`) where it
-/// points anywhere, else the estimated one (`normal_oct`). `--normals estimate` stores the input's own under
-/// another name (octree/stored_names.h), so that the estimated ones are used.
+/// Decides which normal of a point is drawn, shown and written: the input's own (`normal`) where it is not zero, else
+/// the estimated one (`normal_oct`). `--normals estimate` stores the input's own under another name
+/// (octree/stored_names.h), so that the estimated ones are used.
 class PointNormals {
  public:
     explicit PointNormals(const io::Schema& schema);

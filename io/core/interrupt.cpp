@@ -13,11 +13,11 @@
 namespace lucarne {
 namespace {
 
-/// Signals are the process's, and so is this.
+/// One for the process, because signals belong to the process.
 struct Actions {
     std::mutex mutex;
     std::map<std::filesystem::path, InterruptAction> of;
-    InterruptRequest* request = nullptr;  ///< who wants to hear of the first signal
+    InterruptRequest* request = nullptr;  ///< takes the first signal
 };
 Actions& actions() {
     static auto* all = new Actions;  // outlives every other static object, whose destructors may use it
@@ -26,7 +26,7 @@ Actions& actions() {
 
 void run_actions() {
     auto& all = actions();
-    all.mutex.lock();  // for good: nothing is finished or begun any more
+    all.mutex.lock();  // never released: no file may be finished or begun from here on
     for (const auto& [unfinished, action] : all.of) {
         const std::string line = action();
         if (line.empty()) continue;
@@ -37,7 +37,7 @@ void run_actions() {
 
 }  // namespace
 
-/// Whether somebody takes the signal that has come.
+/// Returns whether an InterruptRequest takes the signal, in which case the program goes on.
 bool hand_over_interrupt() {
     const std::lock_guard lock(actions().mutex);
     InterruptRequest* request = actions().request;

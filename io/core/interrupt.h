@@ -14,7 +14,7 @@ using InterruptAction = std::function<std::string()>;
 
 /// Sets what an interrupt does with `unfinished`, in place of what was set before.
 void at_interrupt(const std::filesystem::path& unfinished, InterruptAction action);
-/// It is finished or removed: an interrupt leaves it alone.
+/// Forgets the action of a path that is finished or removed.
 void forget_interrupt(const std::filesystem::path& unfinished);
 
 /// From now on the three signals run all actions, print their lines and then end the program as usual. A
@@ -23,8 +23,8 @@ void forget_interrupt(const std::filesystem::path& unfinished);
 /// they are blocked.
 void handle_interrupts();
 
-/// While this lives the first of the signals does not end the program: requested() tells of it, so that a window can
-/// save its work and close. The second one does what it does without this. One at a time.
+/// Takes the first of the signals instead of ending the program: requested() reports it, so that a window can save its
+/// work and close. A second signal ends the program as usual. Only one object may exist at a time.
 class InterruptRequest {
  public:
     InterruptRequest();

@@ -11,7 +11,7 @@ namespace lucarne::viewer {
 namespace {
 
 void list_unsaved(const std::vector<Unsaved>& all) {
-    ImGui::TextUnformatted("This is in no file yet:");
+    ImGui::TextUnformatted("Not saved yet:");
     for (const Unsaved& one : all) {
         ImGui::BulletText("%s", one.what.c_str());
         ImGui::Indent();
