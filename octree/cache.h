@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/source.h"
 
 namespace lucarne::octree {

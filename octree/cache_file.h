@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/cache_format.h"
 #include "octree/codec/decoder_pool.h"
 #include "octree/metadata.h"

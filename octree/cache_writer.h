@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "io/core/file.h"
-#include "io/core/update_file.h"
+#include "io/files/file.h"
+#include "io/files/update_file.h"
 #include "octree/cache_format.h"
 
 namespace lucarne::octree {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/random.h"
 #include "octree/cache.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::gi {
 namespace {

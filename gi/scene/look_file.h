@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "gi/scene/look.h"
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "gi/scene/render_settings.h"
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 

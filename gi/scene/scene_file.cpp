@@ -11,7 +11,7 @@
 #include "gi/scene/scene.h"
 #include "gi/scene/scene_lights.h"
 #include "gi/scene/scene_limits.h"
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 namespace {

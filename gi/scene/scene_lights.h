@@ -5,7 +5,7 @@
 
 #include "gi/scene/environment.h"
 #include "gi/scene/scene.h"
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 

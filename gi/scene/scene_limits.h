@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 

@@ -9,8 +9,8 @@
 #include "gi/scene/look_file.h"
 #include "gi/scene/render_settings_file.h"
 #include "gi/scene/scene.h"
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 
 namespace lucarne::gi {
 namespace {

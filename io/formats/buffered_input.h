@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::io {
 

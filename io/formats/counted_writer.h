@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/format.h"
 #include "io/formats/text/decimal.h"
 

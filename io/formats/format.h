@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/scan.h"
 
 namespace lucarne::io {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/lattice.h"
 #include "io/points.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/formats/las_extras.h"
 

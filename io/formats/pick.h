@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::io {
 

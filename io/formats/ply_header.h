@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/remarks.h"
 
 // The header of a PLY file. Source: Greg Turk, "The PLY Polygon File Format", 1994, and the sized type names

@@ -14,7 +14,7 @@
 #include <ImfOutputFile.h>
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/terminal.h"
 #include "io/image/exr_header.h"
 #include "io/image/image.h"

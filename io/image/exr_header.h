@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::io {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/image/image.h"
 
 namespace lucarne::io {

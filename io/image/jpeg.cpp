@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <turbojpeg.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/image/image.h"
 
 namespace lucarne::io {

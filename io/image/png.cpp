@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/image/image.h"
 
 namespace lucarne::io {

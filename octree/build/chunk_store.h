@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/build/chunk_plan.h"
 #include "octree/source.h"
 

@@ -9,7 +9,7 @@
 #include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
-#include "io/core/private_file.h"
+#include "io/files/private_file.h"
 #include "io/points.h"
 #include "octree/cache_format.h"
 

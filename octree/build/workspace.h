@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/core/file.h"
-#include "io/core/update_file.h"
+#include "io/files/file.h"
+#include "io/files/update_file.h"
 
 namespace lucarne::octree {
 
@@ -20,7 +20,7 @@ enum class Resume {
 
 /// The scratch files of a build and the journal of its finished stages, in a folder of their own beside the
 /// output or in the temporary folder. Others can guess its name, so it is used only where it is private
-/// (io/core/private_file.h); else the scratch files are nameless, with a warning. Nothing in it is synced:
+/// (io/files/private_file.h); else the scratch files are nameless, with a warning. Nothing in it is synced:
 /// every record of the journal has a checksum, and has those of the scratch files it speaks of, so that what a
 /// power cut took is noticed and done again.
 class Workspace {

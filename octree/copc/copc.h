@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 #include "octree/source.h"
 
 namespace lucarne::octree {

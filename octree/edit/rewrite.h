@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "io/core/update_file.h"
+#include "io/files/update_file.h"
 #include "octree/build/chunk_store.h"
 #include "octree/cache_file.h"
 #include "octree/edit/edit.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/build/node_sampler.h"
 #include "octree/cache_format.h"
 #include "octree/source.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "io/core/update_file.h"
+#include "io/files/update_file.h"
 #include "tests/fault/run_lucarne.h"
 #include "tests/io/io_testing.h"
 

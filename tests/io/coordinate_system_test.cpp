@@ -1,5 +1,5 @@
 // What a coordinate system is called, and its unit, from well-known text and GeoTIFF keys.
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/crs_registry.h"
 #include "io/formats/las_crs.h"
 #include "tests/io/io_testing.h"

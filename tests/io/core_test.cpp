@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "io/core/counted.h"
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"

@@ -1,4 +1,4 @@
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 
 #include <array>
 #include <atomic>
@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/machine.h"
-#include "io/core/page_cache.h"
+#include "io/files/page_cache.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne {

@@ -1,4 +1,4 @@
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

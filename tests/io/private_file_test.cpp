@@ -1,5 +1,5 @@
 // Folders and files under names that can be guessed: only the user's own are opened.
-#include "io/core/private_file.h"
+#include "io/files/private_file.h"
 
 #include <array>
 

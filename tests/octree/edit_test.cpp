@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "io/core/update_file.h"
+#include "io/files/update_file.h"
 #include "octree/attributes.h"
 #include "octree/build/build.h"
 #include "octree/cache.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gi/scene/surfel_pool.h"
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/stream/cut.h"
 #include "viewer/input.h"
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "tests/viewer/program.h"
 #include "viewer/lights/light_edits.h"
 #include "viewer/tools/measure_file.h"

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"

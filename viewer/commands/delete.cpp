@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "octree/edit/edit.h"

@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 #include "io/core/log.h"
-#include "io/core/page_cache.h"
+#include "io/files/page_cache.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"

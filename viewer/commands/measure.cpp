@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/terminal.h"
 #include "viewer/commands/commands.h"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/json.h"
+#include "io/files/json.h"
 #include "viewer/flythrough/report.h"
 
 namespace lucarne::viewer {

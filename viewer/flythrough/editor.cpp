@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 namespace lucarne::viewer {
 namespace {

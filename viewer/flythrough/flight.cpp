@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/compare/metrics.h"
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
 #include "viewer/cost_model.h"

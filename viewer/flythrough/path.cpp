@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -15,10 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "io/core/file.h"
-#include "io/core/file_io.h"
+#include "io/files/file.h"
+#include "io/files/file_io.h"
 #include "io/core/interrupt.h"
-#include "io/core/private_file.h"
+#include "io/files/private_file.h"
 #include "io/core/process.h"
 
 namespace lucarne::viewer {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 #include "io/core/random.h"
 #include "viewer/picture_worker.h"
 #include "viewer/shell/settings.h"

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/video.h"
 #include "viewer/shell/job_queue.h"

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/file.h"
-#include "io/core/json.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 
 namespace lucarne::viewer {
 namespace {

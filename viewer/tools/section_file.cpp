@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "octree/stored_names.h"
 #include "viewer/axis_marks.h"
 #include "viewer/tools/measure_file.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 // The lowest layer of E57 (ASTM E2807-11, 6.2-6.3): pages of 1024 bytes, of which the last four are the
 // CRC-32C of the others, highest byte first. Physical offsets count all bytes, logical ones those without

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/laz/chunk_table.h"
 
 namespace lucarne::io::laz {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/mesh/mesh.h"
 
 namespace lucarne::io::mesh {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/remarks.h"
 
 // The header of a PCD file. Source: Point Cloud Library, "The PCD (Point Cloud Data) file format", versions

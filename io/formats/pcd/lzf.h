@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/buffered_input.h"
 
 // LZF, as PCD's binary_compressed holds it. Source: Marc Lehmann, LibLZF, lzf_d.c: a control byte below 32 is

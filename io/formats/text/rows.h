@@ -8,7 +8,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/formats/format.h"
 
 // Rows of numbers in text, parsed by all cores: what XYZ, PTS, PTX and the ASCII of PCD have in common.

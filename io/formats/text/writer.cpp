@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 #include "io/formats/format.h"

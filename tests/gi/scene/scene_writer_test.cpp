@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/scene/scene.h"
-#include "io/core/json.h"
+#include "io/files/json.h"
 #include "io/image/image.h"
 
 namespace lucarne::gi {

@@ -1,4 +1,4 @@
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 
 #include <cerrno>
 #include <iterator>

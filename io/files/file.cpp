@@ -1,4 +1,4 @@
-#include "io/core/file.h"
+#include "io/files/file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -9,9 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/core/file_io.h"
+#include "io/files/file_io.h"
 #include "io/core/interrupt.h"
-#include "io/core/private_file.h"
+#include "io/files/private_file.h"
 
 namespace lucarne {
 

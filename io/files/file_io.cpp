@@ -1,4 +1,4 @@
-#include "io/core/file_io.h"
+#include "io/files/file_io.h"
 
 #include <cerrno>
 #include <cstring>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 
 namespace lucarne::file_io {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/core/update_file.h"
+#include "io/files/update_file.h"
 
 #include <cerrno>
 #include <utility>
@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/core/file_io.h"
-#include "io/core/private_file.h"
+#include "io/files/file_io.h"
+#include "io/files/private_file.h"
 
 namespace lucarne {
 

@@ -1,4 +1,4 @@
-#include "io/core/json.h"
+#include "io/files/json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "io/core/file.h"
+#include "io/files/file.h"
 #include "io/core/terminal.h"
 
 namespace lucarne {

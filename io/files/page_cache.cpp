@@ -1,4 +1,4 @@
-#include "io/core/page_cache.h"
+#include "io/files/page_cache.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 
 namespace lucarne {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/core/private_file.h"
+#include "io/files/private_file.h"
 
 #include <cerrno>
 
@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/core/file_io.h"
-#include "io/core/handle_pool.h"
+#include "io/files/file_io.h"
+#include "io/files/handle_pool.h"
 
 namespace lucarne {
 namespace {

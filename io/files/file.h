@@ -8,7 +8,7 @@
 #include <string>
 
 #include "io/core/error.h"
-#include "io/core/handle_pool.h"
+#include "io/files/handle_pool.h"
 
 namespace lucarne {
 
