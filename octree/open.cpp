@@ -1,6 +1,6 @@
 #include "octree/open.h"
 
-#include "io/formats/copc.h"
+#include "io/formats/copc/copc.h"
 #include "octree/cache.h"
 #include "octree/copc/copc.h"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
-#include "io/formats/las_bounds.h"
+#include "io/formats/las/bounds.h"
 #include "io/formats/mesh/source.h"
 #include "viewer/tools/units.h"
 

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "io/core/log.h"
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 
 namespace lucarne::viewer {
 namespace {

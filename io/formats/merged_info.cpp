@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/las_crs.h"
-#include "io/formats/las_extras.h"
-#include "io/formats/value_range.h"
+#include "io/formats/las/crs.h"
+#include "io/formats/las/extras.h"
+#include "io/formats/common/value_range.h"
 
 namespace lucarne::io {
 namespace {

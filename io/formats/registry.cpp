@@ -7,10 +7,10 @@
 
 #include "io/core/log.h"
 #include "io/core/terminal.h"
-#include "io/formats/copc.h"
-#include "io/formats/format.h"
-#include "io/formats/las_extras.h"
-#include "io/formats/text.h"
+#include "io/formats/copc/copc.h"
+#include "io/formats/common/format.h"
+#include "io/formats/las/extras.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {

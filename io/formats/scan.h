@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "io/formats/lattice.h"
+#include "io/lattice.h"
 #include "io/points.h"
 
 namespace lucarne::io {

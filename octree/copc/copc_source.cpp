@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "io/core/parallel.h"
-#include "io/formats/copc.h"
+#include "io/formats/copc/copc.h"
 #include "octree/attributes.h"
 #include "octree/build/unify.h"
 #include "octree/copc/copc.h"

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "io/core/progress.h"
-#include "io/formats/copc_writer.h"
+#include "io/formats/copc/writer.h"
 #include "io/formats/merged_info.h"
 #include "octree/build/node_sampler.h"
 #include "octree/stored_names.h"

@@ -1,7 +1,7 @@
 // What a coordinate system is called, and its unit, from well-known text and GeoTIFF keys.
 #include "io/files/file.h"
-#include "io/formats/crs_registry.h"
-#include "io/formats/las_crs.h"
+#include "io/formats/crs/registry.h"
+#include "io/formats/las/crs.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/formats/copc_writer.h"
+#include "io/formats/copc/writer.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::io {

@@ -1,5 +1,5 @@
 // Extra bytes of LAS: what they are called, and how many are told apart.
-#include "io/formats/las_extras.h"
+#include "io/formats/las/extras.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

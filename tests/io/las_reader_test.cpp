@@ -8,7 +8,7 @@
 
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
-#include "io/formats/las_bounds.h"
+#include "io/formats/las/bounds.h"
 #include "tests/io/las_builder.h"
 
 namespace lucarne::io {

@@ -1,5 +1,5 @@
 // Which 32-bit integers hold given coordinates to their last digit.
-#include "io/formats/lattice.h"
+#include "io/lattice.h"
 
 #include <cmath>
 

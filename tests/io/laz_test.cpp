@@ -4,11 +4,11 @@
 
 #include <gmock/gmock.h>
 
-#include "io/formats/las_layout.h"
-#include "io/formats/laz/color.h"
-#include "io/formats/laz/decoder.h"
-#include "io/formats/laz/encoder.h"
-#include "io/formats/laz/integers.h"
+#include "io/formats/las/layout.h"
+#include "io/formats/las/laz/color.h"
+#include "io/formats/las/laz/decoder.h"
+#include "io/formats/las/laz/encoder.h"
+#include "io/formats/las/laz/integers.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"
 

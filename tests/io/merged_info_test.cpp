@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/las_extras.h"
+#include "io/formats/las/extras.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"
 

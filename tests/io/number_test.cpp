@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "io/formats/text.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {

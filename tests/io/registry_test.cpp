@@ -1,7 +1,7 @@
 // A file's format is told by its content, whatever stands before it; where that says nothing, by its name.
 #include <gmock/gmock.h>
 
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 #include "tests/io/scan_text.h"
 
 namespace lucarne::io {

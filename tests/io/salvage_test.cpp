@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 
 #include "io/core/counted.h"
-#include "io/formats/las_header.h"
-#include "io/formats/laz/chunk_table.h"
+#include "io/formats/las/header.h"
+#include "io/formats/las/laz/chunk_table.h"
 #include "tests/io/e57_builder.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"

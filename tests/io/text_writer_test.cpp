@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "io/formats/text/decimal.h"
+#include "io/formats/common/decimal.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::io {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
-#include "io/formats/copc.h"
+#include "io/formats/copc/copc.h"
 #include "io/formats/scan.h"
 #include "octree/build/build.h"
 #include "octree/export/export.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "io/formats/copc.h"
+#include "io/formats/copc/copc.h"
 #include "octree/build/build.h"
 #include "octree/cache.h"
 #include "octree/export/export.h"

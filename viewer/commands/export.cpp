@@ -8,7 +8,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/progress.h"
-#include "io/formats/copc.h"
+#include "io/formats/copc/copc.h"
 #include "io/formats/scan.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "io/formats/e57/layout.h"
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 
 namespace lucarne::io::e57 {
 namespace {

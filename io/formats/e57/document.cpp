@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
-#include "io/formats/format.h"
-#include "io/formats/text.h"
+#include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::e57 {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 
 namespace lucarne::io::e57 {
 namespace {

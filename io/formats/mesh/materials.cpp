@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "io/formats/text.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::mesh {
 namespace {

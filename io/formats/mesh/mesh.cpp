@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 #include "io/formats/mesh/triangulate.h"
 
 namespace lucarne::io::mesh {

@@ -14,7 +14,7 @@
 #include "io/core/log.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 #include "io/formats/mesh/sampler.h"
 #include "io/formats/mesh/surface.h"
 

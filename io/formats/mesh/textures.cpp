@@ -6,7 +6,7 @@
 
 #include "io/core/log.h"
 #include "io/core/random.h"
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 
 namespace lucarne::io::mesh {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "io/formats/buffered_input.h"
-#include "io/formats/format.h"
-#include "io/formats/text.h"
+#include "io/formats/common/buffered_input.h"
+#include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::pcd {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/files/file.h"
-#include "io/formats/remarks.h"
+#include "io/formats/common/remarks.h"
 
 // The header of a PCD file. Source: Point Cloud Library, "The PCD (Point Cloud Data) file format", versions
 // 0.6 and 0.7.

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/formats/text.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::pcd {
 namespace {

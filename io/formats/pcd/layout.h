@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/formats/pcd/header.h"
-#include "io/formats/ply_layout.h"
+#include "io/formats/ply/layout.h"
 #include "io/formats/text/rows.h"
 
 // How the fields of PCD become a record of ours.

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "io/files/file.h"
-#include "io/formats/buffered_input.h"
+#include "io/formats/common/buffered_input.h"
 
 // LZF, as PCD's binary_compressed holds it. Source: Marc Lehmann, LibLZF, lzf_d.c: a control byte below 32 is
 // followed by that many bytes + 1 as they are; else its upper three bits and, where these are 7, the next

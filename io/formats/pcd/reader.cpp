@@ -5,14 +5,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/buffered_input.h"
-#include "io/formats/format.h"
+#include "io/formats/common/buffered_input.h"
+#include "io/formats/common/format.h"
 #include "io/formats/pcd/header.h"
 #include "io/formats/pcd/layout.h"
 #include "io/formats/pcd/lzf.h"
 #include "io/formats/pcd/writer.h"
-#include "io/formats/pick.h"
-#include "io/formats/text.h"
+#include "io/formats/common/pick.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {

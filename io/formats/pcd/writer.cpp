@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/counted_writer.h"
+#include "io/formats/common/counted_writer.h"
 #include "io/formats/pcd/header.h"
 
 namespace lucarne::io::pcd {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/formats/text.h"
+#include "io/formats/common/text.h"
 
 // Lines of text cut into cells.
 namespace lucarne::io::text {

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/buffered_input.h"
-#include "io/formats/format.h"
-#include "io/formats/stations.h"
-#include "io/formats/text.h"
+#include "io/formats/common/buffered_input.h"
+#include "io/formats/common/format.h"
+#include "io/formats/common/stations.h"
+#include "io/formats/common/text.h"
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
-#include "io/formats/value_range.h"
+#include "io/formats/common/value_range.h"
 
 namespace lucarne::io {
 namespace {

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "io/files/file.h"
-#include "io/formats/format.h"
+#include "io/formats/common/format.h"
 
 // Rows of numbers in text, parsed by all cores: what XYZ, PTS, PTX and the ASCII of PCD have in common.
 namespace lucarne::io::text {

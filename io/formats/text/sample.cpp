@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/formats/text.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::text {
 namespace {

@@ -10,10 +10,10 @@
 #include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
-#include "io/formats/format.h"
-#include "io/formats/remarks.h"
+#include "io/formats/common/format.h"
+#include "io/formats/common/remarks.h"
 #include "io/formats/text/columns.h"
-#include "io/formats/text/decimal.h"
+#include "io/formats/common/decimal.h"
 
 namespace lucarne::io::text {
 namespace {

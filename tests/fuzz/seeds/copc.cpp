@@ -1,7 +1,7 @@
 // COPC by our own writer: six levels of one octant, so deep that the hierarchy has a second page.
 #include <stdexcept>
 
-#include "io/formats/copc_writer.h"
+#include "io/formats/copc/writer.h"
 #include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::fuzz {

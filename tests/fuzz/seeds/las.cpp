@@ -2,7 +2,7 @@
 // beside the points.
 #include <fmt/format.h>
 
-#include "io/formats/las_header.h"
+#include "io/formats/las/header.h"
 #include "tests/fuzz/seeds/seeds.h"
 #include "tests/io/las_builder.h"
 

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "io/core/random.h"
-#include "io/formats/las_layout.h"
-#include "io/formats/laz/chunk_decoder.h"
-#include "io/formats/laz/encoder.h"
-#include "io/formats/laz/integers.h"
-#include "io/formats/laz/writer.h"
+#include "io/formats/las/layout.h"
+#include "io/formats/las/laz/chunk_decoder.h"
+#include "io/formats/las/laz/encoder.h"
+#include "io/formats/las/laz/integers.h"
+#include "io/formats/las/laz/writer.h"
 #include "io/formats/scan.h"
 #include "tests/fuzz/seeds/seeds.h"
 #include "tests/io/las_builder.h"

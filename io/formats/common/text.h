@@ -1,0 +1,105 @@
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <optional>
+#include <string_view>
+
+#include "io/formats/common/number.h"
+
+// Words and numbers of text formats, whatever the locale.
+namespace lucarne::io {
+
+constexpr bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+/// The text behind the mark that some editors put before UTF-8.
+constexpr std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    return text;
+}
+
+/// Cuts the next word off the front of `line`; empty when there is none.
+inline std::string_view next_word(std::string_view& line) {
+    size_t first = 0;
+    while (first < line.size() && is_blank(line[first])) ++first;
+    size_t last = first;
+    while (last < line.size() && !is_blank(line[last])) ++last;
+    const auto word = line.substr(first, last - first);
+    line.remove_prefix(last);
+    return word;
+}
+
+/// ASCII letters in lower case.
+inline std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+/// Whether two words differ only in the case of ASCII letters.
+constexpr bool same_letters(std::string_view a, std::string_view b) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i)
+        if (small(a[i]) != small(b[i])) return false;
+    return true;
+}
+
+/// The index of what is called `name`; where nothing is, of the first whose name differs only in case; else the size.
+template <class List, class NameOf>
+size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
+    size_t alike = list.size();
+    for (size_t i = 0; i < list.size(); ++i) {
+        const std::string_view theirs = std::invoke(name_of, list[i]);
+        if (theirs == name) return i;
+        if (alike == list.size() && same_letters(theirs, name)) alike = i;
+    }
+    return alike;
+}
+
+/// Whether the float nearest to a decimal is that nearest to the double nearest to it: not where that double
+/// lies halfway between two floats, nor below their normal ones, which have other midpoints.
+inline bool rounds_to_float(double value) {
+    constexpr uint64_t kHalfway = uint64_t{1} << 28, kBelowFloat = (uint64_t{1} << 29) - 1;
+    if (std::abs(value) < std::numeric_limits<float>::min()) return value == 0;
+    return (std::bit_cast<uint64_t>(value) & kBelowFloat) != kHalfway;
+}
+
+/// The whole word as a number; integers only without fraction and in range. "nan" and "inf" are numbers; what
+/// is too large for a float becomes infinite, what is too small zero.
+template <class T>
+std::optional<T> parse_number(std::string_view word) {
+    if constexpr (std::is_floating_point_v<T>) {
+        const char* last = word.data() + word.size();
+        double plain = 0;
+        if (text::plain_number(word.data(), plain, last) == last && !word.empty() &&
+            (sizeof(T) == sizeof plain || rounds_to_float(plain)))
+            return static_cast<T>(plain);
+    }
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    const char* end = word.data() + word.size();
+    T value{};
+    const auto [stop, code] = std::from_chars(word.data(), end, value);
+    if (stop != end) return std::nullopt;
+    if (code == std::errc{}) return value;
+    if constexpr (std::is_floating_point_v<T>) {
+        if (code != std::errc::result_out_of_range) return std::nullopt;
+        const size_t exponent = word.find_first_of("eE");
+        const bool tiny = exponent != word.npos ? word.substr(exponent + 1).starts_with('-')
+                                                : word.find_first_of("123456789") > word.find('.');
+        const T size = tiny ? T{0} : std::numeric_limits<T>::infinity();
+        return word[0] == '-' ? -size : size;
+    } else {
+        return std::nullopt;
+    }
+}
+
+}  // namespace lucarne::io

@@ -1,0 +1,235 @@
+// E57 (ASTM E2807-11), read only: several scans become one stream of points. See e57/*.h.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/counted.h"
+#include "io/core/log.h"
+#include "io/formats/e57/layout.h"
+#include "io/formats/common/format.h"
+#include "io/formats/common/value_range.h"
+#include "io/formats/crs/wkt.h"
+
+namespace lucarne::io {
+namespace {
+
+/// Everything that is read of a file but its points.
+struct E57 {
+    std::shared_ptr<const InputFile> file;
+    e57::Document document;
+    std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
+    e57::Layout layout;
+    bool salvage = false;
+    Losses losses;
+};
+
+class E57Reader final : public PointReader {
+ public:
+    explicit E57Reader(const E57& e57) : e57_(e57) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const Schema& schema = e57_.layout.schema;
+        const size_t wanted = batch_limit(schema, most);
+        batch.bytes.clear();
+        batch.count = 0;
+        while (batch.count < wanted) {
+            if (!records_ && !open_next()) break;
+            const size_t block = std::min(wanted - batch.count, e57::kBlockRecords);
+            LUCARNE_ASSIGN(const size_t count, records_->read(block));
+            if (count == 0) {
+                add_loss(lost_, lost::damaged, records_->left());
+                records_.reset();
+                continue;
+            }
+            batch.bytes.resize((batch.count + count) * schema.stride);
+            const auto [kept, invalid] =
+                e57::convert_block(schema, e57_.document.scans[scan_], e57_.layout.scans[scan_], *records_,
+                                   count, batch.bytes.data() + batch.count * schema.stride);
+            batch.count += kept;
+            dropped_ += count - kept;
+            invalid_ += invalid;
+        }
+        batch.bytes.resize(batch.count * schema.stride);
+        return batch.count;
+    }
+    uint64_t dropped() const override { return dropped_; }
+    Losses losses() const override {
+        Losses losses;
+        add_loss(losses, "points whose state is invalid", invalid_);
+        add_loss(losses, lost::no_number, dropped_ - invalid_);
+        add_losses(losses, lost_);
+        return losses;
+    }
+
+ private:
+    bool open_next() {
+        const auto& scans = e57_.document.scans;
+        while (next_ < scans.size() && scans[next_].records == 0) ++next_;
+        if (next_ == scans.size()) return false;
+        scan_ = next_++;
+        records_.emplace(e57_.file, e57_.sections[scan_], scans[scan_], e57_.salvage);
+        return true;
+    }
+
+    const E57& e57_;
+    std::optional<e57::RecordReader> records_;
+    size_t scan_ = 0, next_ = 0;
+    uint64_t dropped_ = 0, invalid_ = 0;
+    Losses lost_;
+};
+
+class E57Source final : public PointSource {
+ public:
+    E57Source(E57 e57, const ReadOptions& options) : e57_(std::move(e57)) {
+        const auto& document = e57_.document;
+        info_.path = e57_.file->path().string();
+        info_.format = fmt::format("E57 1.0, {}, {}", counted(document.scans.size(), "scans"),
+                                   counted(document.images.size(), "images"));
+        info_.file_bytes = e57_.file->size();
+        info_.modified = e57_.file->modified();
+        set_unit(info_, options, 1.0);  // the format is in metres
+        info_.color_bits = e57_.layout.color_bits;
+        info_.losses = e57_.losses;
+        add_loss(info_.losses, "images, which are listed but not read", document.images.size());
+        const auto system = wkt_system(document.coordinate_system);
+        info_.coordinate_system = system.name;
+        info_.epsg = system.epsg;
+        for (size_t i = 0; i < document.scans.size(); ++i) {
+            const e57::Scan& scan = document.scans[i];
+            info_.declared_points += scan.records;
+            for (const e57::Field& field : scan.fields)
+                if (field.kind == e57::Field::Kind::text)
+                    add_loss(info_.losses, "texts of points, which are not read", scan.records);
+            // Spherical coordinates count from the scanner; others without a pose may count from anywhere.
+            if (scan.records > 0 && (scan.pose || e57_.layout.scans[i].spherical))
+                info_.stations.push_back(
+                    {e57_.layout.scans[i].station, scan.pose ? scan.pose->translation : glm::dvec3(0.0)});
+        }
+        nlohmann::json details = e57::to_details(document);
+        details["color_bits"] = info_.color_bits;
+        if (const auto limits = intensity_limits()) details[kIntensityLimits] = *limits;
+        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    }
+
+    /// That hold for the intensities of all scans.
+    std::optional<std::array<double, 2>> intensity_limits() const {
+        std::optional<std::array<double, 2>> all;
+        for (const e57::Scan& scan : e57_.document.scans) {
+            if (scan.records == 0 || !scan.find(names::intensity)) continue;
+            if (!scan.intensity_limits) return std::nullopt;
+            const auto [low, high] = *scan.intensity_limits;
+            all = all ? std::array{std::min((*all)[0], low), std::max((*all)[1], high)} : std::array{low, high};
+        }
+        return all;
+    }
+    const Schema& schema() const override { return e57_.layout.schema; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override { return std::make_unique<E57Reader>(e57_); }
+
+ private:
+    E57 e57_;
+    ScanInfo info_;
+};
+
+Result<std::string> read_xml(const std::shared_ptr<const InputFile>& file, const e57::FileHeader& header) {
+    if (header.xml_end - header.xml_begin > e57::kMostXmlBytes)
+        return rejected(file->path().string(),
+                        fmt::format("has an XML section of more than {} MiB", e57::kMostXmlBytes >> 20));
+    std::string xml;
+    e57::PageInput input(file, header.xml_begin, header.xml_end);
+    while (input.left() > 0) {
+        LUCARNE_ASSIGN(const auto bytes, input.peek(1));
+        xml.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        input.skip(bytes.size());
+    }
+    return xml;
+}
+
+/// No two scans share bytes, nor do they with the XML section.
+Result<void> check_apart(const std::string& name, const e57::FileHeader& header, const E57& e57) {
+    std::vector<std::pair<uint64_t, uint64_t>> ranges = {{header.xml_begin, header.xml_end}};
+    for (size_t i = 0; i < e57.sections.size(); ++i)
+        if (e57.document.scans[i].records > 0)
+            ranges.emplace_back(e57.sections[i].begin, e57.sections[i].end);
+    std::sort(ranges.begin(), ranges.end());
+    for (size_t i = 1; i < ranges.size(); ++i)
+        if (ranges[i].first < ranges[i - 1].second) return rejected(name, "has sections that overlap");
+    return {};
+}
+
+/// The scan's section. `constant` counts the points of all scans that take no bytes: kMostConstant in a file,
+/// or one a byte of it.
+Result<e57::Section> checked_section(const std::shared_ptr<const InputFile>& file,
+                                     const e57::FileHeader& header, const e57::Scan& scan, bool salvage,
+                                     uint64_t& constant) {
+    LUCARNE_ASSIGN(auto section, e57::read_section(file, header, scan, salvage));
+    if (e57::record_bits(scan) > 0) return section;
+    const uint64_t most = std::max(e57::kMostConstant, file->size());
+    if (constant + scan.records > most)
+        return rejected(file->path().string(),
+                        fmt::format("promises {} points that take no bytes, at most {} can be",
+                                    constant + scan.records, most));
+    constant += scan.records;
+    return section;
+}
+
+void warn_of_poses(const std::string& name, const e57::Document& document) {
+    const auto unturned =
+        std::count_if(document.scans.begin(), document.scans.end(),
+                      [](const e57::Scan& scan) { return scan.pose && scan.pose->unturned; });
+    if (unturned > 0)
+        log::warn("{}: the rotation of {} of its {} scans has no length, it is left out", name, unturned,
+                  document.scans.size());
+}
+
+/// E57 is metres by definition, whatever its coordinate system counts in.
+void warn_of_unit(const std::string& name, const e57::Document& document) {
+    const SystemUnits units = wkt_units(document.coordinate_system);
+    if (units.degrees)
+        log::warn("{}: its coordinate system counts in degrees, but E57 in metres; metres are taken", name);
+    else if (units.horizontal.value_or(1.0) != 1.0)
+        log::warn("{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
+                  "--unit if it does not",
+                  name, *units.horizontal);
+}
+
+Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
+                                              const ReadOptions& options) {
+    const std::string name = file->path().string();
+    LUCARNE_ASSIGN(const auto header, e57::read_file_header(file, options.salvage));
+    LUCARNE_ASSIGN(std::string xml, read_xml(file, header));
+    E57 e57;
+    LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
+    e57.salvage = options.salvage;
+    if (!options.quiet) warn_of_poses(name, e57.document);
+    if (!options.quiet && !options.metres_per_unit) warn_of_unit(name, e57.document);
+    uint64_t constant = 0;
+    for (e57::Scan& scan : e57.document.scans) {
+        Result<e57::Section> section;
+        if (scan.records > 0) section = checked_section(file, header, scan, options.salvage, constant);
+        if (!section && (!options.salvage || section.error().kind != ErrorKind::input_rejected))
+            return tl::unexpected(std::move(section).error());
+        if (!section) {
+            add_loss(e57.losses, lost::damaged, scan.records);
+            scan.records = 0;
+        }
+        e57.sections.push_back(section.value_or(e57::Section{}));
+    }
+    LUCARNE_TRY(check_apart(name, header, e57));
+    LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
+    if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
+        log::warn("{}: there are more bytes than its header promises, they are left out", name);
+    e57.file = std::move(file);
+    return std::make_unique<E57Source>(std::move(e57), options);
+}
+
+}  // namespace
+
+const Format& e57_format() {
+    static constexpr Format kFormat{
+        "E57", ".e57", [](std::string_view head) { return head.starts_with("ASTM-E57"); }, open_e57, nullptr};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

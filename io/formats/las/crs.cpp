@@ -1,0 +1,204 @@
+#include "io/formats/las/crs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/crs/registry.h"
+
+namespace lucarne::io::las {
+namespace {
+
+constexpr uint16_t kWktBit = 1 << 4;  // of the global encoding
+constexpr uint16_t kModelTypeKey = 1024, kLinearUnitsKey = 3076, kLinearUnitSizeKey = 3077;
+constexpr uint16_t kProjectedKey = 3072, kGeodeticKey = 2048, kGeoTextsRecord = 34737;
+constexpr uint16_t kVerticalKey = 4096, kVerticalUnitsKey = 4099;
+constexpr std::array<uint16_t, 3> kCitations = {3073, 1026, 2049};
+constexpr double kSameHeights = 1e-5;  ///< feet of the USA and of the world are the same for heights
+constexpr uint16_t kModelGeographic = 2, kUserDefined = 32767;
+
+bool plausible(double metres) {
+    return metres > 1e-9 && metres < 1e9;
+}
+
+/// The usual units of length are known by heart (EPSG registry, "units of measure").
+std::optional<double> unit_of_code(uint16_t code) {
+    if (code == 9001) return 1.0;
+    if (code == 9002) return 0.3048;           // international foot
+    if (code == 9003) return 1200.0 / 3937.0;  // US survey foot
+    return registered_unit(code);
+}
+
+struct GeoKeys {
+    std::optional<uint16_t> model, unit, projected, geodetic, vertical, vertical_unit;
+    std::array<std::string, 3> names;  ///< of the projected system, of all, of the geodetic system
+    std::optional<double> unit_size;
+};
+
+/// A citation: `count` characters at `first` of the record, up to its bar.
+std::string citation(std::string_view texts, size_t first, size_t count) {
+    std::string name;
+    for (const char c : texts.substr(std::min(first, texts.size()), count)) {
+        if (c == '|' || c == '\0') break;
+        name += c >= ' ' && c < 0x7f ? c : '?';
+    }
+    return name;
+}
+
+GeoKeys geo_keys(std::span<const std::byte> directory, std::span<const std::byte> doubles,
+                 std::string_view texts = {}) {
+    GeoKeys keys;
+    for (size_t at = 8; directory.size() >= 8 && directory.size() - at >= 8; at += 8) {
+        const auto id = load<uint16_t>(&directory[at]), location = load<uint16_t>(&directory[at + 2]);
+        const auto value = load<uint16_t>(&directory[at + 6]);
+        if (id == kProjectedKey && location == 0) keys.projected = value;
+        if (id == kGeodeticKey && location == 0) keys.geodetic = value;
+        if (id == kVerticalKey && location == 0) keys.vertical = value;
+        if (id == kVerticalUnitsKey && location == 0) keys.vertical_unit = value;
+        for (size_t i = 0; i < kCitations.size(); ++i)
+            if (id == kCitations[i] && location == kGeoTextsRecord)
+                keys.names[i] = citation(texts, value, load<uint16_t>(&directory[at + 4]));
+        if (id == kModelTypeKey && location == 0) keys.model = value;
+        if (id == kLinearUnitsKey && location == 0) keys.unit = value;
+        if (id == kLinearUnitSizeKey && location == kGeoDoublesRecord && (value + 1u) * 8u <= doubles.size())
+            keys.unit_size = load<double>(&doubles[value * size_t{8}]);
+        if (directory.size() - at < 16) break;
+    }
+    return keys;
+}
+
+std::span<const std::byte> doubles_of(const Header& header) {
+    const Vlr* doubles = header.find(kProjectionUser, kGeoDoublesRecord);
+    return doubles ? std::span<const std::byte>(doubles->data) : std::span<const std::byte>{};
+}
+
+/// Whether the text counts, or the GeoTIFF keys beside it.
+bool text_counts(const Header& header) {
+    return (header.global_encoding & kWktBit) || !header.find(kProjectionUser, kGeoKeyRecord);
+}
+
+Units units_of_text(std::string_view text) {
+    if (text.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == text.npos) return {};  // nothing is stated
+    Units units{wkt_units(text), {}};
+    if (units.known()) return units;
+    if (const auto understood = understood_units(text)) static_cast<SystemUnits&>(units) = *understood;
+    if (!units.known()) units.unknown = "its well-known text has none";
+    return units;
+}
+
+/// The unit of heights: its own key, else that of their system. Codes below 4096 and user-defined ones tell nothing.
+std::optional<double> vertical_unit(const GeoKeys& keys) {
+    if (keys.vertical_unit) return unit_of_code(*keys.vertical_unit);
+    if (!keys.vertical || *keys.vertical == kUserDefined) return std::nullopt;
+    const auto system = registered_units(*keys.vertical);
+    return system ? system->vertical : std::nullopt;
+}
+
+Units units_of_keys(const GeoKeys& keys) {
+    Units units;
+    units.vertical = vertical_unit(keys);
+    units.degrees = keys.model == kModelGeographic || (!keys.model && !keys.projected && keys.geodetic);
+    if (units.degrees) return units;
+    if (keys.unit == kUserDefined && keys.unit_size && plausible(*keys.unit_size)) {
+        units.horizontal = keys.unit_size;
+    } else if (keys.unit && *keys.unit != kUserDefined) {
+        units.horizontal = unit_of_code(*keys.unit);
+        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
+    } else if (keys.projected && *keys.projected != kUserDefined) {
+        const auto system = registered_units(*keys.projected);
+        if (system) units.horizontal = system->horizontal;
+        if (!units.vertical && system) units.vertical = system->vertical;
+        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
+    } else {
+        units.unknown = "its GeoTIFF keys have none";
+    }
+    return units;
+}
+
+}  // namespace
+
+Units units_of(const Header& header) {
+    const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
+    const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
+    if (wkt && text_counts(header)) return units_of_text(wkt->text());
+    return keys ? units_of_keys(geo_keys(keys->data, doubles_of(header))) : Units{};
+}
+
+void warn_of_units(const std::string& file, const Units& units, bool given) {
+    if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
+    if (!units.unknown.empty() && !given)
+        log::warn("{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is another",
+                  file, units.unknown);
+    if (units.vertical && units.horizontal && std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
+        log::warn("{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for the latter, "
+                  "heights are not converted",
+                  file, *units.vertical, *units.horizontal);
+}
+
+CoordinateSystem coordinate_system(const Header& header) {
+    const Vlr* wkt = header.find(kProjectionUser, kWktRecord);
+    const Vlr* directory = header.find(kProjectionUser, kGeoKeyRecord);
+    const Vlr* texts = header.find(kProjectionUser, kGeoTextsRecord);
+    if (wkt && text_counts(header)) return wkt_system(wkt->text());
+    if (!directory) return {};
+    const GeoKeys keys = geo_keys(directory->data, {}, texts ? texts->text() : std::string_view());
+    const bool geographic = keys.model == kModelGeographic;
+    const uint16_t code = (geographic ? keys.geodetic : keys.projected).value_or(0);
+    CoordinateSystem system;
+    for (const size_t i : geographic ? std::array<size_t, 3>{2, 1, 0} : std::array<size_t, 3>{0, 1, 2})
+        if (system.name.empty()) system.name = keys.names[i];
+    system.epsg = code == kUserDefined ? 0 : code;
+    return system;
+}
+
+std::vector<Vlr> projection_records(const nlohmann::json& details) {
+    if (!details.is_object()) return {};
+    const bool merged = details.contains("projection");
+    if (merged || details.value("format", nlohmann::json()) == "las") {
+        auto records =
+            records_from_json(details.value(merged ? "projection" : "records", nlohmann::json::array()));
+        if (!records) return {};
+        std::erase_if(*records, [](const Vlr& v) { return v.user_id != kProjectionUser; });
+        return std::move(*records);
+    }
+    const auto text = details.value("coordinate_system", nlohmann::json());
+    if (!text.is_string() || wkt_system(text.get<std::string>()).name.empty()) return {};
+    return {wkt_record(text.get<std::string>())};
+}
+
+void set_projection(Header& header, std::vector<Vlr> records) {
+    std::erase_if(header.vlrs, [](const Vlr& v) { return v.user_id == kProjectionUser; });
+    for (Vlr& record : records) header.vlrs.push_back(std::move(record));
+    if (!header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) return;
+    header.global_encoding |= kWktBit;
+    header.minor = 4;
+}
+
+Vlr wkt_record(const std::string& wkt) {
+    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // with its final zero
+    return {std::string(kProjectionUser), kWktRecord, "coordinate system", bytes.size() > 0xffff,
+            std::vector<std::byte>(bytes.begin(), bytes.end())};
+}
+
+void prefer_wkt(const std::string& file, Header& header) {
+    header.global_encoding |= kWktBit;
+    const Vlr* keys = header.find(kProjectionUser, kGeoKeyRecord);
+    if (!keys || header.find(kProjectionUser, kWktRecord)) return;
+    const CoordinateSystem system = coordinate_system(header);
+    const bool metres = units_of_keys(geo_keys(keys->data, doubles_of(header))).metres() == 1.0;
+    const auto wkt = metres ? utm_wkt(system.epsg) : std::nullopt;
+    if (wkt)
+        header.vlrs.push_back(wkt_record(*wkt));
+    else
+        log::warn(
+            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read nothing but well-known "
+            "text do "
+            "not see it",
+            file, system.epsg ? fmt::format("EPSG:{}", system.epsg) : system.name);
+}
+
+}  // namespace lucarne::io::las

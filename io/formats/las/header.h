@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "io/files/file.h"
+#include "io/lattice.h"
+#include "io/points.h"
+
+// The public header and the variable length records of LAS 1.0-1.4.
+// Source: ASPRS, "LAS Specification 1.4 - R15" (2019), and the specifications of 1.0 to 1.3.
+namespace lucarne::io::las {
+
+/// A (extended) variable length record.
+struct Vlr {
+    std::string user_id;
+    uint16_t record_id = 0;
+    std::string description;
+    bool extended = false;  ///< stands behind the points
+    std::vector<std::byte> data;
+
+    bool is(std::string_view user, uint16_t record) const { return user_id == user && record_id == record; }
+    std::string_view text() const { return {reinterpret_cast<const char*>(data.data()), data.size()}; }
+};
+inline constexpr std::string_view kSpecUser = "LASF_Spec", kProjectionUser = "LASF_Projection",
+                                  kOurUser = "lucarne";
+inline constexpr uint16_t kExtraBytesRecord = 4, kStationsRecord = 1;
+inline constexpr uint16_t kGeoKeyRecord = 34735, kGeoDoublesRecord = 34736, kWktRecord = 2112;
+
+struct Header {
+    uint8_t minor = 2;  ///< of version 1.<minor>
+    uint16_t file_source_id = 0, global_encoding = 0;
+    std::array<uint8_t, 16> guid{};
+    std::string system_id, software;
+    uint16_t creation_day = 0, creation_year = 0;
+    uint8_t point_format = 0;
+    uint16_t record_length = 20;
+    uint64_t points = 0;
+    uint64_t points_offset = 0;  ///< in the file; of no use for writing
+    bool compressed = false;     ///< LAZ: io/formats/las/laz; of no use for writing
+    uint16_t wave_bytes = 0;     ///< of the file's records behind their fields: skipped; 0 for writing
+    glm::dvec3 scale{1.0}, offset{0.0};
+    glm::dvec3 low{0.0}, high{0.0};  ///< the box it states, true or not; of no use for writing
+    std::vector<Vlr> vlrs;
+    Losses losses;  ///< found while reading; of no use for writing
+
+    const Vlr* find(std::string_view user, uint16_t record) const;
+};
+constexpr uint16_t header_bytes(uint8_t minor) {
+    return minor >= 4 ? 375 : minor == 3 ? 235 : 227;
+}
+constexpr bool extended_format(uint8_t point_format) {
+    return point_format >= 6;
+}
+/// Formats 4, 5, 9 and 10 are others with a wave packet between their fields and their extra bytes: which;
+/// others are what they are.
+constexpr uint8_t without_waves(uint8_t point_format) {
+    constexpr std::array<uint8_t, 11> kSame = {0, 1, 2, 3, 1, 3, 6, 7, 8, 6, 8};
+    return point_format < kSame.size() ? kSame[point_format] : point_format;
+}
+constexpr uint8_t with_waves(uint8_t point_format) {
+    return point_format == 1 ? 4 : point_format == 3 ? 5 : point_format == 6 ? 9 : 10;
+}
+inline constexpr uint16_t kWavePacketBytes = 29;
+/// Bytes of a record before its extra bytes; 0 for formats that are not known, and those with wave packets.
+constexpr uint16_t record_bytes(uint8_t point_format) {
+    constexpr std::array<uint16_t, 9> kBytes = {20, 28, 26, 34, 0, 0, 30, 36, 38};
+    return point_format < kBytes.size() ? kBytes[point_format] : 0;
+}
+constexpr bool has_gps_time(uint8_t f) {
+    return f == 1 || f == 3 || f >= 6;
+}
+constexpr bool has_color(uint8_t f) {
+    return f == 2 || f == 3 || f == 7 || f == 8;
+}
+
+/// Everything before the points, and the extended records behind them. Rejects what is not LAS
+/// of a known point format, and files that cannot hold the points they promise. Records that are broken or
+/// too large to keep (kMostRecordBytes in all) are left out with a warning. With `salvage` the points are those
+/// that are there, or could be, and the missing ones are a loss.
+Result<Header> read_header(const InputFile& file, bool salvage = false);
+
+inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
+inline constexpr uint32_t kMostRecords = 100'000;
+/// Where nothing changes from point to point, LAZ's adaptive models still take a hundredth of a bit for each
+/// (what changed: 128 symbols of 2^15; the numbers of bits of two differences: 33 each).
+inline constexpr uint64_t kMostPointsAByte = 1000;
+
+/// `info.details`: what a later export needs to write the same header again.
+nlohmann::json to_details(const Header& header);
+Result<Header> from_details(const std::string& file, const nlohmann::json& details);
+/// Of `details`: the records. Empty where it is none of ours.
+nlohmann::json records_to_json(const std::vector<Vlr>& vlrs);
+std::optional<std::vector<Vlr>> records_from_json(const nlohmann::json& records);
+/// Where the integers of a scan's file stood; empty where it was no LAS.
+std::optional<Lattice> lattice_of(const ScanInfo& scan);
+
+}  // namespace lucarne::io::las

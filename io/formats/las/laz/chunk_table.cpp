@@ -1,0 +1,190 @@
+#include "io/formats/las/laz/chunk_table.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/core/log.h"
+#include "io/formats/las/bounds.h"
+#include "io/formats/las/laz/chunk_decoder.h"
+#include "io/formats/las/laz/decoder.h"
+#include "io/formats/las/laz/integers.h"
+
+namespace lucarne::io::laz {
+namespace {
+
+constexpr uint64_t kOffsetBytes = 8;  ///< where the table begins: a number before the first chunk
+constexpr uint64_t kTableHeader = 8;
+/// A chunk is held in memory while it is decoded.
+constexpr uint64_t kMostChunkBytes = uint64_t{1} << 30;
+/// Of a record as it is, to its longest code: a symbol of a byte takes 15 bits at most, and what is not worth
+/// a model goes plainly.
+constexpr uint64_t kLongestCode = 4;
+
+/// Reads at most what is there.
+Result<std::vector<std::byte>> read_up_to(const InputFile& file, uint64_t offset, uint64_t bytes) {
+    std::vector<std::byte> data(std::min(bytes, file.size() - std::min(offset, file.size())));
+    LUCARNE_TRY(file.read_at(offset, data));
+    return data;
+}
+
+/// 0 where no table can be: the number before the points, or the last of the file where a writer could not go
+/// back.
+Result<uint64_t> table_offset(const InputFile& file, uint64_t points_offset) {
+    const uint64_t first = points_offset + kOffsetBytes;
+    if (file.size() < first + kTableHeader) return 0;
+    for (const uint64_t place : {points_offset, file.size() - kOffsetBytes}) {
+        std::array<std::byte, kOffsetBytes> bytes{};
+        LUCARNE_TRY(file.read_at(place, bytes));
+        const auto offset = load<uint64_t>(bytes.data());
+        if (offset >= first && offset <= file.size() - kTableHeader) return offset;
+    }
+    return 0;
+}
+
+/// Empty where the table is none of this file.
+Result<std::vector<ChunkPlace>> parse_table(const InputFile& file, const las::Header& header,
+                                            const Compression& compression, uint64_t table) {
+    std::array<std::byte, kTableHeader> head{};
+    LUCARNE_TRY(file.read_at(table, head));
+    const uint64_t count = load<uint32_t>(&head[4]);
+    const uint64_t first = header.points_offset + kOffsetBytes;
+    if (load<uint32_t>(&head[0]) != 0 || count > (table - first) / header.record_length)
+        return std::vector<ChunkPlace>();
+    // Two numbers a chunk, each of six bytes in its longest code.
+    LUCARNE_ASSIGN(const auto bytes, read_up_to(file, table + kTableHeader, 12 * count + 16));
+    Decoder decoder(bytes);
+    IntegerModel model(32, 2);
+    const bool variable = compression.chunk_points == kVariableChunks;
+    std::vector<ChunkPlace> chunks;
+    uint64_t offset = first, points = 0;
+    int32_t last_points = 0, last_bytes = 0;
+    for (uint64_t i = 0; i < count && points < header.points; ++i) {
+        if (variable) last_points = model.code(decoder, last_points, 0, 0);
+        last_bytes = model.code(decoder, last_bytes, 0, 1);
+        ChunkPlace chunk{offset, static_cast<uint32_t>(last_bytes),
+                         variable ? static_cast<uint32_t>(last_points) : compression.chunk_points};
+        chunk.points = std::min(chunk.points, header.points - points);
+        if (decoder.failed() || chunk.bytes > table - offset) return std::vector<ChunkPlace>();
+        points += chunk.points;
+        offset += chunk.bytes;
+        if (chunk.points > 0) chunks.push_back(chunk);
+    }
+    if (points != header.points) chunks.clear();
+    return chunks;
+}
+
+/// Goes from chunk to chunk without a table: layered ones say how long they are, others are decoded.
+class Walk {
+ public:
+    Walk(const InputFile& file, const las::Header& header, const Compression& compression)
+        : file_(file), header_(header), compression_(compression), bounds_(header), name_(file.path().string()) {}
+
+    Result<std::vector<ChunkPlace>> go(bool salvage) {
+        if (compression_.chunk_points == kVariableChunks && !compression_.layered)
+            return rejected(name_, "has chunks of any size and no chunk table that says which");
+        if (compression_.chunked)
+            log::warn("{}: has no chunk table; its points are looked through first", name_);
+        std::vector<ChunkPlace> chunks;
+        uint64_t offset = header_.points_offset + (compression_.chunked ? kOffsetBytes : 0);
+        for (uint64_t done = 0; done < header_.points;) {
+            ChunkPlace chunk{offset, 0, header_.points - done};
+            if (compression_.chunked)
+                chunk.points = std::min<uint64_t>(chunk.points, compression_.chunk_points);
+            auto measured = measure(chunk);
+            const bool sound = measured.has_value();
+            if (!sound && (!salvage || measured.error().kind != ErrorKind::input_rejected))
+                return tl::unexpected(std::move(measured).error());
+            // What comes before the cut can be read where points follow each other.
+            if (sound || (!compression_.layered && chunk.bytes > 0)) chunks.push_back(chunk);
+            if (!sound) break;
+            done += chunk.points;
+            offset += chunk.bytes;
+        }
+        return chunks;
+    }
+
+ private:
+    /// Finds the chunk's bytes; where it is not sound, those up to the end of the file.
+    Result<void> measure(ChunkPlace& chunk) const {
+        if (compression_.layered) return measure_layers(chunk);
+        const uint64_t left = file_.size() - std::min(chunk.offset, file_.size());
+        chunk.bytes = std::min(left, kLongestCode * chunk.points * header_.record_length + 1024);
+        if (!compression_.chunked) return {};
+        if (chunk.bytes > kMostChunkBytes)
+            return rejected(name_,
+                            fmt::format("has a chunk of {} points, too large to be read", chunk.points));
+        // Usual chunks shrink to less than half: the longest that could be is not read for each.
+        for (uint64_t some = chunk.points * header_.record_length / 2 + 4096;; some *= 4) {
+            const uint64_t bytes = std::min(some, chunk.bytes);
+            auto used = decode_all(chunk, bytes);
+            if (!used && bytes < chunk.bytes && used.error().kind == ErrorKind::input_rejected) continue;
+            LUCARNE_ASSIGN(chunk.bytes, std::move(used));
+            return {};
+        }
+    }
+
+    /// How many of so many bytes the chunk takes. Bytes that are none of a chunk decode to something, too: to places far
+    /// outside the scan, by which it is rejected.
+    Result<uint64_t> decode_all(const ChunkPlace& chunk, uint64_t most_bytes) const {
+        LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, most_bytes));
+        LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name_, compression_, chunk.points, bytes));
+        std::vector<std::byte> records(std::min<uint64_t>(chunk.points, 1000) * header_.record_length);
+        for (uint64_t to_go = chunk.points; to_go > 0;) {
+            const uint64_t part = std::min<uint64_t>(to_go, 1000);
+            LUCARNE_TRY(decoder.decode(part, records.data()));
+            if (bounds_.outside(records.data(), part, header_.record_length))
+                return rejected(name_, "has compressed points that are damaged");
+            to_go -= part;
+        }
+        return decoder.consumed();
+    }
+
+    Result<void> measure_layers(ChunkPlace& chunk) const {
+        LUCARNE_ASSIGN(const auto head, read_up_to(file_, chunk.offset, layered_head_bytes(compression_)));
+        LUCARNE_ASSIGN(const auto size, layered_size(name_, compression_, head));
+        const bool variable = compression_.chunk_points == kVariableChunks;
+        if (size.points == 0 || size.points > chunk.points || (!variable && size.points != chunk.points))
+            return rejected(name_, "has a chunk whose number of points cannot be");
+        if (size.bytes > file_.size() - chunk.offset)
+            return rejected(name_, "has compressed points that are cut off or damaged");
+        chunk.points = size.points;
+        chunk.bytes = size.bytes;
+        return {};
+    }
+
+    const InputFile& file_;
+    const las::Header& header_;
+    const Compression& compression_;
+    las::StatedBounds bounds_;
+    std::string name_;
+};
+
+}  // namespace
+
+Result<uint64_t> end_of_chunks(const InputFile& file, const las::Header& header) {
+    LUCARNE_ASSIGN(const uint64_t table, table_offset(file, header.points_offset));
+    return table ? table : file.size();
+}
+
+Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
+                                            const Compression& compression, bool salvage) {
+    if (header.points == 0) return std::vector<ChunkPlace>();
+    std::vector<ChunkPlace> chunks;
+    if (compression.chunked) {
+        LUCARNE_ASSIGN(const uint64_t table, table_offset(file, header.points_offset));
+        if (table) {
+            LUCARNE_ASSIGN(chunks, parse_table(file, header, compression, table));
+        }
+    }
+    if (chunks.empty()) {
+        LUCARNE_ASSIGN(chunks, Walk(file, header, compression).go(salvage));
+    }
+    for (const ChunkPlace& chunk : chunks)
+        if (chunk.bytes > kMostChunkBytes)
+            return rejected(file.path().string(),
+                            fmt::format("has a chunk of {} bytes, too large to be read", chunk.bytes));
+    return chunks;
+}
+
+}  // namespace lucarne::io::laz

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "io/formats/las/laz/models.h"
+
+namespace lucarne::io::laz {
+
+/// Arithmetic decoding of a piece of memory (sources: models.h). Never reads beyond it: from there on come
+/// zeros, and `failed` says so. Value stays below length, whatever the bytes are, so that every index
+/// follows.
+class Decoder {
+ public:
+    static constexpr bool kEncodes = false;
+
+    Decoder() = default;
+    explicit Decoder(std::span<const std::byte> bytes) : next_(bytes.data()), end_(next_ + bytes.size()) {
+        for (int i = 0; i < 4; ++i) value_ = value_ << 8 | byte();
+        if (value_ == length_) failed_ = true, --value_;
+    }
+
+    /// The next symbol. (What the encoder takes as its symbol has no meaning here.)
+    uint32_t symbol(SymbolModel& model, uint32_t = 0) {
+        const uint32_t unit = length_ >> kLengthShift;
+        const uint32_t symbol = model.find(value_ / unit);
+        const uint32_t begin = model.begin(symbol) * unit;
+        const uint32_t end = symbol == model.last_symbol() ? length_ : model.begin(symbol + 1) * unit;
+        narrow(begin, end);
+        model.count(symbol);
+        return symbol;
+    }
+    uint32_t bit(BitModel& model, uint32_t = 0) {
+        const uint32_t border = model.zero() * (length_ >> kBitLengthShift);
+        const uint32_t bit = value_ >= border;
+        if (bit)
+            narrow(border, length_);
+        else
+            narrow(0, border);
+        model.count(bit);
+        return bit;
+    }
+    /// Up to 32 bits as they are, the lowest first.
+    uint32_t bits(uint32_t count, uint32_t = 0) {
+        if (count > kMostBitsAtOnce) {
+            const uint32_t low = bits(16);
+            return low | bits(count - 16) << 16;
+        }
+        const uint32_t unit = length_ >> count;
+        const uint32_t found = value_ / unit;
+        value_ -= found * unit;
+        length_ = unit;
+        refill();
+        if (found >> count != 0) failed_ = true;
+        return found & ((1u << count) - 1);
+    }
+    bool failed() const { return failed_; }
+    void fail() { failed_ = true; }  ///< what was decoded cannot be
+    bool at_end() const { return next_ == end_; }
+    /// How far it has read. After the last symbol that is the whole code.
+    const std::byte* position() const { return next_; }
+
+ private:
+    static constexpr uint32_t kLeastLength = 1u << 24, kMostBitsAtOnce = 19;
+
+    uint32_t byte() {
+        if (next_ != end_) return static_cast<uint32_t>(*next_++);
+        failed_ = true;
+        return 0;
+    }
+    void narrow(uint32_t begin, uint32_t end) {
+        value_ -= begin;
+        length_ = end - begin;
+        refill();
+    }
+    void refill() {
+        for (; length_ < kLeastLength; length_ <<= 8) value_ = value_ << 8 | byte();
+    }
+
+    const std::byte *next_ = nullptr, *end_ = nullptr;
+    uint32_t value_ = 0, length_ = 0xffffffff;
+    bool failed_ = false;
+};
+
+}  // namespace lucarne::io::laz

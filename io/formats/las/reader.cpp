@@ -1,0 +1,257 @@
+// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see las_header.h.
+#include <algorithm>
+#include <atomic>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/common/buffered_input.h"
+#include "io/formats/common/format.h"
+#include "io/formats/las/bounds.h"
+#include "io/formats/las/crs.h"
+#include "io/formats/las/layout.h"
+#include "io/formats/las/writer.h"
+#include "io/formats/las/laz/reader.h"
+#include "io/formats/common/pick.h"
+#include "io/formats/common/stations.h"
+
+namespace lucarne::io {
+namespace {
+
+class LasReader final : public PointReader {
+ public:
+    LasReader(std::shared_ptr<const InputFile> file, const las::Header& header, const Schema& schema)
+        : input_(std::move(file), header.points_offset,
+                 header.points_offset + header.points * header.record_length),
+          header_(header),
+          schema_(schema),
+          left_(header.points) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        const auto wanted = static_cast<size_t>(std::min<uint64_t>(batch_limit(schema_, most), left_));
+        batch.bytes.resize(wanted * schema_.stride);
+        batch.count = 0;
+        while (batch.count < wanted) {
+            LUCARNE_ASSIGN(const auto bytes, input_.peek(header_.record_length));
+            const size_t count = std::min(bytes.size() / header_.record_length, wanted - batch.count);
+            if (count == 0)
+                return rejected(input_.path(), fmt::format("ends early: {} points are missing", left_));
+            las::decode(header_, bytes.data(), count, batch.bytes.data() + batch.count * schema_.stride,
+                        schema_.stride);
+            input_.skip(count * header_.record_length);
+            batch.count += count;
+            left_ -= count;
+        }
+        return batch.count;
+    }
+    uint64_t dropped() const override { return 0; }  // integers with a finite scale and offset
+
+ private:
+    BufferedInput input_;
+    const las::Header& header_;
+    const Schema& schema_;
+    uint64_t left_;
+};
+
+/// Hands on what a reader gives and warns, once a source, of points that are far outside what the header states. It
+/// looks at every eighth point: what is damaged comes in longer runs.
+class WatchedReader final : public PointReader {
+ public:
+    WatchedReader(std::unique_ptr<PointReader> reader, const std::string& name, const las::StatedBounds& bounds,
+                  const Schema& schema, std::atomic<bool>& warned)
+        : reader_(std::move(reader)), name_(name), bounds_(bounds), schema_(schema), warned_(warned) {}
+
+    Result<size_t> read(PointBatch& batch, size_t most) override {
+        LUCARNE_ASSIGN(const size_t got, reader_->read(batch, most));
+        if (warned_) return got;
+        const auto found = bounds_.outside(batch.bytes.data(), got, schema_.stride, 8);
+        if (!found || warned_.exchange(true)) return got;
+        const glm::dvec3 at = position_of(schema_, &batch.bytes[*found * schema_.stride]);
+        log::warn("{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it may be "
+                  "damaged",
+                  name_, at.x, at.y, at.z);
+        return got;
+    }
+    uint64_t dropped() const override { return reader_->dropped(); }
+    Losses losses() const override { return reader_->losses(); }
+
+ private:
+    std::unique_ptr<PointReader> reader_;
+    const std::string& name_;
+    const las::StatedBounds& bounds_;
+    const Schema& schema_;
+    std::atomic<bool>& warned_;
+};
+
+class LasSource final : public PointSource {
+ public:
+    LasSource(std::shared_ptr<const InputFile> file, las::Header header)
+        : file_(std::move(file)), header_(std::move(header)), bounds_(header_), schema_(las::make_schema(header_)) {}
+
+    Result<void> describe(const ReadOptions& options) {
+        const std::string name = file_->path().string();
+        if (header_.compressed) LUCARNE_TRY(find_chunks(options.salvage));
+        info_.path = name;
+        info_.format =
+            fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
+                        header_.wave_bytes ? las::with_waves(header_.point_format) : header_.point_format);
+        if (header_.wave_bytes) skip_waves();
+        if (!options.quiet) warn_of_mirrors(name);
+        if (header_.find("lascompatible", 22204))
+            log::warn("{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns and "
+                      "angles that do not fit that stand in extra bytes only",
+                      name);
+        info_.declared_points = header_.points;
+        info_.file_bytes = file_->size();
+        info_.modified = file_->modified();
+        const las::Units units = las::units_of(header_);
+        las::warn_of_units(name, units, options.metres_per_unit.has_value());
+        const auto system = las::coordinate_system(header_);
+        auto unit = units.horizontal;
+        if (!unit && (!system.name.empty() || system.epsg)) unit = 1.0;  // a system has a unit: the one that is assumed
+        set_unit(info_, options, unit);
+        info_.coordinate_system = system.name;
+        info_.epsg = system.epsg;
+        info_.losses = header_.losses;
+        if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
+            LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
+        }
+        const Attribute* color = schema_.find(names::color);
+        if (color && color->type == ScalarType::u16 && color->components == 3) {  // extra bytes may have that name
+            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
+        }
+        las::Header kept = header_;
+        kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
+        nlohmann::json details = las::to_details(kept);
+        details["color_bits"] = info_.color_bits;
+        info_.details = details.dump();
+        return {};
+    }
+
+    const Schema& schema() const override { return schema_; }
+    const ScanInfo& info() const override { return info_; }
+    Result<std::unique_ptr<PointReader>> open() const override {
+        std::unique_ptr<PointReader> reader;
+        if (compressed_)
+            reader = laz::open_points(*compressed_, schema_);
+        else
+            reader = std::make_unique<LasReader>(file_, header_, schema_);
+        return std::make_unique<WatchedReader>(std::move(reader), info_.path, bounds_, schema_, warned_);
+    }
+    bool seekable() const override { return !compressed_; }
+    Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
+        if (compressed_) return PointSource::pick(indices, batch);
+        batch.bytes.resize(indices.size() * schema_.stride);
+        batch.count = 0;
+        return for_picked(
+            *file_, header_.points_offset, header_.record_length, indices, [&](const std::byte* at) {
+                las::decode(header_, at, 1, &batch.bytes[batch.count++ * schema_.stride], schema_.stride);
+            });
+    }
+
+ private:
+    /// Such a scale means what it says, but is hardly ever meant.
+    void warn_of_mirrors(const std::string& name) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (header_.scale[axis] < 0)
+                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it", name,
+                          "xyz"[axis], header_.scale[axis]);
+    }
+
+    void skip_waves() {
+        add_loss(header_.losses, "wave packets of points, which are not read", header_.points);
+        // Descriptors (100 to 354) and packets (65535) that nothing points to any more.
+        std::erase_if(header_.vlrs, [](const las::Vlr& vlr) {
+            const bool wave = (vlr.record_id >= 100 && vlr.record_id < 355) || vlr.record_id == 65535;
+            return vlr.user_id == las::kSpecUser && wave;
+        });
+        constexpr uint16_t kWaveBits = 6;  // packets inside the file, or in another
+        header_.global_encoding &= static_cast<uint16_t>(~kWaveBits);
+    }
+
+    Result<void> find_chunks(bool salvage) {
+        LUCARNE_ASSIGN(auto compression, laz::read_compression(file_->path().string(), header_));
+        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression, salvage));
+        if (salvage) {
+            uint64_t there = 0;
+            for (const auto& chunk : chunks) there += chunk.points;
+            add_loss(header_.losses, lost::cut_off, header_.points - there);
+            header_.points = there;
+        }
+        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks), salvage};
+        // What a writer of plain LAS must not repeat.
+        std::erase_if(header_.vlrs,
+                      [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });
+        return {};
+    }
+
+    /// Number `block` of `blocks` that are spread evenly over the file; of compressed points, which only come one after
+    /// the other, the front of a chunk.
+    Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
+        if (compressed_) {
+            constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; of one
+            const size_t chunk = block * compressed_->chunks.size() / blocks;
+            const uint64_t most = std::min(kDecoded / blocks, kDecodedBytes / header_.record_length);
+            return laz::decode_chunk(*compressed_, chunk, std::max<uint64_t>(most, 1));
+        }
+        constexpr uint64_t kBlockPoints = 256;
+        const uint64_t first = block * header_.points / blocks;
+        std::vector<std::byte> raw(static_cast<size_t>(std::min(kBlockPoints, header_.points - first) *
+                                                       header_.record_length));
+        LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
+        return raw;
+    }
+
+    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by a sample from all over the
+    /// file. Nothing is converted, so a wrong guess loses nothing.
+    Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
+        constexpr uint64_t kBlocks = 64, kChunks = 16;
+        const uint64_t blocks =
+            compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size()) : std::min(kBlocks, header_.points);
+        std::vector<std::byte> record(schema_.stride);
+        for (uint64_t block = 0; block < blocks; ++block) {
+            auto records = sample_block(block, blocks);
+            if (!records && salvage) continue;
+            LUCARNE_ASSIGN(const auto raw, std::move(records));
+            for (size_t at = 0; at < raw.size(); at += header_.record_length) {
+                las::decode(header_, &raw[at], 1, record.data(), schema_.stride);
+                for (size_t c = 0; c < 3; ++c)
+                    if (load<uint16_t>(&record[color.offset + 2 * c]) > 255) return 16u;
+            }
+        }
+        return 8u;
+    }
+
+    std::shared_ptr<const InputFile> file_;
+    las::Header header_;
+    las::StatedBounds bounds_;
+    std::optional<laz::Points> compressed_;
+    Schema schema_;
+    ScanInfo info_;
+    mutable std::atomic<bool> warned_ = false;
+};
+
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
+    LUCARNE_ASSIGN(auto header, las::read_header(*file, options.salvage));
+    auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
+    LUCARNE_TRY(source->describe(options));
+    return source;
+}
+
+}  // namespace
+
+const Format& las_format() {
+    static constexpr Format kFormat{
+        "LAS", ".las", [](std::string_view head) { return head.starts_with("LASF"); }, open_las, las::create};
+    return kFormat;
+}
+
+const Format&
+laz_format() {  // opened as LAS: the header tells them apart, further back than `recognises` looks
+    static constexpr Format kFormat{"LAZ", ".laz", [](std::string_view) { return false; }, open_las,
+                                    las::create_compressed};
+    return kFormat;
+}
+
+}  // namespace lucarne::io

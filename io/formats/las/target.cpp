@@ -1,0 +1,259 @@
+#include "io/formats/las/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/core/log.h"
+#include "io/formats/common/format.h"
+#include "io/formats/las/crs.h"
+#include "io/formats/las/extras.h"
+#include "io/formats/merged_info.h"
+#include "io/formats/common/stations.h"
+#include "io/formats/common/value_range.h"
+
+namespace lucarne::io::las {
+namespace {
+
+constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
+
+/// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
+void choose_format(Header& header, const Schema& schema, bool from_las, Container container) {
+    const auto has = [&](std::string_view name) { return schema.find(name) != nullptr; };
+    bool extended = container == Container::copc || has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
+    if (from_las)
+        extended = extended || extended_format(header.point_format);
+    else if (!has(names::scan_angle_rank))  // not out of an older LAS file: let every class and return fit
+        extended = extended || has(names::classification) || has(names::return_number) ||
+                   has(names::number_of_returns);
+    const bool gps = has(names::gps_time) || (from_las && has_gps_time(header.point_format));
+    const bool color = has(names::color) || (from_las && has_color(header.point_format));
+    const bool nir = has(names::nir) || (from_las && header.point_format == 8);
+    if (extended) {
+        header.minor = 4;
+        header.point_format = nir ? 8 : color ? 7 : 6;
+    } else {
+        header.point_format = static_cast<uint8_t>((gps ? 1 : 0) + (color ? 2 : 0));
+        if (color) header.minor = std::max<uint8_t>(header.minor, 2);  // an older one knows none
+    }
+}
+
+/// The record, made if it is not there yet.
+Vlr& record_of(Header& header, std::string_view user, uint16_t id) {
+    const auto found =
+        std::find_if(header.vlrs.begin(), header.vlrs.end(), [&](const Vlr& v) { return v.is(user, id); });
+    if (found != header.vlrs.end()) return *found;
+    header.vlrs.push_back({std::string(user), id, "", false, {}});
+    return header.vlrs.back();
+}
+
+/// What a writer has to know of values before it gets them.
+struct Survey {
+    Lattice lattice;                 ///< of the positions
+    std::optional<Range> intensity;  ///< of those that have to be spread over 16 bits
+};
+
+/// An intensity that the field cannot hold, unless what it holds instead is there as well; else null.
+const Attribute* wide_intensity(const Schema& schema, const std::vector<Attribute>& extra) {
+    if (schema.find(std::string(kNearPrefix) + std::string(names::intensity))) return nullptr;
+    const auto found = std::find_if(extra.begin(), extra.end(), [](const Attribute& a) {
+        return a.name == names::intensity && a.components == 1;
+    });
+    return found == extra.end() ? nullptr : &*found;
+}
+
+/// Positions that are not integers yet get what the options know, else the decimals that they have.
+/// Intensities are spread from the limits that their format has, else from what they are; whole numbers that
+/// fit stay.
+Result<Survey> survey_of(const Schema& schema, const nlohmann::json& details, const Attribute* intensity,
+                         const WriteOptions& options) {
+    Survey survey{{schema.scale, schema.offset}, {}};
+    if (intensity) survey.intensity = stated_range(details);
+    const bool floats = schema.position != PositionType::i32_scaled;
+    if (floats) survey.lattice = options.lattice.value_or(Lattice{glm::dvec3(1e-4), glm::dvec3(0.0)});
+    std::optional<DecimalSearch> search;
+    if (floats && !options.lattice && options.bounds) search.emplace(schema, *options.bounds);
+    std::optional<RangeSearch> range;
+    if (intensity && !survey.intensity) range.emplace(schema, *intensity);
+    bool positions = search.has_value(), values = range.has_value();
+    if (options.preview && (positions || values))
+        LUCARNE_TRY(options.preview([&](std::span<const std::byte> records) {
+            positions = positions && search->add(records);
+            values = values && range->add(records);
+            return positions || values;
+        }));
+    if (search) survey.lattice = search->found();
+    if (range) survey.intensity = range->found();
+    return survey;
+}
+
+void add_stations(Header& header, const std::vector<Station>& stations) {
+    if (stations.empty()) {
+        std::erase_if(header.vlrs, [](const Vlr& v) { return v.is(kOurUser, kStationsRecord); });
+        return;
+    }
+    const std::string json = stations_to_json(stations);
+    const auto bytes = std::as_bytes(std::span(json));
+    Vlr& record = record_of(header, kOurUser, kStationsRecord);
+    record.description = "scanner positions";
+    record.data.assign(bytes.begin(), bytes.end());
+    record.extended = json.size() > 0xffff;  // more than an ordinary record can hold
+    if (record.extended) header.minor = 4;
+}
+
+/// The coordinate system of what is no LAS, or of several scans, and the extra bytes of these.
+void state_merged(const std::string& path, Header& header, const nlohmann::json& details, bool from_las) {
+    for (const char* key : {kSystemNote, kExtrasNote})
+        if (const auto note = details.value(key, nlohmann::json()); note.is_string())
+            log::warn("{}: {}", path, note.get<std::string>());
+    if (const auto extras = extras_record(details))
+        record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
+    if (!from_las || details.contains("projection")) set_projection(header, projection_records(details));
+}
+
+/// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
+/// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
+void state_unit(const std::string& path, Header& header, double metres) {
+    const double stated = units_of(header).metres();
+    if (same_unit(stated, metres)) return;
+    if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
+        log::warn("{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open it",
+                  path, stated, metres, metres);
+        return;
+    }
+    const std::string wkt = fmt::format(
+        R"(LOCAL_CS["{1}",LOCAL_DATUM["{1}",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres,
+        kLocalSystem);
+    set_projection(header, {wkt_record(wkt)});
+}
+
+/// An angle out of the whole degrees that older formats have instead.
+std::optional<Converter::Field> angle_of_rank(const Schema& from, const Attribute& field) {
+    constexpr double kAngleUnit = 0.006;  // degrees (LAS 1.4 R15, table 16)
+    const Attribute* rank = from.find(names::scan_angle_rank);
+    if (!rank || rank->components != 1) return std::nullopt;
+    return Converter::Field{.from = *rank, .to = field, .factor = 1 / kAngleUnit, .fills = true};
+}
+
+/// What a field gets that nothing of its name and type is for: what comes near, or follows from another.
+std::optional<Converter::Field> derived_field(const Schema& from, const Attribute& field, bool extended,
+                                              const std::optional<Range>& intensity) {
+    const bool near = field.name.starts_with(kNearPrefix);
+    const std::string name = near ? field.name.substr(kNearPrefix.size()) : field.name;
+    if (const Attribute* a = from.find(name); near && a && a->components == field.components) {
+        Converter::Field made{*a, field};
+        if (const uint32_t most = largest_value(extended, name); most != UINT32_MAX) made.most = most;
+        if (name == names::intensity && intensity) {
+            made.factor = 65535.0 / (intensity->high - intensity->low);
+            made.shift = -intensity->low * made.factor;
+        }
+        return made;
+    }
+    return name == names::scan_angle ? angle_of_rank(from, field) : std::nullopt;
+}
+
+Converter make_converter(const Schema& from, const Schema& to, const std::vector<Attribute>& extra,
+                         bool extended, uint32_t color_bits, const std::optional<Range>& intensity) {
+    Converter converter(from, to);
+    const size_t fields = to.attributes.size() - extra.size();
+    for (size_t i = 0; i < fields; ++i) {
+        const Attribute& field = to.attributes[i];
+        const Attribute* a = from.find(field.name);
+        if (!a || a->components != field.components) {
+            if (const auto made = derived_field(from, field, extended, intensity)) converter.map(*made);
+            continue;
+        }
+        // Colours of 16 bits stay as they are; the specification wants all others spread over 16 bits.
+        const bool spread = field.name == names::color && a->type != ScalarType::u16;
+        converter.map({*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0});
+        if (field.name != names::scan_angle) continue;
+        // Of scans of both kinds each point has one of the two.
+        if (const auto angle = angle_of_rank(from, field)) converter.map(*angle);
+    }
+    for (size_t k = 0; k < extra.size(); ++k) {
+        const Attribute& target = to.attributes[fields + k];  // the same bytes, but maybe without their type
+        converter.map({{extra[k].name, target.type, target.components, extra[k].offset}, target});
+    }
+    return converter;
+}
+
+}  // namespace
+
+bool Converter::convert_position(const std::byte* in, std::byte* out) {
+    if (from_.position == PositionType::i32_scaled) {
+        std::memcpy(out, in, 12);
+        return true;
+    }
+    const glm::dvec3 position = position_of(from_, in);
+    const glm::dvec3 at = (position - to_.offset) / to_.scale;
+    bool good = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double whole = std::nearbyint(at[axis]);
+        good = good && std::abs(whole) <= kLargestInteger;
+        store(out + 4 * axis, static_cast<int32_t>(good ? whole : 0));
+        const double back = whole * to_.scale[axis] + to_.offset[axis], x = position[axis];
+        const bool same = from_.position == PositionType::f32
+                              ? static_cast<float>(back) == static_cast<float>(x)
+                              : std::abs(back - x) <= 0x1p-50 * (std::abs(x) + std::abs(to_.offset[axis]));
+        if (!same) rounded_ = std::max(rounded_, std::abs(back - x));
+    }
+    return good;
+}
+
+bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
+    bool good = true;
+    for (size_t i = 0; i < count; ++i, in += from_.stride, out += to_.stride) {
+        std::memset(out, 0, to_.stride);
+        good = convert_position(in, out) && good;
+        for (const Field& f : fields_) {
+            if (f.factor == 1.0 && f.shift == 0.0 && f.from.type == f.to.type) {
+                std::memcpy(out + f.to.offset, in + f.from.offset, f.to.bytes());
+                continue;
+            }
+            if (f.fills && scalar_at(f.to.type, out + f.to.offset) != 0) continue;
+            const size_t step = scalar_bytes(f.from.type), out_step = scalar_bytes(f.to.type);
+            for (size_t c = 0; c < f.to.components; ++c)
+                store_scalar(
+                    f.to.type, out + f.to.offset + c * out_step,
+                    std::min(scalar_at(f.from.type, in + f.from.offset + c * step) * f.factor + f.shift,
+                             f.most));
+        }
+    }
+    return good;
+}
+
+Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
+                           const WriteOptions& options, Container container) {
+    const auto details = nlohmann::json::parse(info.details, nullptr, false);
+    const bool from_las = details.is_object() && details.value("format", nlohmann::json()) == "las";
+    Target target;
+    Header& header = target.header;
+    if (from_las) {
+        LUCARNE_ASSIGN(header, from_details(path, details));
+    } else {
+        header.software = "Lucarne";
+    }
+    header.compressed = container != Container::las;
+    const bool was_extended = from_las && extended_format(header.point_format);
+    choose_format(header, schema, from_las, container);
+    if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
+    add_stations(header, info.stations);
+    if (details.is_object()) state_merged(path, header, details, from_las);
+    state_unit(path, header, info.metres_per_unit);
+    if (extended_format(header.point_format) && (header.compressed || !was_extended)) prefer_wkt(path, header);
+
+    const auto extra = extra_attributes(header, schema);
+    LUCARNE_TRY(describe_extras(path, header, extra));
+    LUCARNE_ASSIGN(const Survey survey, survey_of(schema, details, wide_intensity(schema, extra), options));
+    header.scale = survey.lattice.scale;
+    header.offset = survey.lattice.offset;
+    target.schema = make_schema(header);
+    target.converter = make_converter(schema, target.schema, extra, extended_format(header.point_format),
+                                      info.color_bits, survey.intensity);
+    return target;
+}
+
+}  // namespace lucarne::io::las

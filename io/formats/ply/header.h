@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "io/files/file.h"
+#include "io/formats/common/remarks.h"
+
+// The header of a PLY file. Source: Greg Turk, "The PLY Polygon File Format", 1994, and the sized type names
+// that later writers use.
+namespace lucarne::io::ply {
+
+enum class Encoding { ascii, little_endian, big_endian };
+
+struct Property {
+    std::string name;
+    ScalarType type = ScalarType::f32;  ///< of the entries of a list
+    std::optional<ScalarType> count;    ///< of a list: the type of its length
+};
+
+struct Element {
+    std::string name;
+    uint64_t count = 0;
+    std::vector<Property> properties;
+    bool has_list() const;
+    uint64_t record_bytes() const;  ///< in the binary encodings; without lists only
+};
+
+struct Header {
+    Encoding encoding = Encoding::ascii;
+    std::vector<Element> elements;
+    std::vector<std::string> comments, infos;  ///< the lines without "comment " and "obj_info "
+    uint64_t data_offset = 0;
+    char line_end = '\n';  ///< '\r' in files of old Macintoshes
+
+    size_t vertex = 0;  ///< index of the vertex element
+    const Element& vertices() const { return elements[vertex]; }
+};
+
+/// Rejects a header that is malformed, larger than 1 MiB, or names no vertex element with x and y; without
+/// `salvage` also one that promises more than the file has bytes.
+Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage = false);
+
+/// "uchar", "uint8"...; empty for unknown words.
+std::optional<ScalarType> type_of(std::string_view word);
+std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
+
+/// `info.details`: the properties and comments, for a later export.
+nlohmann::json to_details(const Header& header);
+
+}  // namespace lucarne::io::ply
