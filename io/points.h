@@ -46,7 +46,7 @@ struct Attribute {
 namespace names {
 inline constexpr std::string_view color = "color";            ///< u8, u16 or f32 x3, sRGB; see color_white
 inline constexpr std::string_view normal = "normal";          ///< f32 or f64 x3, as the file had it; (0,0,0) = none
-inline constexpr std::string_view normal_oct = "normal_oct";  ///< u8 x3, estimated; see octree/attributes.h
+inline constexpr std::string_view normal_oct = "normal_oct";  ///< u8 x3, estimated; see octree/tree/attributes.h
 inline constexpr std::string_view area = "area";              ///< u16, surface share at full resolution; ditto
 inline constexpr std::string_view intensity = "intensity";
 inline constexpr std::string_view classification = "classification";  ///< u8

@@ -1,7 +1,7 @@
 #include "octree/open.h"
 
 #include "io/formats/copc/copc.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/copc/copc.h"
 
 namespace lucarne::octree {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "io/files/handle_pool.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

@@ -29,7 +29,7 @@ struct CutPurpose {
     const std::vector<gi::SceneLight>& lights;
     uint32_t light_resolution;
     CutBudgets budgets;
-    double extent;  ///< of what is looked at, without far strays (octree/bulk.h); world units
+    double extent;  ///< of what is looked at, without far strays (octree/tree/bulk.h); world units
     const gi::Clip* clip = nullptr;  ///< cubes that it leaves nothing of are not for the eye; none: all are
 };
 

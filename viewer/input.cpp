@@ -13,7 +13,7 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/open.h"
 #include "octree/stream/joined_source.h"
 #include "viewer/kept_cache.h"

@@ -9,7 +9,7 @@
 #include "io/core/error.h"
 #include "io/formats/scan.h"
 #include "octree/quick/growing_build.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace CLI {
 class App;

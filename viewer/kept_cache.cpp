@@ -11,7 +11,7 @@
 #include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/random.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 
 namespace lucarne::viewer {
 namespace {

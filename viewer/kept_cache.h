@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/points.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

@@ -18,7 +18,7 @@
 #include "gi/scene/colouring.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 #include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
 #include "viewer/cut_choice.h"

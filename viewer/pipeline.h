@@ -11,7 +11,7 @@
 #include "gi/scene/colouring.h"
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "viewer/presets.h"
 
 namespace lucarne::viewer {

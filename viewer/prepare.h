@@ -10,7 +10,7 @@
 #include "gi/scene/baked_light.h"
 #include "gi/scene/scene.h"
 #include "gi/scene/surfel_pool.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

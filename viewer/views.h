@@ -7,7 +7,7 @@
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
 #include "io/core/options.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "octree/stream/cut.h"
 
 namespace lucarne::viewer {

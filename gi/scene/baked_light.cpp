@@ -9,7 +9,7 @@
 
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 
 namespace lucarne::gi {
 namespace {

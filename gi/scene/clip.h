@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/shared/clip.h"
-#include "octree/key.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::gi {
 

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/scene/look.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::gi {
 

@@ -9,7 +9,7 @@
 
 #include "gi/shared/surfel_code.h"
 #include "io/core/random.h"
-#include "octree/footprint.h"
+#include "octree/tree/footprint.h"
 
 namespace lucarne::gi {
 

@@ -12,7 +12,7 @@
 #include "gi/device/device.h"
 #include "gi/scene/scene.h"
 #include "gi/shared/surfel.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::gi {
 

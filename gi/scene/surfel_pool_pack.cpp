@@ -8,8 +8,8 @@
 #include "gi/scene/colouring.h"
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
-#include "octree/attributes.h"
-#include "octree/point_normals.h"
+#include "octree/tree/attributes.h"
+#include "octree/tree/point_normals.h"
 
 namespace lucarne::gi {
 namespace {

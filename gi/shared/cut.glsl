@@ -1,6 +1,6 @@
 // The surfels of a cut and what reads them. DeviceCut::bind binds pool, items and blocks, as texels of four words:
 // see Buffer::bind_texels for why.
-#include "octree/footprint.h"
+#include "octree/tree/footprint.h"
 #include "gi/shared/clip.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"

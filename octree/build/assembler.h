@@ -4,7 +4,7 @@
 
 #include "octree/build/build_listener.h"
 #include "octree/build/subtree.h"
-#include "octree/cache_writer.h"
+#include "octree/cache/writer.h"
 
 namespace lucarne::octree {
 

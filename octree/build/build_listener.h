@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "octree/build/node_sampler.h"
-#include "octree/cache_format.h"
-#include "octree/cache_writer.h"
-#include "octree/source.h"
+#include "octree/cache/format.h"
+#include "octree/cache/writer.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

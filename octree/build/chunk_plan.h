@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/core/error.h"
-#include "octree/key.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::octree {
 

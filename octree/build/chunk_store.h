@@ -6,7 +6,7 @@
 
 #include "io/files/file.h"
 #include "octree/build/chunk_plan.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "octree/cache_format.h"
-#include "octree/metadata.h"
+#include "octree/cache/format.h"
+#include "octree/cache/metadata.h"
 
 namespace lucarne::octree {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "octree/build/sampler.h"
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 

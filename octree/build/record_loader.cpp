@@ -1,6 +1,6 @@
 #include "octree/build/record_loader.h"
 
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
 namespace {

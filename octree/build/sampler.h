@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "octree/key.h"
-#include "octree/prefix_order.h"
+#include "octree/tree/key.h"
+#include "octree/tree/prefix_order.h"
 
 namespace lucarne::octree {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "octree/build/radix_sort.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 namespace {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdlib>
 
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
 namespace {

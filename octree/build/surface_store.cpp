@@ -8,7 +8,7 @@
 
 #include "octree/build/record_bytes.h"
 #include "octree/build/station_ids.h"
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 namespace {

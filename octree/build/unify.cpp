@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "octree/cache_format.h"
-#include "octree/stored_names.h"
+#include "octree/cache/format.h"
+#include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {

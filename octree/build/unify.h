@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "octree/record_map.h"
+#include "octree/cache/record_map.h"
 
 namespace lucarne::octree {
 
@@ -12,7 +12,7 @@ namespace lucarne::octree {
 /// integer positions stay so where all inputs share scale and offset and become doubles otherwise; an
 /// attribute takes the narrowest type that holds those of all inputs (8-bit colour becomes 16-bit colour) and
 /// is zero for points of inputs without it. With several inputs, `scan` says which one a point came from.
-/// Attributes of the inputs are called as octree/stored_names.h says.
+/// Attributes of the inputs are called as octree/tree/stored_names.h says.
 class Unifier {
  public:
     /// `sources` must outlive the unifier. `replace_normals`: estimated normals will stand in place of the inputs'

@@ -11,7 +11,7 @@
 #include "io/core/options.h"
 #include "io/files/private_file.h"
 #include "io/points.h"
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "octree/prefix_order.h"
+#include "octree/tree/prefix_order.h"
 
 namespace lucarne::octree::codec {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "io/core/parallel.h"
 #include "io/formats/copc/copc.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/unify.h"
 #include "octree/copc/copc.h"
 #include "octree/copc/node_normals.h"

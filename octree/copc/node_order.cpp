@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "octree/build/node_sampler.h"
-#include "octree/build/radix_sort.h"
+#include "octree/tree/radix_sort.h"
 #include "octree/build/sampler.h"
 
 namespace lucarne::octree {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "octree/key.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::octree {
 

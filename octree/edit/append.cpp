@@ -5,12 +5,12 @@
 
 #include "io/core/log.h"
 #include "io/formats/scan.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/build_inputs.h"
 #include "octree/build/scan_stage.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
-#include "octree/stored_names.h"
+#include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {

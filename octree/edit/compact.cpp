@@ -1,4 +1,4 @@
-#include "octree/cache_writer.h"
+#include "octree/cache/writer.h"
 #include "octree/edit/rewrite.h"
 
 namespace lucarne::octree {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "octree/build/chunk_plan.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

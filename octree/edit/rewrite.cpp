@@ -8,10 +8,10 @@
 
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/assembler.h"
 #include "octree/build/in_order.h"
-#include "octree/build/radix_sort.h"
+#include "octree/tree/radix_sort.h"
 #include "octree/edit/edit_plan.h"
 
 namespace lucarne::octree {

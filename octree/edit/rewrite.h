@@ -5,7 +5,7 @@
 
 #include "io/files/update_file.h"
 #include "octree/build/chunk_store.h"
-#include "octree/cache_file.h"
+#include "octree/cache/file.h"
 #include "octree/edit/edit.h"
 
 namespace lucarne::octree {

@@ -8,7 +8,7 @@
 #include "io/formats/copc/writer.h"
 #include "io/formats/merged_info.h"
 #include "octree/build/node_sampler.h"
-#include "octree/stored_names.h"
+#include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {

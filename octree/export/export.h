@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "io/formats/scan.h"
-#include "octree/point_normals.h"
-#include "octree/source.h"
+#include "octree/tree/point_normals.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 
@@ -17,7 +17,7 @@ struct ExportOptions {
 };
 
 /// What of a cache goes back into a scan file: the inputs' attributes without those that the build added. Inputs'
-/// own normals that estimated ones replace keep the name that the cache gives them (octree/stored_names.h).
+/// own normals that estimated ones replace keep the name that the cache gives them (octree/tree/stored_names.h).
 class Exporter {
  public:
     Exporter(const NodeSource& source, const ExportOptions& options);

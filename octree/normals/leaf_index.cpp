@@ -7,8 +7,8 @@
 
 #include <glm/common.hpp>
 
-#include "octree/build/radix_sort.h"
-#include "octree/key.h"
+#include "octree/tree/radix_sort.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::octree {
 namespace {

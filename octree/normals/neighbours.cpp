@@ -13,7 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/key.h"
+#include "octree/tree/key.h"
 #include "octree/normals/leaf_index.h"
 
 namespace lucarne::octree {

@@ -8,7 +8,7 @@
 #include "io/points.h"
 #include "octree/build/build.h"
 #include "octree/quick/sample.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

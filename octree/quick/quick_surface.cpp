@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/build/radix_sort.h"
+#include "octree/tree/radix_sort.h"
 #include "octree/normals/normals.h"
 #include "octree/normals/plane.h"
 

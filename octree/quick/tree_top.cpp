@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "octree/build/subtree.h"
-#include "octree/cache_file.h"
+#include "octree/cache/file.h"
 #include "octree/normals/area_floor.h"
 
 namespace lucarne::octree {

@@ -8,8 +8,8 @@
 
 #include "io/files/file.h"
 #include "octree/build/node_sampler.h"
-#include "octree/cache_format.h"
-#include "octree/source.h"
+#include "octree/cache/format.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

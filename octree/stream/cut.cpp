@@ -21,7 +21,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "octree/footprint.h"
+#include "octree/tree/footprint.h"
 
 namespace lucarne::octree {
 namespace {

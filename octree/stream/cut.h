@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 
@@ -52,7 +52,7 @@ Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget,
 /// What may bounce or block light: everything, seen or not, refined toward `centre` (the camera's focus) in
 /// proportion to distance, as fine as `budget` allows. It is refined toward `lamps` as well: what stands
 /// close before a lamp throws its discs' rims far, and its wall takes most of its light. `extent`: of what is
-/// looked at, world units, where that is less than all there is (octree/bulk.h); 0: all.
+/// looked at, world units, where that is less than all there is (octree/tree/bulk.h); 0: all.
 Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
               std::span<const glm::dvec3> lamps = {}, double extent = 0);
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "octree/stream/cut.h"
 
 namespace lucarne::octree {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/first_picture.h"
 #include "tests/bench/rows.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/fault/run_lucarne.h"
 #include "tests/octree/test_sources.h"
 

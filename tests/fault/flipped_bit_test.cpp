@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/cache.h"
-#include "octree/cache_format.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/format.h"
 #include "tests/fault/run_lucarne.h"
 #include "tests/octree/test_sources.h"
 

@@ -7,8 +7,8 @@
 
 #include "gi/scene/scene.h"
 #include "gi/scene/surfel_pool.h"
-#include "octree/cache.h"
-#include "octree/cache_format.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/format.h"
 #include "octree/stream/cut.h"
 #include "tests/fuzz/fuzz.h"
 

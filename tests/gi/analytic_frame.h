@@ -13,7 +13,7 @@
 #include "gi/engine.h"
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "tests/gi/even_order.h"
 
 namespace lucarne::gi::scenes {

@@ -9,7 +9,7 @@
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "tests/gi/even_order.h"
 
 namespace lucarne::gi {

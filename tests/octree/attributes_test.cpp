@@ -1,4 +1,4 @@
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 #include <cmath>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

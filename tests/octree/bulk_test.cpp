@@ -1,11 +1,11 @@
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -1,5 +1,5 @@
 // The cache reader against every kind of damage, lies with correct checksums among them.
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,7 @@
 
 #include "io/core/random.h"
 #include "octree/build/build.h"
-#include "octree/cache_file.h"
+#include "octree/cache/file.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -8,7 +8,7 @@
 #include "io/core/random.h"
 #include "octree/codec/payload.h"
 #include "octree/codec/token.h"
-#include "octree/prefix_order.h"
+#include "octree/tree/prefix_order.h"
 
 namespace lucarne::octree::codec {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/build.h"
 #include "octree/export/export.h"
 #include "octree/open.h"

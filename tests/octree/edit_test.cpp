@@ -11,10 +11,10 @@
 
 #include "io/core/random.h"
 #include "io/files/update_file.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
-#include "octree/cache_file.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/file.h"
 #include "octree/edit/edit_plan.h"
 #include "tests/octree/test_sources.h"
 

@@ -5,7 +5,7 @@
 
 #include "io/core/random.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -7,8 +7,8 @@
 
 #include "io/core/random.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
-#include "octree/cache_file.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/file.h"
 #include "octree/edit/edit.h"
 #include "tests/octree/test_sources.h"
 

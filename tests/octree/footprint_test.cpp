@@ -1,4 +1,4 @@
-#include "octree/footprint.h"
+#include "octree/tree/footprint.h"
 
 #include <algorithm>
 #include <functional>

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/attributes.h"
-#include "octree/cache.h"
-#include "octree/footprint.h"
+#include "octree/tree/attributes.h"
+#include "octree/cache/cache.h"
+#include "octree/tree/footprint.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

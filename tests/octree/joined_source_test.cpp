@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/stream/cut.h"
 #include "octree/stream/residency.h"
 #include "tests/octree/plane_source.h"

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "octree/build/chunk_plan.h"
-#include "octree/cache.h"
-#include "octree/cache_format.h"
-#include "octree/metadata.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/format.h"
+#include "octree/cache/metadata.h"
 #include "octree/stream/cut.h"
 #include "tests/octree/plane_source.h"
 #include "tests/octree/test_sources.h"

@@ -1,4 +1,4 @@
-#include "octree/metadata.h"
+#include "octree/cache/metadata.h"
 
 #include <string>
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree::test {
 

@@ -4,11 +4,11 @@
 #include "io/core/random.h"
 #include "io/formats/scan.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/edit/edit.h"
 #include "octree/export/export.h"
-#include "octree/point_normals.h"
-#include "octree/stored_names.h"
+#include "octree/tree/point_normals.h"
+#include "octree/tree/stored_names.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

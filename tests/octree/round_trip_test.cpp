@@ -5,7 +5,7 @@
 
 #include "io/formats/copc/copc.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/export/export.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/las_builder.h"

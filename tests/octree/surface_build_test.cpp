@@ -8,9 +8,9 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -3,7 +3,7 @@
 
 #include "io/synthetic/synthetic.h"
 #include "octree/build/build.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/points.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::test {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/viewer/program.h"
 
 namespace lucarne::test {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/viewer/program.h"
 
 namespace lucarne::viewer {

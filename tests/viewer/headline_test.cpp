@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/viewer/program.h"
 
 namespace lucarne {

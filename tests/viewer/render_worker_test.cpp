@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 #include "tests/viewer/program.h"
 #include "viewer/input.h"
 

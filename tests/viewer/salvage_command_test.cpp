@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "tests/viewer/program.h"
 #include "viewer/kept_cache.h"
 

@@ -9,7 +9,7 @@
 #include "gi/scene/colouring.h"
 #include "gi/scene/render_settings_file.h"
 #include "io/core/log.h"
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "viewer/commands/light_options.h"
 #include "viewer/commands/look_options.h"
 #include "viewer/pipeline.h"

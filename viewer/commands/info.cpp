@@ -14,7 +14,7 @@
 #include "io/formats/mesh/source.h"
 #include "io/formats/scan.h"
 #include "io/core/progress.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"

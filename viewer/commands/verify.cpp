@@ -7,7 +7,7 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/progress.h"
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 #include "viewer/commands/commands.h"
 
 namespace lucarne::viewer {

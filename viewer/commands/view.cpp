@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/log.h"
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 #include "viewer/shell/job_queue.h"
 
 namespace lucarne::viewer {

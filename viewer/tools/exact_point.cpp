@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

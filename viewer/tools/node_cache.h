@@ -5,7 +5,7 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/files/file.h"
-#include "octree/stored_names.h"
+#include "octree/tree/stored_names.h"
 #include "viewer/axis_marks.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/section.h"

@@ -5,7 +5,7 @@
 
 #include <glm/common.hpp>
 
-#include "octree/cache_writer.h"
+#include "octree/cache/writer.h"
 #include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::octree {

@@ -7,7 +7,7 @@
 
 #include "gi/scene/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::gi {
 namespace {

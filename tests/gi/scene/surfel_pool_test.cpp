@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "octree/attributes.h"
-#include "octree/footprint.h"
+#include "octree/tree/attributes.h"
+#include "octree/tree/footprint.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_cloud.h"
 

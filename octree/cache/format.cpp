@@ -1,4 +1,4 @@
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "octree/prefix_order.h"
+#include "octree/tree/prefix_order.h"
 
 #include <array>
 #include <bit>

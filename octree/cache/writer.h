@@ -7,7 +7,7 @@
 
 #include "io/files/file.h"
 #include "io/files/update_file.h"
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 

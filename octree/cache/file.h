@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "io/files/file.h"
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 #include "octree/codec/decoder_pool.h"
-#include "octree/metadata.h"
-#include "octree/record_map.h"
+#include "octree/cache/metadata.h"
+#include "octree/cache/record_map.h"
 
 namespace lucarne::octree {
 

@@ -1,4 +1,4 @@
-#include "octree/stored_names.h"
+#include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {
 namespace {

@@ -1,10 +1,10 @@
-#include "octree/point_normals.h"
+#include "octree/tree/point_normals.h"
 
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
-#include "octree/attributes.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
 

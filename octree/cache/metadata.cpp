@@ -1,4 +1,4 @@
-#include "octree/metadata.h"
+#include "octree/cache/metadata.h"
 
 #include <cmath>
 #include <set>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "octree/cache_format.h"
+#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 namespace {

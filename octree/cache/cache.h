@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "io/files/file.h"
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

@@ -1,4 +1,4 @@
-#include "octree/cache_writer.h"
+#include "octree/cache/writer.h"
 
 #include <algorithm>
 #include <memory>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "octree/metadata.h"
+#include "octree/cache/metadata.h"
 
 namespace lucarne::octree {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/points.h"
-#include "octree/key.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::octree {
 
@@ -24,7 +24,7 @@ struct NodeInfo {
     uint64_t subtree_count = 0;      ///< with all descendants
     uint32_t payload_bytes = 0;      ///< on disk
     /// Least surface share of a surfel (file unit squared) where this node is the deepest of a cut and the
-    /// first count/2^i of its points are drawn. See octree/footprint.h.
+    /// first count/2^i of its points are drawn. See octree/tree/footprint.h.
     std::array<float, kPrefixSteps> area_floor{};
 
     /// The node in octant `o`, or kNoNode.

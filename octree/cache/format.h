@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 /// The bytes of a cache file, as octree/FORMAT.md defines them; shared by the reader and the writer.
 namespace lucarne::octree::format {

@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

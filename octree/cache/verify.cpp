@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "octree/cache.h"
-#include "octree/cache_file.h"
+#include "octree/cache/cache.h"
+#include "octree/cache/file.h"
 
 namespace lucarne::octree {
 namespace {

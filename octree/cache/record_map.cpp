@@ -1,4 +1,4 @@
-#include "octree/record_map.h"
+#include "octree/cache/record_map.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "octree/bulk.h"
+#include "octree/tree/bulk.h"
 
 #include <algorithm>
 #include <functional>

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "octree/source.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

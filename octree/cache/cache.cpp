@@ -1,4 +1,4 @@
-#include "octree/cache.h"
+#include "octree/cache/cache.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "octree/cache_file.h"
+#include "octree/cache/file.h"
 
 namespace lucarne::octree {
 
