@@ -8,7 +8,7 @@
 
 #include "io/core/error.h"
 #include "io/formats/scan.h"
-#include "octree/quick/growing_build.h"
+#include "octree/growing/growing_build.h"
 #include "octree/tree/source.h"
 
 namespace CLI {

@@ -3,7 +3,7 @@
 // Every splat of a map shall take about the same solid angle, pi splat_angle^2, however far and slanted its surface is:
 // then none is finer than the map can show and none coarser. A surfel that much smaller is left out with its whole level
 // of detail: it enters where the area that it stands for without finer surfels, lod_area, is at least what a splat
-// should cover there. Levels of detail are even samples (octree/build), so the few that enter close the surface far
+// should cover there. Levels of detail are even samples (octree/convert), so the few that enter close the surface far
 // better than as many chosen by chance would; they are drawn larger, for those that did not.
 #include "gi/shared/brdf.h"
 

@@ -6,7 +6,7 @@
 #include "io/core/parallel.h"
 #include "io/formats/copc/copc.h"
 #include "octree/tree/attributes.h"
-#include "octree/build/unify.h"
+#include "octree/convert/scans/unify.h"
 #include "octree/copc/copc.h"
 #include "octree/copc/node_normals.h"
 #include "octree/copc/node_order.h"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "octree/build/node_sampler.h"
+#include "octree/convert/sampling/node_sampler.h"
 #include "octree/tree/radix_sort.h"
-#include "octree/build/sampler.h"
+#include "octree/convert/sampling/sampler.h"
 
 namespace lucarne::octree {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "octree/build/chunk_plan.h"
+#include "octree/convert/chunks/chunk_plan.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {

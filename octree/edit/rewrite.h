@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/files/update_file.h"
-#include "octree/build/chunk_store.h"
+#include "octree/convert/chunks/chunk_store.h"
 #include "octree/cache/file.h"
 #include "octree/edit/edit.h"
 

@@ -7,7 +7,7 @@
 #include "io/core/progress.h"
 #include "io/formats/copc/writer.h"
 #include "io/formats/merged_info.h"
-#include "octree/build/node_sampler.h"
+#include "octree/convert/sampling/node_sampler.h"
 #include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {

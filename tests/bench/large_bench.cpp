@@ -14,7 +14,7 @@
 
 #include "io/core/progress.h"
 #include "io/core/random.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "tests/bench/bench_run.h"
 #include "tests/octree/test_sources.h"

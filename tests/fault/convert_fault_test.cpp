@@ -10,7 +10,7 @@
 
 #include "io/formats/scan.h"
 #include "io/synthetic/synthetic.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "tests/fault/run_lucarne.h"
 #include "tests/octree/test_sources.h"
 

@@ -1,11 +1,11 @@
 // The unit of several inputs.
-#include "octree/build/build_inputs.h"
+#include "octree/convert/build_inputs.h"
 
 #include <deque>
 
 #include <gtest/gtest.h>
 
-#include "octree/build/unify.h"
+#include "octree/convert/scans/unify.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

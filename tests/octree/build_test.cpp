@@ -1,4 +1,4 @@
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 

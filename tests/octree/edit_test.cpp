@@ -12,7 +12,7 @@
 #include "io/core/random.h"
 #include "io/files/update_file.h"
 #include "octree/tree/attributes.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/file.h"
 #include "octree/edit/edit_plan.h"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/file.h"
 #include "octree/edit/edit.h"

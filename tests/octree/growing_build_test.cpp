@@ -1,4 +1,4 @@
-#include "octree/quick/growing_build.h"
+#include "octree/growing/growing_build.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/stream/cut.h"
 #include "octree/stream/residency.h"

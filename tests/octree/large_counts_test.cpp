@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "octree/build/chunk_plan.h"
+#include "octree/convert/chunks/chunk_plan.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"

@@ -3,7 +3,7 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/edit/edit.h"
 #include "octree/export/export.h"

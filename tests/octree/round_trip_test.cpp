@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "io/formats/copc/copc.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/export/export.h"
 #include "tests/io/io_testing.h"

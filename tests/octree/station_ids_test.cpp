@@ -1,5 +1,5 @@
 // Which station saw a point: what a file says in any type of number, also where it makes no sense.
-#include "octree/build/station_ids.h"
+#include "octree/convert/chunks/station_ids.h"
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include "io/core/random.h"
 #include "io/formats/scan.h"
 #include "octree/tree/attributes.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 

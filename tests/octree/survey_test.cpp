@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/synthetic/synthetic.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 

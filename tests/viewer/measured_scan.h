@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "tests/octree/test_sources.h"
 

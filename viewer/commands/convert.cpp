@@ -15,7 +15,7 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/formats/scan.h"
-#include "octree/build/build.h"
+#include "octree/convert/build.h"
 #include "octree/edit/edit.h"
 #include "octree/normals/normals.h"
 #include "viewer/commands/build_memory.h"

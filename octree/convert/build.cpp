@@ -1,0 +1,220 @@
+#include "octree/convert/build.h"
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include "io/core/log.h"
+#include "io/core/options.h"
+#include "io/core/parallel.h"
+#include "io/core/progress.h"
+#include "octree/convert/nodes/assembler.h"
+#include "octree/convert/build_inputs.h"
+#include "octree/convert/nodes/build_listener.h"
+#include "octree/convert/identity.h"
+#include "octree/convert/nodes/in_order.h"
+#include "octree/convert/scans/scan_stage.h"
+
+namespace lucarne::octree {
+namespace {
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Runs one stage and writes down what it took. What it freed goes back to the system: else the allocator keeps it
+/// in pools of each thread, where the next stage's memory comes on top.
+template <class Stage>
+auto timed(BuildReport& report, const char* name, const Stage& stage) {
+    const auto wall = std::chrono::steady_clock::now();
+    const double cpu = cpu_seconds();
+    auto result = stage();
+    ::malloc_trim(0);
+    report.stages.push_back({name,
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count(),
+                             cpu_seconds() - cpu});
+    return result;
+}
+
+/// A stage's outcome: as an interrupted build wrote it down, else by `run`, and then written down.
+template <class Restore, class Run>
+auto resumable(Workspace& work, const char* stage, const Restore& restore, const Run& run)
+    -> decltype(run()) {
+    if (const auto* record = work.finished(stage)) {
+        if (auto before = restore(*record)) return before;
+        log::warn("what is left of '{}' is damaged; it is done again", stage);
+    }
+    auto outcome = run();
+    if (outcome) LUCARNE_TRY(work.finish(stage, outcome->save()));
+    return outcome;
+}
+
+/// How far a stage is, for the terminal and for the listener.
+class Steps {
+ public:
+    Steps(BuildListener* listener, std::string stage, uint64_t points)
+        : listener_(listener), stage_(std::move(stage)), points_(points), progress_(stage_, points, "points") {}
+
+    /// Error: the build is to stop.
+    Result<void> add(uint64_t points) {
+        progress_.add(points);
+        if (!listener_) return {};
+        listener_->advanced(stage_, done_ += points, points_);
+        if (listener_->stopped()) return failed("the build", "was stopped");
+        return {};
+    }
+
+ private:
+    BuildListener* listener_;
+    std::string stage_;
+    uint64_t points_;
+    std::atomic<uint64_t> done_{0};
+    Progress progress_;
+};
+
+Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
+    return [&pass, &steps, stride](const Visit& visit) {
+        return pass([&](std::span<const std::byte> records) -> Result<void> {
+            LUCARNE_TRY(steps.add(records.size() / stride));
+            return visit(records);
+        });
+    };
+}
+
+Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
+                               const MemoryPlan& memory, BuildListener* listener) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
+    ChunkStore store(std::move(file), inputs.schema(), facts.root);
+    const ThreadLimit readers(memory.readers);
+    Steps steps(listener, "sorting into chunks", 2 * facts.points);
+    const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
+    LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory));
+    return store;
+}
+Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
+                               std::span<const std::byte> record) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", true));
+    return ChunkStore::restore(std::move(file), inputs.schema(), facts.root, record);
+}
+
+Result<SurfaceStore> find_surface(const Workspace& work, const ChunkStore& store,
+                                  const std::vector<io::ScanInfo>& scans,
+                                  const SurfaceStore::Settings& settings) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("normals", false));
+    return SurfaceStore::estimate(store, scans, std::move(file), settings);
+}
+Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store,
+                                  std::span<const std::byte> record) {
+    LUCARNE_ASSIGN(ScratchFile file, work.scratch("normals", true));
+    return SurfaceStore::restore(store, std::move(file), record);
+}
+
+/// Chunks are built side by side and put together in order; no more than `workers` are in memory. `keep`: a
+/// resumed build may want the chunks again, so their place is not given back.
+Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
+                          const MemoryPlan& memory, bool keep, Assembler& assembler, Steps& steps) {
+    const auto chunks = store.chunks();
+    const auto build = [&](size_t chunk) { return build_subtree(loader, chunk, limits); };
+    const auto assemble = [&](size_t chunk, Subtree&& tree) -> Result<void> {
+        LUCARNE_TRY(steps.add(chunks[chunk].count));
+        LUCARNE_TRY(
+            assembler.add(std::move(tree), chunk + 1 < chunks.size() ? &chunks[chunk + 1].key : nullptr));
+        if (!keep) store.discard(chunk);
+        return {};
+    };
+    return in_order(chunks.size(), memory.workers, build, assemble);
+}
+
+}  // namespace
+
+Result<BuildReport> build_cache(const BuildOptions& options) {
+    LUCARNE_TRY(check_output(options.output, options.overwrite));
+    const unsigned threads =
+        options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+    const ThreadLimit limit(threads);
+    const auto folder = !options.temp_folder.empty()       ? options.temp_folder
+                        : options.output.has_parent_path() ? options.output.parent_path()
+                                                           : std::filesystem::path(".");
+    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
+    LUCARNE_TRY(check_units(inputs));
+    warn_of_differences(inputs);
+    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
+    const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
+    const NodeLimits limits(inputs.schema().stride + added);
+    const MemoryPlan::Work need{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
+    LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, need));
+
+    BuildReport report;
+    const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
+    LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
+    LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
+                       return resumable(work, "scan", ScanFacts::restore,
+                                        [&] {
+                                            const ThreadLimit readers(memory.readers);
+                                            return scan_inputs(inputs, memory.batch_bytes);
+                                        });
+                   }));
+    SourceHeader bare = header_of(inputs, facts, inputs.schema());
+    bare.options = options.read_options;
+    for (const auto* input : options.inputs) warn_of_assumed_unit(input->info(), bare.metres_per_unit);
+    if (options.listener) options.listener->scanned(bare);
+    LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
+                       return resumable(
+                           work, "chunk",
+                           [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
+                           [&] { return fill_chunks(work, inputs, facts, memory, options.listener); });
+                   }));
+    std::optional<SurfaceStore> surface;
+    if (normals) {
+        Steps steps(options.listener, "normals", facts.points);
+        const SurfaceStore::Settings settings{
+            *normals, options.neighbours, options.neighbour_search,
+            threads,  options.memory,     [&](uint64_t points) { return steps.add(points); }};
+        LUCARNE_ASSIGN(surface, timed(report, "normals", [&] {
+                           return resumable(
+                               work, "normals",
+                               [&](const auto& record) { return kept_surface(work, store, record); },
+                               [&] { return find_surface(work, store, bare.scans, settings); });
+                       }));
+    }
+    const RecordLoader loader(store, surface ? &*surface : nullptr, normals.value_or(false));
+    LUCARNE_ASSIGN(CacheWriter writer, CacheWriter::create(options.output, options.overwrite, folder));
+    double encoding = 0;
+    LUCARNE_TRY(timed(report, "build", [&]() -> Result<void> {
+        Steps steps(options.listener, "building", facts.points);
+        if (options.listener) options.listener->building(loader.schema());
+        LUCARNE_ASSIGN(Assembler assembler,
+                       Assembler::create(writer, loader, limits, folder, options.listener));
+        auto built = build_chunks(store, loader, limits, memory, work.resumable(), assembler, steps);
+        encoding = assembler.encode_seconds();
+        return built;
+    }));
+    report.stages.back().cpu_seconds -= encoding;
+    report.stages.push_back({"encode", 0, encoding});
+    LUCARNE_TRY(
+        timed(report, "write", [&] {
+            SourceHeader header = bare;
+            header.schema = loader.schema();
+            return writer.finish(header);
+        }));
+    work.done();
+    report.points = facts.points;
+    report.dropped = facts.dropped;
+    report.inputs = facts.inputs;
+    report.chunks = store.chunks().size();
+    report.nodes = writer.nodes();
+    report.bytes = writer.bytes();
+    return report;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,105 @@
+#include "octree/convert/chunks/chunk_plan.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/core/options.h"
+#include "octree/normals/normals.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint64_t kMaxChunkPoints = 1'000'000;  // larger chunks sort slower and share out worse
+constexpr uint64_t kMinMemory = uint64_t{16} << 20;
+/// What a thread that decodes LAZ holds (io/formats/las/laz/reader.cpp), and the share of the memory for all of them.
+constexpr uint64_t kReaderBytes = uint64_t{8} << 20, kReaderShare = 8;
+constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, chunk number
+/// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
+/// samples.
+constexpr uint64_t kWorkPerPoint = 48;
+/// The normals stage holds a few chunks at a time, a chunk's neighbours among them; building needs less.
+constexpr uint64_t kNormalChunks = 4;
+/// What sampling one node holds a candidate.
+constexpr uint64_t kWorkPerCandidate = 48;
+
+}  // namespace
+
+Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
+    if (bytes < kMinMemory)
+        return bad_arguments("--memory", fmt::format("{} is too little", bytes_text(bytes)),
+                             fmt::format("give at least {}", bytes_text(kMinMemory)));
+    const uint64_t per_point = 2 * uint64_t{work.record} + kWorkPerPoint;
+    const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
+    // Points that each of so many workers has room for. The assembly samples as well; a single worker takes
+    // turns with it.
+    const auto room = [&](unsigned workers) {
+        const uint64_t share = bytes * 7 / 8, taken = sampling * (workers > 1 ? workers + 1 : 1);
+        return share > taken ? (share - taken) / workers / per_point : 0;
+    };
+    // Chunks must not depend on the number of threads: orientation is propagated chunk by chunk.
+    MemoryPlan plan{.workers = std::max(1u, work.threads)};
+    plan.chunk_points = std::max<uint64_t>(
+        work.leaf, std::min({room(1), bytes / (kNormalChunks * kNormalBytesPerPoint), kMaxChunkPoints}));
+    while (plan.workers > 1 && room(plan.workers) < plan.chunk_points) --plan.workers;
+    plan.grid_bytes = bytes / 4;
+    plan.buffer_bytes = bytes / 2;
+    plan.batch_bytes = std::min<uint64_t>(bytes / 16, 1 << 20);
+    plan.readers = static_cast<unsigned>(
+        std::clamp<uint64_t>(bytes / kReaderShare / kReaderBytes, 1, std::max(1u, work.threads)));
+    return plan;
+}
+
+CountGrid::CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes) : cube_(cube) {
+    const uint64_t cells = std::min(bytes / kBytesPerCell, std::max<uint64_t>(points / 16, 512));
+    while (depth_ < 8 && cube.level + depth_ < kMaxLevel && uint64_t{1} << (3 * (depth_ + 1)) <= cells)
+        ++depth_;
+    mask_ = (size_t{1} << (3 * depth_)) - 1;
+    counts_.assign(mask_ + 1, 0);
+}
+
+void CountGrid::join(uint32_t depth, uint64_t index, const NodeKey& key, uint64_t limit,
+                     std::vector<Chunk>& chunks) const {
+    const uint64_t sum = depth == depth_ ? counts_[index] : sums_[depth][index];
+    if (sum == 0) return;
+    if (sum <= limit || depth == depth_) {
+        chunks.push_back({key, 0, sum});
+        return;
+    }
+    for (uint32_t octant = 0; octant < 8; ++octant)
+        join(depth + 1, index * 8 + octant, key.child(octant), limit, chunks);
+}
+
+std::vector<Chunk> CountGrid::plan(uint64_t limit, size_t most) {
+    sums_.resize(depth_);
+    for (uint32_t depth = depth_; depth-- > 0;) {
+        const auto& finer = depth + 1 == depth_ ? counts_ : sums_[depth + 1];
+        sums_[depth].assign(finer.size() / 8, 0);
+        for (size_t i = 0; i < finer.size(); ++i) sums_[depth][i / 8] += finer[i];
+    }
+    const uint64_t all = depth_ ? sums_[0][0] : counts_[0];
+    std::vector<Chunk> chunks;
+    // Below the whole, any limit splits the cube, and the largest such limit into no more than 64 chunks: the
+    // path down to the densest cell has seven neighbours a level.
+    const uint64_t widest = limit < all ? all - 1 : limit;
+    for (;; limit = std::min(2 * limit, widest)) {
+        chunks.clear();
+        join(0, 0, cube_, limit, chunks);
+        if (chunks.size() <= most || limit >= widest) break;
+    }
+    chunk_of_cell_.assign(counts_.size(), 0);
+    uint64_t first = 0;
+    for (uint32_t i = 0; i < chunks.size(); ++i) {
+        chunks[i].first = first;
+        first += chunks[i].count;
+        const uint32_t below = depth_ - (chunks[i].key.level - cube_.level);
+        const NodeKey key = chunks[i].key;
+        const size_t begin = static_cast<size_t>(key.code() << (3 * below)) & mask_;
+        std::fill_n(chunk_of_cell_.begin() + static_cast<std::ptrdiff_t>(begin), size_t{1} << (3 * below), i);
+    }
+    counts_ = {};
+    sums_ = {};
+    return chunks;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,242 @@
+#include "octree/convert/chunks/chunk_store.h"
+
+#include <algorithm>
+
+#include <xxhash.h>
+
+#include "octree/convert/chunks/record_bytes.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// Counting and dealing read the input twice; a file that somebody writes to meanwhile must not corrupt the
+/// chunks.
+auto changed() {
+    return rejected("inputs", "changed while they were read", "convert again when they are complete");
+}
+
+constexpr uint64_t kMinBuffer = 8 << 10, kMaxBuffer = 256 << 10;
+
+uint64_t chained_sum(uint64_t before, std::span<const std::byte> piece) {
+    return piece.empty() ? before : XXH3_64bits_withSeed(piece.data(), piece.size(), before);
+}
+
+/// Collects the records of each chunk and writes them in large pieces.
+class Dealer {
+ public:
+    Dealer(ScratchFile& file, std::span<Chunk> chunks, uint64_t first, uint32_t stride, uint64_t bytes)
+        : file_(file), stride_(stride) {
+        const uint64_t each = std::clamp<uint64_t>(bytes / chunks.size(), kMinBuffer, kMaxBuffer);
+        capacity_ = std::max<uint64_t>(1, each / stride) * stride;
+        for (auto& chunk : chunks) {
+            chunk.piece = static_cast<uint32_t>(capacity_);
+            lanes_.push_back(
+                {chunk, (first + chunk.first) * stride, (first + chunk.first + chunk.count) * stride, {}});
+        }
+    }
+
+    Result<void> deal(size_t chunk, const std::byte* record) {
+        Lane& lane = lanes_[chunk];
+        if (lane.waiting.capacity() == 0) lane.waiting.reserve(capacity_);
+        lane.waiting.insert(lane.waiting.end(), record, record + stride_);
+        return lane.waiting.size() >= capacity_ ? flush(lane) : Result<void>{};
+    }
+
+    Result<void> finish() {
+        for (auto& lane : lanes_) {
+            LUCARNE_TRY(flush(lane));
+            if (lane.offset != lane.end) return changed();
+        }
+        return {};
+    }
+
+ private:
+    struct Lane {
+        Chunk& chunk;
+        uint64_t offset, end;
+        std::vector<std::byte> waiting;
+    };
+    Result<void> flush(Lane& lane) {
+        if (lane.waiting.size() > lane.end - lane.offset) return changed();
+        LUCARNE_TRY(file_.write_at(lane.offset, lane.waiting));
+        lane.chunk.sum = chained_sum(lane.chunk.sum, lane.waiting);
+        lane.offset += lane.waiting.size();
+        lane.waiting.clear();
+        return {};
+    }
+
+    ScratchFile& file_;
+    uint32_t stride_;
+    uint64_t capacity_;
+    std::vector<Lane> lanes_;
+};
+
+}  // namespace
+
+Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schema, const Cube& root,
+                                       std::span<const std::byte> record) {
+    ChunkStore store(std::move(file), schema, root);
+    ByteReader reader(record);
+    store.chunks_ = reader.get_all<Chunk>();
+    store.dealt_ = reader.get_all<Chunk>();
+    store.end_ = reader.get<uint64_t>();
+    if (!reader.sound()) return failed("chunks", "were not written down whole");
+    for (const auto& chunk : store.dealt_) LUCARNE_TRY(store.check(chunk));
+    return store;
+}
+
+std::vector<std::byte> ChunkStore::save() const {
+    ByteWriter writer;
+    writer.put_all(chunks_);
+    writer.put_all(dealt_);
+    writer.put(end_);
+    return writer.take();
+}
+
+Result<void> ChunkStore::check(const Chunk& chunk) const {
+    uint64_t sum = 0;
+    std::vector<std::byte> piece(chunk.piece);
+    const uint64_t begin = chunk.first * schema_.stride, bytes = chunk.count * schema_.stride;
+    for (uint64_t at = 0; at < bytes && chunk.piece; at += piece.size()) {
+        const auto part = std::span(piece).first(std::min<uint64_t>(piece.size(), bytes - at));
+        LUCARNE_TRY(file_.read_at(begin + at, part));
+        sum = chained_sum(sum, part);
+    }
+    return sum == chunk.sum ? Result<void>{} : failed("chunks", "are not as they were left");
+}
+
+Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory) {
+    LUCARNE_ASSIGN(auto coarse, split(pass, {}, points, memory));
+    return refine(std::move(coarse), memory);
+}
+
+Result<void> ChunkStore::fill(const Pass& pass, std::span<const NodeKey> cubes, bool split,
+                              const MemoryPlan& memory) {
+    const auto at_finest = [](const NodeKey& key, uint64_t code) {
+        return code << 3 * (kMaxLevel - key.level);
+    };
+    std::vector<uint64_t> begins, ends;
+    std::vector<Chunk> chunks;
+    for (const auto& key : cubes) {
+        begins.push_back(at_finest(key, key.code()));
+        ends.push_back(at_finest(key, key.code() + 1));
+        chunks.push_back({.key = key});
+    }
+    const auto find = [&](const std::byte* record) {
+        const uint64_t code = root_.place(io::position_of(schema_, record)).code();
+        const auto behind = std::upper_bound(begins.begin(), begins.end(), code) - begins.begin();
+        const auto chunk = static_cast<size_t>(behind) - 1;
+        return behind > 0 && code < ends[chunk] ? chunk : chunks.size();
+    };
+    const auto each = [&](std::span<const std::byte> records, const auto& use) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += schema_.stride)
+            if (const size_t chunk = find(&records[at]); chunk < chunks.size())
+                LUCARNE_TRY(use(chunk, &records[at]));
+        return {};
+    };
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
+        return each(records, [&](size_t chunk, const std::byte*) -> Result<void> {
+            ++chunks[chunk].count;
+            return {};
+        });
+    }));
+    for (auto& chunk : chunks) {
+        chunk.first = end_;
+        end_ += chunk.count;
+    }
+    if (chunks.empty()) return {};
+    Dealer dealer(file_, chunks, 0, schema_.stride, memory.buffer_bytes);
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) {
+        return each(records,
+                    [&](size_t chunk, const std::byte* record) { return dealer.deal(chunk, record); });
+    }));
+    LUCARNE_TRY(dealer.finish());
+    if (!split) {
+        chunks_ = std::move(chunks);
+        return {};
+    }
+    std::erase_if(chunks, [](const Chunk& chunk) { return chunk.count == 0; });
+    return refine(std::move(chunks), memory);
+}
+
+/// One level of distribution: the points of `cube` become chunks at the end of the scratch file.
+Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cube, uint64_t points,
+                                             const MemoryPlan& memory) {
+    const uint32_t stride = schema_.stride;
+    const auto place = [&](const std::byte* record) { return root_.place(io::position_of(schema_, record)); };
+    CountGrid grid(cube, points, memory.grid_bytes);
+    LUCARNE_TRY(pass([&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += stride) grid.count(place(&records[at]));
+        return {};
+    }));
+    std::vector<Chunk> chunks =
+        grid.plan(memory.chunk_points,
+                  std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride)));
+    uint64_t counted = 0;
+    for (const auto& chunk : chunks) counted += chunk.count;
+    if (counted != points) return changed();
+    Dealer dealer(file_, chunks, end_, stride, memory.buffer_bytes);
+    const auto deal = [&](std::span<const std::byte> records) -> Result<void> {
+        for (size_t at = 0; at < records.size(); at += stride)
+            LUCARNE_TRY(dealer.deal(grid.chunk_of(place(&records[at])), &records[at]));
+        return {};
+    };
+    LUCARNE_TRY(pass(deal));
+    LUCARNE_TRY(dealer.finish());
+    for (auto& chunk : chunks) chunk.first += end_;
+    end_ += points;
+    return chunks;
+}
+
+/// Divides the points of one place, as they lie.
+void ChunkStore::stack(const Chunk& chunk, uint64_t limit) {
+    if (chunk.count <= limit || chunk.key.level == kMostLevel) {
+        chunks_.push_back(chunk);
+        return;
+    }
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        const uint64_t first = stacked_first(chunk.count, octant),
+                       end = stacked_first(chunk.count, octant + 1);
+        stack({chunk.key.child(octant), chunk.first + first, end - first}, limit);
+    }
+}
+
+/// Splits chunks that are still too large, as deep as the Morton code goes and beyond.
+Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& memory) {
+    for (const Chunk& chunk : coarse) {
+        if (chunk.count <= memory.chunk_points || chunk.key.level == kMaxLevel) {
+            dealt_.push_back(chunk);
+            stack(chunk, memory.chunk_points);
+            continue;
+        }
+        LUCARNE_ASSIGN(auto finer, split(pass_over(chunk, memory), chunk.key, chunk.count, memory));
+        file_.discard(chunk.first * schema_.stride, chunk.count * schema_.stride);
+        LUCARNE_TRY(refine(std::move(finer), memory));  // a level deeper each time, so 21 deep at most
+    }
+    return {};
+}
+
+Pass ChunkStore::pass_over(const Chunk& chunk, const MemoryPlan& memory) {
+    return [this, chunk, most = std::max<uint64_t>(1, memory.batch_bytes / schema_.stride)](
+               const Visit& visit) -> Result<void> {
+        std::vector<std::byte> records;
+        for (uint64_t done = 0; done < chunk.count; done += most) {
+            records.resize(std::min(most, chunk.count - done) * schema_.stride);
+            LUCARNE_TRY(file_.read_at((chunk.first + done) * schema_.stride, records));
+            LUCARNE_TRY(visit(records));
+        }
+        return {};
+    };
+}
+
+Result<std::vector<std::byte>> ChunkStore::load(size_t chunk, uint64_t first, uint64_t count) const {
+    std::vector<std::byte> records(count * schema_.stride);
+    LUCARNE_TRY(file_.read_at((chunks_[chunk].first + first) * schema_.stride, records));
+    return records;
+}
+
+void ChunkStore::discard(size_t chunk) {
+    file_.discard(chunks_[chunk].first * schema_.stride, chunks_[chunk].count * schema_.stride);
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,48 @@
+#include "octree/convert/chunks/record_loader.h"
+
+#include "octree/tree/attributes.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr double kFace = 1;  ///< areas count in faces of the root cube before it was doubled
+
+}  // namespace
+
+io::Schema with_estimates(io::Schema schema, bool normals) {
+    if (normals) schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
+    schema.add(std::string(io::names::area), io::ScalarType::u16);
+    return schema;
+}
+
+RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
+    : chunks_(chunks), surface_(surface), schema_(chunks.schema()) {
+    if (surface && !schema_.find(io::names::area)) schema_ = with_estimates(std::move(schema_), normals);
+    normal_ = schema_.find(io::names::normal_oct);
+    area_ = schema_.find(io::names::area);
+}
+
+Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, uint64_t count) const {
+    LUCARNE_ASSIGN(auto input, chunks_.load(chunk, first, count));
+    if (!surface_) return input;
+    LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, count));
+    const uint32_t stride = chunks_.schema().stride;
+    const bool in_place = stride == schema_.stride;
+    std::vector<std::byte> records(count * schema_.stride);
+    for (size_t i = 0; i < count; ++i) {
+        std::byte* record = &records[i * schema_.stride];
+        std::memcpy(record, &input[i * stride], stride);
+        if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
+            io::store(record + normal_->offset, encode_normal(found[i].normal));
+        if (!in_place || found[i].area > 0)
+            io::store(record + area_->offset, encode_area(found[i].area, kFace));
+    }
+    return records;
+}
+
+float RecordLoader::area(const std::byte* record) const {
+    if (!area_) return 0;
+    return static_cast<float>(decode_area(io::load<uint16_t>(record + area_->offset), kFace));
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "octree/convert/chunks/surface_store.h"
+
+namespace lucarne::octree {
+
+/// The input's schema with what is estimated: areas and, if `normals`, normals.
+io::Schema with_estimates(io::Schema schema, bool normals);
+
+/// Hands out the records of chunks as the cache will hold them: the input's, with what was estimated behind
+/// them; in an update, whose chunks have the cache's whole schema, in place: areas anew, normals for points
+/// that have none yet.
+class RecordLoader {
+ public:
+    /// `surface` is null where neither normals nor areas were estimated; `normals`: whether its normals are
+    /// wanted.
+    RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals);
+
+    const io::Schema& schema() const { return schema_; }
+    const Cube& root() const { return chunks_.root(); }
+    std::span<const Chunk> chunks() const { return chunks_.chunks(); }
+    Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
+
+    Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
+    /// The point's surface share in faces of the root cube before it was doubled; 0 where unknown.
+    float area(const std::byte* record) const;
+    /// Where estimates stand; null where nothing was estimated.
+    const io::Attribute* estimated_normal() const { return normal_; }
+    const io::Attribute* estimated_area() const { return area_; }
+
+ private:
+    const ChunkStore& chunks_;
+    const SurfaceStore* surface_;
+    io::Schema schema_;
+    const io::Attribute *normal_ = nullptr, *area_ = nullptr;
+};
+
+}  // namespace lucarne::octree

@@ -1,0 +1,182 @@
+#include "octree/convert/chunks/surface_store.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "octree/convert/chunks/record_bytes.h"
+#include "octree/convert/chunks/station_ids.h"
+#include "octree/cache/format.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint64_t kPieceBytes = uint64_t{1} << 18;  ///< of records read at a time
+constexpr float kAreaBins = 4;                       ///< an octave
+/// A few points that hang in the air together have no plane, and a share that is that of the empty space
+/// around them: no picture wants it larger than the usual surfel.
+constexpr float kMostStray = 0.5f;
+
+/// The chunks and stations of a build as the estimator sees them.
+class Access final : public ChunkAccess {
+ public:
+    Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans)
+        : store_(store), ids_(scans, store.schema()) {}
+
+    const std::vector<glm::dvec3>& all_stations() const { return ids_.stations(); }
+
+    size_t chunk_count() const override { return store_.chunks().size(); }
+    /// What one place holds by the chunk has no plane that could be seen, and would be everybody's neighbour.
+    uint64_t point_count(size_t chunk) const override {
+        const Chunk& found = store_.chunks()[chunk];
+        return found.key.level > kMaxLevel ? 0 : found.count;
+    }
+    Box bounds(size_t chunk) const override {
+        const Cube cube = store_.root().of(store_.chunks()[chunk].key);
+        return {cube.min, cube.min + glm::dvec3(cube.size)};
+    }
+
+    Result<std::vector<glm::dvec3>> positions(size_t chunk) const override {
+        std::vector<glm::dvec3> positions;
+        positions.reserve(point_count(chunk));
+        LUCARNE_TRY(for_each_record(chunk, [&](const std::byte* record) {
+            positions.push_back(io::position_of(store_.schema(), record));
+        }));
+        return positions;
+    }
+
+    Result<std::vector<int32_t>> stations(size_t chunk) const override {
+        if (all_stations().empty()) return std::vector<int32_t>(point_count(chunk), -1);
+        std::vector<int32_t> result;
+        result.reserve(point_count(chunk));
+        LUCARNE_TRY(
+            for_each_record(chunk, [&](const std::byte* record) { result.push_back(ids_.of(record)); }));
+        return result;
+    }
+
+ private:
+    /// In pieces: records may be many times as wide as what is wanted of them.
+    template <typename Use>
+    Result<void> for_each_record(size_t chunk, const Use& use) const {
+        const size_t stride = store_.schema().stride;
+        const uint64_t count = point_count(chunk), piece = std::max<uint64_t>(1, kPieceBytes / stride);
+        for (uint64_t first = 0; first < count; first += piece) {
+            LUCARNE_ASSIGN(const auto records, store_.load(chunk, first, std::min(piece, count - first)));
+            for (size_t at = 0; at < records.size(); at += stride) use(&records[at]);
+        }
+        return {};
+    }
+
+    const ChunkStore& store_;
+    StationIds ids_;
+};
+
+}  // namespace
+
+Result<SurfaceStore> SurfaceStore::estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
+                                            ScratchFile file, const Settings& settings) {
+    SurfaceStore store(std::move(file), chunks);
+    const Access access(chunks, scans);
+    NormalOptions options;
+    options.neighbours = settings.neighbours;
+    options.search = settings.search;
+    options.stations = access.all_stations();
+    options.memory = settings.memory;
+    options.threads = settings.threads;
+    options.normals = settings.normals;
+    options.area_unit = chunks.root().first_size();
+    std::mutex mutex;
+    const auto keep = [&](size_t chunk, ChunkNormals&& found) -> Result<void> {
+        const std::lock_guard lock(mutex);
+        const uint64_t count = chunks.chunks()[chunk].count;
+        LUCARNE_TRY(store.keep(chunk, count, found));
+        return settings.step ? settings.step(count) : Result<void>();
+    };
+    LUCARNE_ASSIGN(store.signs_, estimate_normals(access, options, keep));
+    if (settings.normals) store.limit_strays();
+    return store;
+}
+
+void SurfaceStore::turn(size_t chunk, uint32_t component) {
+    if (chunk < signs_.size() && component < signs_[chunk].size())
+        signs_[chunk][component] = static_cast<int8_t>(-signs_[chunk][component]);
+}
+
+void SurfaceStore::limit_strays() {
+    uint64_t known = 0, below = 0;
+    for (const auto& [bin, count] : areas_) known += count;
+    for (const auto& [bin, count] : areas_) {
+        below += count;
+        if (2 * below < known) continue;
+        most_stray_area_ = kMostStray * std::exp2(static_cast<float>(bin) / kAreaBins);  // of the median
+        return;
+    }
+}
+
+Result<void> SurfaceStore::keep(size_t chunk, uint64_t count, const ChunkNormals& found) {
+    std::vector<Point> points(count);
+    for (size_t i = 0; i < count; ++i) {
+        if (i < found.normals.size()) points[i].normal = found.normals[i];
+        if (i < found.areas.size()) points[i].area = found.areas[i];
+        if (points[i].area > kStrayArea)
+            ++areas_[static_cast<int>(std::floor(kAreaBins * std::log2(points[i].area)))];
+        if (i < found.components.size()) points[i].component = found.components[i];
+    }
+    const auto bytes = std::as_bytes(std::span(points));
+    sums_[chunk] = format::checksum(bytes);
+    return file_.write_at(first_[chunk] * sizeof(Point), bytes);
+}
+
+std::vector<std::byte> SurfaceStore::save() const {
+    ByteWriter writer;
+    writer.put_all(sums_);
+    writer.put(most_stray_area_);
+    writer.put(uint64_t{signs_.size()});
+    for (const auto& signs : signs_) writer.put_all(signs);
+    return writer.take();
+}
+
+Result<SurfaceStore> SurfaceStore::restore(const ChunkStore& chunks, ScratchFile file,
+                                           std::span<const std::byte> record) {
+    SurfaceStore store(std::move(file), chunks);
+    ByteReader reader(record);
+    const auto sums = reader.get_all<uint64_t>();
+    store.most_stray_area_ = reader.get<float>();
+    const auto signed_chunks = reader.get<uint64_t>();
+    for (uint64_t i = 0; i < signed_chunks && reader.sound(); ++i)
+        store.signs_.push_back(reader.get_all<int8_t>());
+    if (!reader.sound() || sums.size() != store.sums_.size())
+        return failed("normals", "were not written down whole");
+    store.sums_ = sums;
+    for (size_t chunk = 0; chunk < sums.size(); ++chunk) {
+        LUCARNE_ASSIGN(const auto points, store.read(chunk, 0, store.count(chunk)));
+        if (format::checksum(std::as_bytes(std::span(points))) != sums[chunk])
+            return failed("normals", "are not as they were left");
+    }
+    return store;
+}
+
+Result<std::vector<SurfaceStore::Point>> SurfaceStore::read(size_t chunk, uint64_t first,
+                                                            uint64_t count) const {
+    std::vector<Point> points(count);
+    LUCARNE_TRY(
+        file_.read_at((first_[chunk] + first) * sizeof(Point), std::as_writable_bytes(std::span(points))));
+    return points;
+}
+
+Result<std::vector<SurfaceStore::Point>> SurfaceStore::load(size_t chunk, uint64_t first,
+                                                            uint64_t count) const {
+    LUCARNE_ASSIGN(auto points, read(chunk, first, count));
+    if (most_stray_area_ > 0)
+        for (auto& point : points)
+            if (point.normal == glm::vec3(0.0f)) point.area = std::min(point.area, most_stray_area_);
+    if (chunk >= signs_.size()) return points;
+    for (auto& point : points)
+        if (point.component < signs_[chunk].size() && signs_[chunk][point.component] < 0)
+            point.normal = -point.normal;
+    return points;
+}
+
+}  // namespace lucarne::octree

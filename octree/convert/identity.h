@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "octree/convert/build.h"
+
+namespace lucarne::octree {
+
+/// What a build's result depends on, as lines of text: options, and of each input its path, size, time of the
+/// last change, the checksum of its beginning, and what its header says.
+std::string build_identity(const BuildOptions& options);
+
+}  // namespace lucarne::octree

@@ -1,0 +1,124 @@
+#include "octree/convert/sampling/sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint32_t kNone = UINT32_MAX;
+constexpr float kFree = std::numeric_limits<float>::infinity();
+/// From one pass to the next. The number of points that fit grows by the inverse square, 1.56.
+constexpr float kRadiusStep = 0.8f;
+
+}  // namespace
+
+void Sampler::start(const NodeKey& key) {
+    const NodeKey node = key.cell();
+    const auto corner = [&](uint32_t cell) {
+        return static_cast<uint32_t>(uint64_t{cell} << (32 - node.level));
+    };
+    origin_ = {corner(node.x), corner(node.y), corner(node.z)};
+    scale_ = std::exp2(static_cast<float>(node.level) - 32.0f);
+    points_.clear();
+}
+
+void Sampler::add(const Place& place) {
+    const auto local = [&](uint32_t v, uint32_t origin) { return static_cast<float>(v - origin) * scale_; };
+    points_.push_back(
+        {local(place.x, origin_.x), local(place.y, origin_.y), local(place.z, origin_.z), kNone});
+}
+
+void Sampler::reset_grid(float radius) {
+    radius2_ = radius * radius;
+    cells_ = 1 / (2 * radius);  // cells of two radii: what can conflict lies in the nearest 2 x 2 x 2
+    std::fill(heads_.begin(), heads_.end(), kNone);
+}
+
+/// Hashed cells: two cells in one bucket cost a few more distances and change nothing else.
+inline size_t Sampler::bucket(int32_t x, int32_t y, int32_t z) const {
+    return (static_cast<uint32_t>(x) + static_cast<uint32_t>(y) * 0x9e3779b1u +
+            static_cast<uint32_t>(z) * 0x85ebca77u) &
+           mask_;
+}
+
+inline void Sampler::insert(uint32_t index) {
+    Point& p = points_[index];
+    const auto cell = [this](float v) { return static_cast<int32_t>(v * cells_); };
+    uint32_t& head = heads_[bucket(cell(p.x), cell(p.y), cell(p.z))];
+    p.next = head;
+    head = index;
+}
+
+inline float Sampler::conflict_around(const Point& p) const {
+    // Shifted by half a cell and cut: the lower of the two nearest cells of each axis, from -1 (+1: no
+    // negative cut).
+    const auto lower = [this](float v) { return static_cast<int32_t>(v * cells_ + 0.5f) - 1; };
+    const int32_t x = lower(p.x), y = lower(p.y), z = lower(p.z);
+    for (int32_t corner = 0; corner < 8; ++corner)
+        for (uint32_t i = heads_[bucket(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2))];
+             i != kNone;) {
+            const Point& q = points_[i];
+            const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+            const float distance2 = dx * dx + dy * dy + dz * dz;
+            if (distance2 < radius2_) return distance2;
+            i = q.next;
+        }
+    return kFree;
+}
+
+void Sampler::take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uint8_t pass) {
+    size_t kept = 0;
+    for (const uint32_t i : from) {
+        if (blocked_[i] >= radius2_) blocked_[i] = conflict_around(points_[i]);
+        if (blocked_[i] == kFree) {
+            insert(i);
+            taken_.push_back(i);
+            passes_[i] = pass;
+        } else {
+            rest[kept++] = i;
+        }
+    }
+    rest.resize(kept);
+}
+
+void Sampler::run(float radius, size_t most) {
+    const auto count = static_cast<uint32_t>(points_.size());
+    passes_.assign(count, kLastPass);
+    blocked_.assign(count, kFree);
+    heads_.resize(std::bit_ceil(std::max<size_t>(count, 64)));
+    mask_ = heads_.size() - 1;
+    waiting_.resize(count);
+    for (uint32_t i = 0; i < count; ++i) waiting_[i] = i;
+
+    taken_.clear();
+    reset_grid(radius);
+    take(waiting_, waiting_, 0);
+    const bool thinning = taken_.size() > most;
+    while (taken_.size() > most) {  // a volume instead of a surface, or many layers: a wider radius
+        const auto excess = static_cast<float>(taken_.size()) / static_cast<float>(most);
+        radius *= std::max(1.1f, std::min(std::sqrt(excess), 1.15f * std::cbrt(excess)));
+        thinned_.swap(taken_);
+        taken_.clear();
+        reset_grid(radius);
+        std::vector<uint32_t> out(thinned_.size());
+        take(thinned_, out, 0);
+        for (const uint32_t i : out) passes_[i] = kLastPass;
+        const size_t before = waiting_.size();
+        waiting_.insert(waiting_.end(), out.begin(), out.end());
+        std::inplace_merge(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(before),
+                           waiting_.end());
+    }
+    if (thinning) blocked_.assign(count, kFree);  // who blocked them may have been taken out again
+    for (uint8_t pass = 1; pass < kLastPass && !waiting_.empty(); ++pass) {
+        radius *= kRadiusStep;
+        reset_grid(radius);
+        for (const uint32_t i : taken_) insert(i);
+        take(waiting_, waiting_, pass);
+    }
+}
+
+}  // namespace lucarne::octree

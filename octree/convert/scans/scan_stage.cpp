@@ -1,0 +1,146 @@
+#include "octree/convert/scans/scan_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+
+#include "io/core/counted.h"
+#include "io/core/log.h"
+#include "octree/convert/chunks/record_bytes.h"
+
+namespace lucarne::octree {
+namespace {
+
+/// What of an input is not among the points that were handed to `visit`.
+struct LeftOut {
+    uint64_t dropped = 0;
+    io::Losses losses;
+};
+Result<LeftOut> read_input(const Unifier& inputs, size_t input, uint64_t batch_bytes, const Visit& visit) {
+    LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());
+    const size_t most = std::clamp<size_t>(batch_bytes / inputs.schema().stride, 1, 1 << 16);
+    io::PointBatch batch;
+    std::vector<std::byte> storage;
+    for (;;) {
+        LUCARNE_ASSIGN(const size_t count, reader->read(batch, most));
+        if (count == 0) {
+            LeftOut left{reader->dropped(), inputs.source(input).info().losses};
+            io::add_losses(left.losses, reader->losses());
+            return left;
+        }
+        LUCARNE_TRY(visit(inputs.convert(input, batch, storage)));
+    }
+}
+
+/// The least edge of a root cube: places in it are counted in 2^32ths, whose inverse is an ordinary double.
+constexpr double kLeastRoot = 1e-290;
+
+void put_text(ByteWriter& writer, const std::string& text) {
+    writer.put_all(std::vector<char>(text.begin(), text.end()));
+}
+std::string get_text(ByteReader& reader) {
+    const auto text = reader.get_all<char>();
+    return {text.begin(), text.end()};
+}
+
+}  // namespace
+
+Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
+    const glm::dvec3 extent = max - min;
+    double size = std::max({extent.x, extent.y, extent.z});
+    if (!(size < 1e300))
+        return rejected("points", "their coordinates span more than 1e300 units", "remove the stray ones");
+    if (size <= 0) size = 1;  // one place only
+    size = std::max(size, kLeastRoot);
+    // A hair wider, so that the farthest point is inside and not on the border.
+    return Cube{min, size * (1 + 1e-9)};
+}
+
+std::vector<std::byte> ScanFacts::save() const {
+    ByteWriter writer;
+    writer.put(points);
+    writer.put(dropped);
+    writer.put(min);
+    writer.put(max);
+    writer.put(root);
+    writer.put(uint64_t{inputs.size()});
+    for (const auto& input : inputs) {
+        writer.put(input.points);
+        writer.put(input.min);
+        writer.put(input.max);
+        writer.put(uint64_t{input.losses.size()});
+        for (const auto& loss : input.losses) {
+            put_text(writer, loss.what);
+            writer.put(loss.count);
+        }
+    }
+    return writer.take();
+}
+Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
+    ByteReader reader(record);
+    ScanFacts facts;
+    facts.points = reader.get<uint64_t>();
+    facts.dropped = reader.get<uint64_t>();
+    facts.min = reader.get<glm::dvec3>();
+    facts.max = reader.get<glm::dvec3>();
+    facts.root = reader.get<Cube>();
+    for (auto left = reader.get<uint64_t>(); left > 0 && reader.sound(); --left) {
+        io::Contents input;
+        input.points = reader.get<uint64_t>();
+        input.min = reader.get<glm::dvec3>();
+        input.max = reader.get<glm::dvec3>();
+        for (auto losses = reader.get<uint64_t>(); losses > 0 && reader.sound(); --losses) {
+            std::string what = get_text(reader);
+            input.losses.push_back({std::move(what), reader.get<uint64_t>()});
+        }
+        facts.inputs.push_back(std::move(input));
+    }
+    if (!reader.sound()) return failed("scan", "was not written down whole");
+    return facts;
+}
+
+Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
+    return [&inputs, batch_bytes](const Visit& visit) -> Result<void> {
+        for (size_t input = 0; input < inputs.inputs(); ++input)
+            LUCARNE_TRY(read_input(inputs, input, batch_bytes, visit));
+        return {};
+    };
+}
+
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
+    const auto& schema = inputs.schema();
+    for (size_t input = first; input < inputs.inputs(); ++input) {
+        io::Contents seen{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
+        LUCARNE_ASSIGN(
+            LeftOut left,
+            read_input(inputs, input, batch_bytes, [&](std::span<const std::byte> records) -> Result<void> {
+                for (size_t at = 0; at < records.size(); at += schema.stride) {
+                    const auto p = io::position_of(schema, &records[at]);
+                    seen.min = glm::min(seen.min, p);
+                    seen.max = glm::max(seen.max, p);
+                }
+                seen.points += records.size() / schema.stride;
+                return {};
+            }));
+        for (const auto& loss : left.losses)
+            log::warn("{}: {}", inputs.source(input).info().path, counted(loss.count, loss.what));
+        facts.min = glm::min(facts.min, seen.min);
+        facts.max = glm::max(facts.max, seen.max);
+        facts.points += seen.points;
+        facts.dropped += left.dropped;
+        seen.losses = std::move(left.losses);
+        facts.inputs.push_back(std::move(seen));
+    }
+    if (facts.points == 0) return rejected(inputs.source(first).info().path, "has no points");
+    for (size_t input = first; input < inputs.inputs(); ++input)
+        if (facts.inputs[input - first].points == 0)
+            log::warn("{}: has no points", inputs.source(input).info().path);
+    LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
+    return facts;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,255 @@
+#include "octree/growing/growing_build.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <tbb/task_arena.h>
+
+#include "io/core/guarded.h"
+#include "io/core/log.h"
+#include "octree/tree/attributes.h"
+#include "octree/convert/build_inputs.h"
+#include "octree/convert/nodes/build_listener.h"
+#include "octree/tree/radix_sort.h"
+#include "octree/convert/chunks/record_loader.h"
+#include "octree/convert/chunks/station_ids.h"
+#include "octree/cache/cache.h"
+#include "octree/growing/quick_surface.h"
+#include "octree/growing/sample.h"
+#include "octree/growing/tree_top.h"
+
+namespace lucarne::octree {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The sample with its surface, in the order in which it was taken.
+struct ShownSample {
+    QuickSample points;
+    std::vector<QuickSurface> surface;
+};
+
+constexpr double kFace = 1;  ///< areas count in faces of the root cube
+
+/// Its records as a cache over `root` would hold them, along that root's Morton curve.
+LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const io::Schema& schema,
+                        const Cube& root) {
+    const size_t count = sample.points.positions.size();
+    std::vector<CodeIndex> order(count);
+    for (uint32_t i = 0; i < count; ++i) order[i] = {root.place(sample.points.positions[i]).code(), i};
+    sort_by_code(order, 3 * kMaxLevel);
+    const io::Attribute* normal = schema == from ? nullptr : schema.find(io::names::normal_oct);
+    const io::Attribute* area = schema == from ? nullptr : schema.find(io::names::area);
+    LoosePoints points;
+    points.records.resize(count * schema.stride);
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t index = order[i].index;
+        std::byte* record = &points.records[i * schema.stride];
+        std::memcpy(record, &sample.points.records[size_t{index} * from.stride], from.stride);
+        const QuickSurface& surface = sample.surface[index];
+        if (normal) io::store(record + normal->offset, encode_normal(surface.normal));
+        if (area) io::store(record + area->offset, encode_area(surface.area, kFace));
+        points.codes.push_back(order[i].code);
+        points.areas.push_back(area ? surface.area : 0.0f);
+    }
+    return points;
+}
+
+}  // namespace
+
+struct GrowingBuild::State final : BuildListener {
+    Inputs inputs;
+    GrowingOptions options;
+    std::optional<Unifier> unifier;
+    ShownSample sample;
+    io::Schema schema;  ///< of the sources
+    SourceHeader header;
+    std::function<void()> changed;
+    std::thread thread;
+    std::atomic<bool> stop{false};
+    log::Operation operation = log::Operation::current();  ///< that has opened it
+
+    // Of the build's thread:
+    LoosePoints loose;
+    std::vector<format::Entry> entries;
+    std::vector<std::shared_ptr<const LooseNode>> roots;
+    Clock::time_point published;
+    double publishing = 0;  ///< s that the last source took to make
+
+    mutable std::mutex mutex;  ///< of what follows
+    BuildState now;
+
+    Result<void> take_first();
+    void publish(std::shared_ptr<const InputFile> file);
+    void show(std::shared_ptr<const NodeSource> source);
+    void work();
+    void end(Result<std::shared_ptr<const NodeSource>> cache);
+    Result<std::shared_ptr<const NodeSource>> build();
+
+    void scanned(const SourceHeader& facts) override;
+    void building(const io::Schema& records) override;
+    void settled(std::span<const format::Entry> nodes) override;
+    void pending(const Pending& node, std::span<const std::byte> shown, const CacheWriter& writer) override;
+    void advanced(std::string_view stage, uint64_t points, uint64_t total) override;
+    bool stopped() const override { return stop; }
+};
+
+Result<void> GrowingBuild::State::take_first() {
+    std::vector<const io::PointSource*> sources;
+    for (const auto& input : inputs) sources.push_back(input.get());
+    options.build.inputs = sources;
+    LUCARNE_ASSIGN(unifier, Unifier::create(std::move(sources),
+                                            options.build.normals == NormalsMode::estimate));
+    LUCARNE_TRY(check_units(*unifier));
+    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
+    schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
+
+    LUCARNE_ASSIGN(sample.points, take_sample(*unifier, options.sample_points, options.sampling));
+    ScanFacts facts{.points = sample.points.points, .min = sample.points.min, .max = sample.points.max};
+    LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
+    header = header_of(*unifier, facts, schema);
+    const StationIds ids(header.scans, unifier->schema());
+    std::vector<std::optional<glm::dvec3>> stations(sample.points.positions.size());
+    for (size_t i = 0; i < stations.size(); ++i)
+        if (const int32_t id = ids.of(&sample.points.records[i * unifier->schema().stride]); id >= 0)
+            stations[i] = ids.stations()[static_cast<size_t>(id)];
+    sample.surface = quick_surface(sample.points.positions, facts.root, stations);
+    loose = along_curve(sample, unifier->schema(), schema, facts.root);
+    publish(nullptr);
+    return {};
+}
+
+/// Makes a source of all there is.
+void GrowingBuild::State::publish(std::shared_ptr<const InputFile> file) {
+    const auto start = Clock::now();
+    show(make_growing_source({header, entries, roots, loose, std::move(file)}));
+    published = Clock::now();
+    publishing = std::chrono::duration<double>(published - start).count();
+}
+
+void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
+    {
+        const std::lock_guard lock(mutex);
+        now.source = std::move(source);
+    }
+    if (changed) changed();
+}
+
+void GrowingBuild::State::scanned(const SourceHeader& facts) {
+    header = facts;
+    header.schema = schema;
+    loose = along_curve(sample, unifier->schema(), schema, header.root);
+    publish(nullptr);
+}
+
+void GrowingBuild::State::building(const io::Schema& records) {
+    if (records != schema) throw std::logic_error("a build's records are other than its sample's");
+}
+
+void GrowingBuild::State::settled(std::span<const format::Entry> nodes) {
+    entries.insert(entries.end(), nodes.begin(), nodes.end());
+}
+
+void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte> shown,
+                                  const CacheWriter& writer) {
+    if (node.key.level > kMaxLevel)
+        return;  // a part of one cell: the sample shows it until the cell is whole
+    const io::Attribute* area = schema == unifier->schema() ? nullptr : schema.find(io::names::area);
+    auto root = std::make_shared<LooseNode>();
+    root->node = node;
+    root->points.records.assign(shown.begin(), shown.end());
+    for (size_t at = 0; at < shown.size(); at += schema.stride) {
+        const std::byte* record = &shown[at];
+        root->points.codes.push_back(header.root.place(io::position_of(schema, record)).code());
+        const auto code = area ? io::load<uint16_t>(record + area->offset) : kNoArea;
+        root->points.areas.push_back(static_cast<float>(decode_area(code, kFace)));
+    }
+    while (!roots.empty() && roots.back()->node.key.level > node.key.level &&
+           roots.back()->node.key.parent() == node.key)
+        roots.pop_back();
+    roots.push_back(std::move(root));
+    // A twentieth of the time at most goes into showing what is there.
+    const double since = std::chrono::duration<double>(Clock::now() - published).count();
+    if (since < std::max(options.seconds_between, 20 * publishing)) return;
+    auto file = writer.reader();
+    if (file) publish(std::make_shared<const InputFile>(std::move(*file)));
+}
+
+void GrowingBuild::State::advanced(std::string_view stage, uint64_t points, uint64_t total) {
+    const std::lock_guard lock(mutex);
+    now.progress = {std::string(stage),
+                    total ? std::min(1.0, static_cast<double>(points) / static_cast<double>(total)) : 0.0};
+}
+
+Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
+    options.build.listener = this;
+    // Pictures are drawn meanwhile: what they need goes first.
+    tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
+    LUCARNE_TRY(arena.execute([&] { return build_cache(options.build); }));
+    LUCARNE_ASSIGN(auto cache, open_cache(options.build.output));
+    return std::shared_ptr<const NodeSource>(std::move(cache));
+}
+
+void GrowingBuild::State::work() {
+    const log::Operation::Scope scope(operation);
+    auto cache = guarded("the build", [&] { return build(); });
+    entries = {};
+    roots.clear();
+    end(std::move(cache));
+}
+
+void GrowingBuild::State::end(Result<std::shared_ptr<const NodeSource>> cache) {
+    {
+        const std::lock_guard lock(mutex);
+        now.progress = {};
+        now.finished = cache.has_value();
+        now.stopped = stop && !cache;
+        if (cache)
+            now.source = std::move(*cache);
+        else
+            now.error = tl::make_unexpected(std::move(cache).error());
+    }
+    if (changed) changed();
+}
+
+GrowingBuild::GrowingBuild() : state_(std::make_unique<State>()) {}
+
+Result<std::unique_ptr<GrowingBuild>> GrowingBuild::open(Inputs inputs, GrowingOptions options) {
+    std::unique_ptr<GrowingBuild> build(new GrowingBuild);
+    build->state_->inputs = std::move(inputs);
+    build->state_->options = std::move(options);
+    LUCARNE_TRY(build->state_->take_first());
+    return build;
+}
+
+GrowingBuild::~GrowingBuild() {
+    stop();
+    wait();
+}
+
+void GrowingBuild::stop() {
+    state_->stop = true;
+}
+
+void GrowingBuild::begin(std::function<void()> changed) {
+    state_->changed = std::move(changed);
+    auto started = guarded("the build", [&] {
+        state_->thread = std::thread([state = state_.get()] { state->work(); });
+    });
+    if (!started) state_->end(tl::make_unexpected(std::move(started).error()));
+}
+
+void GrowingBuild::wait() {
+    if (state_->thread.joinable()) state_->thread.join();
+}
+
+BuildState GrowingBuild::state() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->now;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,258 @@
+// The top of an octree over finished subtrees and loose points. Taking the first point of each cell of a grid
+// is the sampling of Schuetz et al., "SimLOD: Simultaneous LOD Generation and Rendering for Point Clouds",
+// 2023, section 3.3 (a voxel keeps the first point that reaches it); along the Morton curve it needs no grid:
+// a point is the first of its cells from the level on at which its code differs from that of the point
+// before.
+#include "octree/growing/tree_top.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "octree/convert/nodes/subtree.h"
+#include "octree/cache/file.h"
+#include "octree/normals/area_floor.h"
+
+namespace lucarne::octree {
+namespace {
+
+constexpr uint32_t kGridLevels = 7;  ///< 2^7 cells a side of a node
+
+/// A node's points: in memory, or in the file where there is no copy.
+struct Content {
+    std::shared_ptr<const NodeData> data;
+    StoredPayload stored;
+};
+
+class GrowingSource final : public NodeSource {
+ public:
+    explicit GrowingSource(const GrowingState& state)
+        : header_(state.header),
+          file_(state.file),
+          decoders_(std::make_unique<codec::DecoderPool>(header_.schema)) {}
+
+    const SourceHeader& header() const override { return header_; }
+    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    Result<NodeData> load(uint32_t node) const override {
+        const Content& content = contents_[node];
+        if (content.data) return *content.data;
+        return load_payload(*file_, node, nodes_[node], content.stored, *decoders_, header_.schema.stride);
+    }
+
+    void add(const NodeInfo& info, Content content) {
+        nodes_.push_back(info);
+        contents_.push_back(std::move(content));
+    }
+    /// Brings the nodes into the order of a directory and links them.
+    void link();
+
+ private:
+    SourceHeader header_;
+    std::shared_ptr<const InputFile> file_;
+    std::unique_ptr<codec::DecoderPool> decoders_;
+    std::vector<NodeInfo> nodes_;
+    std::vector<Content> contents_;
+};
+
+void GrowingSource::link() {
+    std::vector<uint32_t> order(nodes_.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return nodes_[a].key < nodes_[b].key; });
+    std::vector<NodeInfo> nodes;
+    std::vector<Content> contents;
+    for (const uint32_t i : order) {
+        nodes.push_back(nodes_[i]);
+        contents.push_back(std::move(contents_[i]));
+    }
+    uint32_t next = 1;
+    for (uint32_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].child_mask == 0) continue;
+        nodes[i].first_child = next;
+        for (int child = std::popcount(nodes[i].child_mask); child > 0 && next < nodes.size(); --child)
+            nodes[next++].parent = i;
+    }
+    nodes_ = std::move(nodes);
+    contents_ = std::move(contents);
+}
+
+/// A loose point.
+struct Item {
+    uint64_t code = 0;
+    float area = 0;  ///< in faces of the root cube
+    uint8_t first_level = 0;  ///< the cells of this level and deeper have it as their first point
+    const std::byte* record = nullptr;
+};
+
+/// What a call of build() tells the node above.
+struct Part {
+    uint64_t points = 0;  ///< in the cube that no ancestor shows; 0: the node is not there
+    double surface = 0;   ///< in the cube, in faces of the root cube
+};
+
+class Top {
+ public:
+    Top(const GrowingState& state, GrowingSource& source);
+    void build() { build(NodeKey{}, 0, items_.size(), 0, roots_.size()); }
+
+ private:
+    Part build(const NodeKey& key, size_t first, size_t last, size_t first_root, size_t last_root);
+    Part build_children(NodeInfo& info, size_t first, size_t last, size_t first_root, size_t last_root);
+    void add_items(const LoosePoints& points, size_t first);
+    void emit(const NodeInfo& info, size_t first, size_t last, double surface, bool all);
+    /// The level of the node that a point stands in, where nodes go that deep.
+    static uint32_t level_of(const Item& item) {
+        return item.first_level > kGridLevels ? item.first_level - kGridLevels : 0;
+    }
+
+    GrowingSource& source_;
+    std::span<const std::shared_ptr<const LooseNode>> roots_;
+    size_t stride_, leaf_;
+    double root_size_;
+    std::vector<Item> items_;
+};
+
+/// Behind the last code in a node's cube.
+uint64_t codes_end(const NodeKey& node) {
+    const NodeKey key = node.cell();
+    return (key.code() + 1) << (3 * (kMaxLevel - key.level));
+}
+
+/// Behind the last code of what is finished.
+uint64_t finished_end(const GrowingState& state) {
+    return state.roots.empty() ? 0 : codes_end(state.roots.back()->node.key);
+}
+
+Top::Top(const GrowingState& state, GrowingSource& source)
+    : source_(source),
+      roots_(state.roots),
+      stride_(state.header.schema.stride),
+      leaf_(NodeLimits(state.header.schema.stride).leaf),
+      root_size_(state.header.root.size) {
+    for (const auto& root : roots_) add_items(root->points, 0);
+    const uint64_t done = finished_end(state);
+    const auto& codes = state.sample.codes;
+    add_items(state.sample,
+              static_cast<size_t>(std::lower_bound(codes.begin(), codes.end(), done) - codes.begin()));
+    for (size_t i = 0; i < items_.size(); ++i) {
+        const uint64_t differs = i ? items_[i].code ^ items_[i - 1].code : uint64_t{1} << (3 * kMaxLevel);
+        // The highest bit that differs is one of level kMaxLevel - bit / 3; equal codes: no cell is small
+        // enough.
+        const int bit = std::bit_width(differs) - 1;
+        items_[i].first_level = static_cast<uint8_t>(
+            bit < 0 ? int{kMaxLevel} + 1 : int{kMaxLevel} - std::min(bit, 3 * int{kMaxLevel}) / 3);
+    }
+}
+
+void Top::add_items(const LoosePoints& points, size_t first) {
+    for (size_t i = first; i < points.codes.size(); ++i)
+        items_.push_back({points.codes[i], points.areas[i], 0, &points.records[i * stride_]});
+}
+
+/// The node's own points, in prefix order, and its floors; `all`: of every level from its own on.
+void Top::emit(const NodeInfo& node, size_t first, size_t last, double surface, bool all) {
+    std::vector<float> inherited, own;
+    std::vector<uint8_t> passes;
+    std::vector<const Item*> mine;
+    for (size_t i = first; i < last; ++i) {
+        const uint32_t level = level_of(items_[i]);
+        if (level < node.key.level) {
+            inherited.push_back(items_[i].area);
+        } else if (all || level == node.key.level) {
+            mine.push_back(&items_[i]);
+            const uint32_t base = node.key.level ? node.key.level + kGridLevels : 0;
+            passes.push_back(static_cast<uint8_t>(items_[i].first_level -
+                                                  std::min<uint32_t>(base, items_[i].first_level)));
+        }
+    }
+    std::vector<uint32_t> order;
+    append_prefix_order(passes, 0, order);
+    auto data = std::make_shared<NodeData>();
+    data->count = static_cast<uint32_t>(order.size());
+    data->records.resize(order.size() * stride_);
+    for (size_t i = 0; i < order.size(); ++i) {
+        std::memcpy(&data->records[i * stride_], mine[order[i]]->record, stride_);
+        own.push_back(mine[order[i]]->area);
+    }
+    NodeInfo info = node;
+    info.count = data->count;
+    info.payload_bytes = static_cast<uint32_t>(data->records.size());
+    info.area_floor = stored_floors(area_floors(inherited, own, surface), root_size_);
+    source_.add(info, {std::move(data), {}});
+}
+
+/// Splits [first, last) of the points and the roots among the octants.
+Part Top::build_children(NodeInfo& info, size_t first, size_t last, size_t first_root, size_t last_root) {
+    Part sum;
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        const NodeKey child = info.key.child(octant);
+        const uint64_t end_code = codes_end(child);
+        size_t end_root = first_root;
+        while (end_root < last_root && codes_end(roots_[end_root]->node.key) <= end_code) ++end_root;
+        const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto end =
+            first + static_cast<size_t>(
+                        std::partition_point(begin, items_.begin() + static_cast<std::ptrdiff_t>(last),
+                                             [&](const Item& item) { return item.code < end_code; }) -
+                        begin);
+        if (end == first && end_root == first_root) continue;
+        const Part part = build(child, first, end, first_root, end_root);
+        sum.points += part.points;
+        sum.surface += part.surface;
+        if (part.points > 0) info.child_mask |= static_cast<uint8_t>(1u << octant);
+        first = end;
+        first_root = end_root;
+    }
+    return sum;
+}
+
+Part Top::build(const NodeKey& key, size_t first, size_t last, size_t first_root, size_t last_root) {
+    NodeInfo info;
+    info.key = key;
+    size_t above = 0, deeper = 0;  // points that ancestors or descendants show
+    for (size_t i = first; i < last; ++i) {
+        above += level_of(items_[i]) < key.level;
+        deeper += level_of(items_[i]) > key.level;
+    }
+    Part part;
+    bool whole = true;
+    if (first_root < last_root && roots_[first_root]->node.key == key) {
+        const Pending& node = roots_[first_root]->node;
+        info.child_mask = node.child_mask;
+        part = {node.points - above, node.surface};
+    } else if (first_root == last_root && (last - first <= leaf_ || key.level == kMaxLevel)) {
+        std::vector<float> areas;
+        std::vector<uint64_t> codes;
+        for (size_t i = first; i < last; ++i)
+            areas.push_back(items_[i].area), codes.push_back(items_[i].code);
+        part = {last - first - above, surface_of(areas, codes, key.level, 1)};
+    } else {
+        whole = false;
+        part = build_children(info, first, last, first_root, last_root);
+        part.points += last - first - above - deeper;
+    }
+    info.subtree_count = part.points;
+    if (part.points > 0) emit(info, first, last, part.surface, whole);
+    return part;
+}
+
+}  // namespace
+
+std::shared_ptr<const NodeSource> make_growing_source(const GrowingState& state) {
+    auto source = std::make_shared<GrowingSource>(state);
+    Top(state, *source).build();
+    const uint64_t done = finished_end(state);
+    for (const format::Entry& entry : state.settled)
+        if (codes_end(entry.key) <= done)
+            source->add({.key = entry.key,
+                         .child_mask = entry.child_mask,
+                         .count = entry.count,
+                         .subtree_count = entry.subtree_count,
+                         .payload_bytes = entry.payload_bytes,
+                         .area_floor = entry.area_floor},
+                        {nullptr, {entry.payload_offset, entry.checksum, entry.codec, entry.layout}});
+    source->link();
+    return source;
+}
+
+}  // namespace lucarne::octree

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "io/files/file.h"
+#include "octree/convert/sampling/node_sampler.h"
+#include "octree/cache/format.h"
+#include "octree/tree/source.h"
+
+namespace lucarne::octree {
+
+/// Points that stand in no finished node yet, along the Morton curve.
+struct LoosePoints {
+    std::vector<std::byte> records;  ///< in the schema of the cache
+    std::vector<uint64_t> codes;
+    std::vector<float> areas;  ///< in faces of the root cube; 0: unknown
+};
+
+/// A node whose descendants are finished; its points stay loose until its parent is there.
+struct LooseNode {
+    Pending node;
+    LoosePoints points;
+};
+
+/// A build as it stands: what is finished, and the rest by loose points alone. The finished part is the
+/// beginning of the Morton curve.
+struct GrowingState {
+    SourceHeader header;
+    std::span<const format::Entry> settled;  ///< any order; what no node of `roots` stands over is left out
+    std::span<const std::shared_ptr<const LooseNode>> roots;  ///< along the Morton curve
+    const LoosePoints& sample;                                ///< of the whole cloud
+    std::shared_ptr<const InputFile> file;                    ///< holds what is settled
+};
+
+/// The whole of it as an octree. Every point stands in it once: of the sample only what lies behind the last
+/// root is used. Above the roots and where there are none, a node takes the first point of each cell of its
+/// grid (Morton order, 128 cells a side) that none of its ancestors took; leaves take the rest. Floors follow
+/// from the areas as in a build, so a surface has its area at every level of detail while it is replaced. The
+/// source shares the state's points and file and never changes.
+std::shared_ptr<const NodeSource> make_growing_source(const GrowingState& state);
+
+}  // namespace lucarne::octree
