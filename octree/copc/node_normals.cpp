@@ -5,9 +5,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "octree/normals/neighbours.h"
-#include "octree/normals/one_chunk.h"
-#include "octree/normals/surface_sample.h"
+#include "octree/normals/neighbours/neighbours.h"
+#include "octree/normals/neighbours/one_chunk.h"
+#include "octree/normals/surface/surface_sample.h"
 
 namespace lucarne::octree {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/core/parallel.h"
 #include "octree/tree/radix_sort.h"
 #include "octree/normals/normals.h"
-#include "octree/normals/plane.h"
+#include "octree/normals/surface/plane.h"
 
 namespace lucarne::octree {
 namespace {

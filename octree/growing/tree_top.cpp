@@ -11,7 +11,7 @@
 
 #include "octree/convert/nodes/subtree.h"
 #include "octree/cache/file.h"
-#include "octree/normals/area_floor.h"
+#include "octree/normals/surface/area_floor.h"
 
 namespace lucarne::octree {
 namespace {

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/normals/chunk_surface.h"
-#include "octree/normals/orientation.h"
+#include "octree/normals/surface/chunk_surface.h"
+#include "octree/normals/orientation/orientation.h"
 
 namespace lucarne::octree {
 namespace {

@@ -12,9 +12,9 @@
 #include <pcl/search/impl/kdtree.hpp>
 #include <pcl/search/search.h>
 
-#include "octree/normals/leaf_index.h"
-#include "octree/normals/neighbours.h"
-#include "octree/normals/one_chunk.h"
+#include "octree/normals/neighbours/leaf_index.h"
+#include "octree/normals/neighbours/neighbours.h"
+#include "octree/normals/neighbours/one_chunk.h"
 
 namespace lucarne::octree {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <glm/common.hpp>
 
-#include "octree/normals/area_floor.h"
+#include "octree/normals/surface/area_floor.h"
 
 namespace lucarne::octree {
 namespace {

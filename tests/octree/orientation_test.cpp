@@ -1,9 +1,9 @@
-#include "octree/normals/orientation.h"
+#include "octree/normals/orientation/orientation.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "octree/normals/signed_forest.h"
+#include "octree/normals/orientation/signed_forest.h"
 #include "tests/octree/normal_clouds.h"
 
 namespace lucarne::octree {

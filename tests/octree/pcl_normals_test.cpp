@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "octree/normals/leaf_index.h"
-#include "octree/normals/plane.h"
+#include "octree/normals/neighbours/leaf_index.h"
+#include "octree/normals/surface/plane.h"
 #include "tests/octree/virtual_scans.h"
 
 namespace lucarne::octree {

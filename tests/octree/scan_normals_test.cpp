@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "octree/normals/point_index.h"
+#include "octree/normals/neighbours/point_index.h"
 #include "tests/octree/virtual_scans.h"
 
 namespace lucarne::octree {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "octree/normals/area_floor.h"
+#include "octree/normals/surface/area_floor.h"
 
 namespace lucarne::octree {
 

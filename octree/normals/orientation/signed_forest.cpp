@@ -1,4 +1,4 @@
-#include "octree/normals/signed_forest.h"
+#include "octree/normals/orientation/signed_forest.h"
 
 namespace lucarne::octree {
 namespace {

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "octree/normals/neighbours.h"
+#include "octree/normals/neighbours/neighbours.h"
 
 namespace lucarne::octree {
 namespace {

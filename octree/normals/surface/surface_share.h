@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/normals/tile.h"
+#include "octree/normals/neighbours/tile.h"
 
 namespace lucarne::octree {
 

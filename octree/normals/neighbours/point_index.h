@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "octree/normals/normals.h"
-#include "octree/normals/tile.h"
+#include "octree/normals/neighbours/tile.h"
 
 namespace lucarne::octree {
 

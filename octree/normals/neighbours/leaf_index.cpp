@@ -1,4 +1,4 @@
-#include "octree/normals/leaf_index.h"
+#include "octree/normals/neighbours/leaf_index.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "octree/normals/chunk_cache.h"
+#include "octree/normals/neighbours/chunk_cache.h"
 
 #include <algorithm>
 #include <cmath>

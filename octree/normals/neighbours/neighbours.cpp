@@ -1,4 +1,4 @@
-#include "octree/normals/neighbours.h"
+#include "octree/normals/neighbours/neighbours.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 #include "io/core/parallel.h"
 #include "octree/tree/key.h"
-#include "octree/normals/leaf_index.h"
+#include "octree/normals/neighbours/leaf_index.h"
 
 namespace lucarne::octree {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <flann/flann.hpp>
 
-#include "octree/normals/point_index.h"
+#include "octree/normals/neighbours/point_index.h"
 
 namespace lucarne::octree {
 namespace {

@@ -1,4 +1,4 @@
-#include "octree/normals/shell.h"
+#include "octree/normals/orientation/shell.h"
 
 #include <algorithm>
 #include <cmath>

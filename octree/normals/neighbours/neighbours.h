@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "octree/normals/chunk_cache.h"
-#include "octree/normals/point_index.h"
+#include "octree/normals/neighbours/chunk_cache.h"
+#include "octree/normals/neighbours/point_index.h"
 
 namespace lucarne::octree {
 

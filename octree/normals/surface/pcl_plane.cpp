@@ -6,7 +6,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include "octree/normals/plane.h"
+#include "octree/normals/surface/plane.h"
 
 namespace lucarne::octree {
 

@@ -1,4 +1,4 @@
-#include "octree/normals/chunk_surface.h"
+#include "octree/normals/surface/chunk_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "io/core/parallel.h"
-#include "octree/normals/surface_sample.h"
-#include "octree/normals/surface_share.h"
+#include "octree/normals/surface/surface_sample.h"
+#include "octree/normals/surface/surface_share.h"
 
 namespace lucarne::octree {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "octree/normals/point_index.h"
+#include "octree/normals/neighbours/point_index.h"
 
 namespace lucarne::octree {
 

@@ -1,7 +1,7 @@
 // The vector loops of the neighbour search. Each is written once on vectors of eight floats, which every
 // compiler can lower, and compiled twice: for any x86-64 (or other) processor, and for those with AVX2. Both
 // give the same bits: nothing is contracted or reassociated.
-#include "octree/normals/tile.h"
+#include "octree/normals/neighbours/tile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ using Words = int32_t __attribute__((vector_size(4 * kLanes)));
 constexpr Words kLane{0, 1, 2, 3, 4, 5, 6, 7};
 
 namespace plain {
-#include "octree/normals/tile_loops.inl"
+#include "octree/normals/neighbours/tile_loops.inl"
 }
 
 #ifdef LUCARNE_HAS_WIDE
@@ -43,7 +43,7 @@ constexpr std::array<uint32_t, 256> kPacking = [] {
 #pragma GCC target("avx2")
 namespace wide {
 #define LUCARNE_WIDE
-#include "octree/normals/tile_loops.inl"
+#include "octree/normals/neighbours/tile_loops.inl"
 #undef LUCARNE_WIDE
 }  // namespace wide
 #pragma GCC pop_options

@@ -1,4 +1,4 @@
-#include "octree/normals/surface_share.h"
+#include "octree/normals/surface/surface_share.h"
 
 #include <algorithm>
 #include <cmath>

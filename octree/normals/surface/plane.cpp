@@ -1,4 +1,4 @@
-#include "octree/normals/plane.h"
+#include "octree/normals/surface/plane.h"
 
 #include <algorithm>
 #include <cmath>

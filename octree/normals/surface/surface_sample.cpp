@@ -1,4 +1,4 @@
-#include "octree/normals/surface_sample.h"
+#include "octree/normals/surface/surface_sample.h"
 
 #include <algorithm>
 #include <cmath>

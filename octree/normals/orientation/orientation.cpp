@@ -1,4 +1,4 @@
-#include "octree/normals/orientation.h"
+#include "octree/normals/orientation/orientation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/normals/signed_forest.h"
+#include "octree/normals/orientation/signed_forest.h"
 
 namespace lucarne::octree {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "octree/normals/neighbours.h"
+#include "octree/normals/neighbours/neighbours.h"
 
 namespace lucarne::octree {
 
