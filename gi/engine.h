@@ -31,8 +31,8 @@ struct EngineSettings {
     uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
     uint32_t light_samples = 8;       ///< views a frame of lights that have a size and of the sky (light_samples.h)
     uint32_t samples = 64;            ///< reference: paths a pixel
-    bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/vpl/README.md)
-    bool reuse = true;  ///< vpl: moving frames are averaged with those before (gi/vpl/history.h)
+    bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/engines/vpl/README.md)
+    bool reuse = true;  ///< vpl: moving frames are averaged with those before (gi/engines/vpl/shading/history.h)
     uint64_t seed = 1;
 
     bool operator==(const EngineSettings&) const = default;

@@ -4,10 +4,10 @@
 #include <array>
 #include <string>
 
-#include "gi/direct/direct.h"
-#include "gi/reference/reference.h"
-#include "gi/unlit/unlit.h"
-#include "gi/vpl/vpl.h"
+#include "gi/engines/direct/direct.h"
+#include "gi/engines/reference/reference.h"
+#include "gi/engines/unlit/unlit.h"
+#include "gi/engines/vpl/vpl.h"
 
 namespace lucarne::gi {
 

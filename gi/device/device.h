@@ -127,7 +127,7 @@ class Device {
     /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
     Result<void> reserve(Buffer& buffer, size_t bytes, std::string_view what);
 
-    /// The compute program of an embedded shader ("gi/vpl/shade.comp"), compiled once for each set of
+    /// The compute program of an embedded shader ("gi/engines/vpl/shading/shade.comp"), compiled once for each set of
     /// defines.
     /// `#include "path"` is resolved among the embedded files. Errors carry the compiler's first message.
     Result<const Program*> program(std::string_view path, const Defines& defines = {});

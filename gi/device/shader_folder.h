@@ -13,7 +13,7 @@ namespace lucarne::gi {
 /// own. Only files that the program knows are read.
 class ShaderFolder {
  public:
-    /// `folder` holds the files as the project's root does ("gi/vpl/shade.comp").
+    /// `folder` holds the files as the project's root does ("gi/engines/vpl/shading/shade.comp").
     explicit ShaderFolder(std::filesystem::path folder) : folder_(std::move(folder)) { read(); }
     void read();
     const std::vector<ShaderText>& texts() const { return texts_; }

@@ -19,7 +19,7 @@ GBufferTexel light_texel(inout ivec2 pixel) {
 }
 
 // How far a point is lifted off its surface before it is looked up, as the reference's rays are
-// (gi/reference/README.md): by a radius, its own or that of a disc beside it in the map, so that neither noise nor the
+// (gi/engines/reference/README.md): by a radius, its own or that of a disc beside it in the map, so that neither noise nor the
 // rims of discs that stick out at edges shade or hide it; and by what one look-up blurs together.
 float shadow_lift(vec3 position, float radius) {
     float depth;

@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(All, Engines, testing::ValuesIn(registered()),
                          [](const auto& tested) { return std::string(tested.param.engine); });
 
 TEST(EngineTable, EveryEngineIsTested) {
-    // Those that know light; gi/unlit has tests of its own.
+    // Those that know light; gi/engines/unlit has tests of its own.
     const auto lit = std::ranges::count_if(engines(), [](const auto& entry) { return entry.info.name != "unlit"; });
     EXPECT_EQ(registered().size(), static_cast<size_t>(lit));
 }

@@ -1,4 +1,4 @@
-"""A second opinion on gi/reference that shares none of its code: the same surfels in Blender's Cycles.
+"""A second opinion on gi/engines/reference that shares none of its code: the same surfels in Blender's Cycles.
 
     cmake --build --preset release --target lucarne surfel_dump
     blender -b --factory-startup -P tests/oracles/cycles_compare.py -- cornell front 300k
@@ -25,7 +25,7 @@ SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file_
 BUILD = os.environ.get("LUCARNE_BUILD", os.path.join(SOURCE, "build", "release"))
 SIZE, SAMPLES, BLOCK, BOUNCES = 256, 32, 32, (0, 1, 3)
 EDGE = 4  # pixels beside an edge of depth or normal that count as its own
-NEAREST = 1  # radii; as far as the rays of gi/reference start above their surface
+NEAREST = 1  # radii; as far as the rays of gi/engines/reference start above their surface
 CORNERS = 8  # of the polygon that stands for a disc, with the disc's area
 
 

@@ -11,7 +11,7 @@
 namespace {
 
 const std::array<std::string, 4> kOrder = {"io", "octree", "gi", "viewer"};
-const std::array<std::string, 9> kEngines = {"direct", "vpl", "micro", "environment", "paths", "volume", "fields", "reference", "compare"};
+const std::array<std::string, 9> kEngines = {"direct", "vpl", "micro", "environment", "paths", "volume", "fields", "reference", "unlit"};
 
 std::vector<std::string> includes_of(const std::filesystem::path& file) {
     static const std::regex pattern("^\\s*#\\s*include\\s*\"([^\"]+)\"");
@@ -40,13 +40,13 @@ TEST(Structure, FoldersIncludeOneWayOnly) {
 
 TEST(Structure, NoEngineIncludesAnother) {
     for (const auto& engine : kEngines) {
-        const auto room = std::filesystem::path(LUCARNE_SOURCE_DIR) / "gi" / engine;
+        const auto room = std::filesystem::path(LUCARNE_SOURCE_DIR) / "gi/engines" / engine;
         if (!std::filesystem::exists(room)) continue;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(room)) {
             if (!entry.is_regular_file()) continue;
             for (const auto& include : includes_of(entry.path()))
                 for (const auto& other : kEngines)
-                    EXPECT_FALSE(other != engine && starts_with(include, "gi/" + other + "/")) << entry.path() << " includes " << include;
+                    EXPECT_FALSE(other != engine && starts_with(include, "gi/engines/" + other + "/")) << entry.path() << " includes " << include;
         }
     }
 }

@@ -1,4 +1,4 @@
-#include "gi/direct/direct.h"
+#include "gi/engines/direct/direct.h"
 
 #include <random>
 

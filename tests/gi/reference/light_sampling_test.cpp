@@ -1,4 +1,4 @@
-#include "gi/reference/light_sampling.h"
+#include "gi/engines/reference/light_sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/reference/scatter.h"
+#include "gi/engines/reference/scatter.h"
 #include "tests/gi/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/reference/scatter.h"
+#include "gi/engines/reference/scatter.h"
 #include "io/core/parallel.h"
 #include "tests/gi/reference/reference_scene.h"
 

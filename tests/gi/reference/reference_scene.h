@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/reference/path_tracer.h"
+#include "gi/engines/reference/path_tracer.h"
 #include "tests/gi/surfel_scenes.h"
 
 namespace lucarne::gi::reference {

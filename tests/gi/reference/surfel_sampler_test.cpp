@@ -1,4 +1,4 @@
-#include "gi/reference/surfel_sampler.h"
+#include "gi/engines/reference/surfel_sampler.h"
 
 #include <algorithm>
 #include <cmath>

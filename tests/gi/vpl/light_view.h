@@ -9,9 +9,9 @@
 #include "gi/device/device.h"
 #include "gi/gbuffer/gbuffer.h"
 #include "gi/shared/surfel_code.h"
-#include "gi/vpl/bindings.h"
-#include "gi/vpl/seeding.h"
-#include "gi/vpl/vpl_light.h"
+#include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/engines/vpl/vpl_light.h"
 #include "tests/gi/surfel_cloud.h"
 
 namespace lucarne::gi::vpl::testing {

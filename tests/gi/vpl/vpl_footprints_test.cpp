@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/vpl/footprints.h"
+#include "gi/engines/vpl/footprints.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_cloud.h"
 #include "tests/gi/surfel_scenes.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/gbuffer/direct_light.h"
-#include "gi/vpl/redistribution.h"
+#include "gi/engines/vpl/redistribution/redistribution.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_cloud.h"
 #include "tests/gi/surfel_scenes.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/vpl/halton.h"
+#include "gi/engines/vpl/seeding/halton.h"
 #include "tests/gi/vpl/light_view.h"
 
 namespace lucarne::gi::vpl {

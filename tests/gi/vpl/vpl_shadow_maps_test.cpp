@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/vpl/shadow_maps.h"
+#include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_cloud.h"
 #include "tests/gi/surfel_scenes.h"

@@ -1,0 +1,183 @@
+#include "gi/engines/reference/reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <glm/geometric.hpp>
+#include <glm/packing.hpp>
+#include <xxhash.h>
+
+#include "gi/engines/reference/path_tracer.h"
+#include "gi/shared/surfel_code.h"
+#include "io/core/log.h"
+#include "io/core/parallel.h"
+
+namespace lucarne::gi {
+namespace {
+
+using reference::Illumination;
+using reference::PathSettings;
+using reference::PathSums;
+using reference::PathTracer;
+using reference::Start;
+using reference::SurfelTracer;
+
+/// The surfaces that the camera sees, as every engine gets them: the reference differs from the others in
+/// transport alone, not in what is visible.
+std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTexel> texels) {
+    std::vector<Start> starts(texels.size());
+    const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
+    parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const GBufferTexel& texel = texels[i];
+            const float x = (static_cast<float>(i % camera.width) + .5f) / static_cast<float>(camera.width);
+            const float y = (static_cast<float>(i / camera.width) + .5f) / static_cast<float>(camera.height);
+            const vec3 across = right * (2 * x - 1) - up * (2 * y - 1);
+            const bool parallel = camera.projection == kOrthographic;
+            const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
+            Start& start = starts[i];
+            start.viewer = -glm::normalize(ray);
+            if (!(texel.depth > 0)) continue;
+            start.position = from + texel.depth * ray;
+            start.normal = decode_octahedral(texel.normal);
+            start.albedo = decode_albedo(texel.albedo);
+            // A half float may have become 0 or infinite: there is a surface all the same.
+            start.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
+            start.material = texel.material & 0xffffu;
+        }
+    });
+    return starts;
+}
+
+/// What the camera sees where nothing is.
+vec3 background(const Frame& frame, const Start& start) {
+    return frame.environment ? frame.environment->radiance(-start.viewer) : frame.background;
+}
+
+/// What the sampling tables are made from; equal content, equal tables.
+struct Shining {
+    std::vector<Light> lights;
+    std::vector<Material> materials;
+    std::shared_ptr<const Environment> environment;
+    uint64_t surfels = 0;  // hash
+
+    bool operator==(const Shining& other) const {
+        const auto same = [](const auto& a, const auto& b) {
+            return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+        };
+        return same(lights, other.lights) && same(materials, other.materials) &&
+               environment == other.environment && surfels == other.surfels;
+    }
+};
+
+class ReferenceEngine final : public Engine {
+ public:
+    const EngineInfo& info() const override {
+        static constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
+        static constexpr EngineInfo kInfo{
+            "reference", "path tracing over the same surfels: slow, and the truth", kLayers, true};
+        return kInfo;
+    }
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
+    std::vector<std::pair<std::string, double>> stats() const override;
+    std::vector<std::vector<glm::vec4>> layers() const override;
+
+ private:
+    void take_in(const Frame& frame, std::vector<PathSums> sums);
+
+    std::unique_ptr<SurfelTracer> tracer_;
+    std::unique_ptr<Illumination> illumination_;
+    Shining shining_;  // what illumination_ was made from
+    double coverage_ = 0;
+
+    std::vector<PathSums> sums_;  // of all frames since the view changed
+    uint64_t next_frame_ = 0;
+    reference::MeanLuminance mean_;  // of the last frame
+    uint32_t samples_ = 0;
+};
+
+Result<void> ReferenceEngine::prepare(Frame& frame) {
+    if (!frame.cuts.light) return failed("reference", "there is no light cut to trace");
+    frame.times.begin("surfels for tracing");
+    std::vector<Surfel> surfels = frame.pool.download(*frame.cuts.light);
+    const Shining now{frame.lights, frame.materials, frame.environment,
+                      XXH3_64bits(surfels.data(), surfels.size() * sizeof(Surfel))};
+    if (!tracer_ || now.surfels != shining_.surfels) {
+        illumination_.reset();
+        tracer_.reset();  // two trees at once would double the peak
+        LUCARNE_ASSIGN(tracer_, SurfelTracer::create(std::move(surfels)));
+        coverage_ = tracer_->coverage();
+        log::info("reference: {} surfels, coverage {:.2f}", tracer_->surfels().size(), coverage_);
+    }
+    if (!illumination_ || !(now == shining_)) {
+        illumination_ = std::make_unique<Illumination>(*tracer_, now.materials, now.lights, now.environment);
+        shining_ = now;
+    }
+    frame.times.end();
+    return {};
+}
+
+/// Adds a frame to those before, or begins again.
+void ReferenceEngine::take_in(const Frame& frame, std::vector<PathSums> sums) {
+    const bool goes_on = frame.index > 0 && frame.index == next_frame_ && sums_.size() == sums.size();
+    next_frame_ = frame.index + 1;
+    if (!goes_on) {
+        sums_ = std::move(sums);
+        return;
+    }
+    for (size_t i = 0; i < sums.size(); ++i) sums_[i].add(sums[i]);
+}
+
+Result<void> ReferenceEngine::render(Frame& frame) {
+    if (!illumination_) return failed("reference", "a frame was rendered before it was prepared");
+    frame.times.begin("paths");
+    const size_t pixels = size_t{frame.gbuffer.width} * frame.gbuffer.height;
+    const auto starts = starts_of(frame.camera, frame.gbuffer.texels.download_all<GBufferTexel>(pixels));
+    const PathSettings settings{.bounces = frame.settings.bounces,
+                                .only_bounce = frame.settings.only_bounce,
+                                .samples = frame.settings.samples,
+                                .seed = frame.settings.seed,
+                                .frame = frame.index};
+    std::vector<PathSums> sums = PathTracer(*illumination_, settings).trace(starts, frame.progress);
+    const bool seen_directly = frame.settings.only_bounce <= 0;
+    for (size_t i = 0; i < pixels; ++i)
+        if (!(starts[i].radius > 0) && seen_directly)
+            sums[i].exact = glm::dvec3(background(frame, starts[i]));
+    std::vector<vec4> radiance(pixels);
+    for (size_t i = 0; i < pixels; ++i) radiance[i] = vec4(sums[i].radiance(), 1.0f);
+    frame.radiance.upload_all(radiance);
+    mean_ = reference::mean_luminance(sums);
+    samples_ = settings.samples;
+    take_in(frame, std::move(sums));
+    frame.times.end();
+    return {};
+}
+
+std::vector<std::pair<std::string, double>> ReferenceEngine::stats() const {
+    return {{"samples", samples_},
+            {"surfels traced", tracer_ ? static_cast<double>(tracer_->surfels().size()) : 0},
+            {"coverage", coverage_},
+            {"mean luminance", mean_.mean},
+            {"standard error", mean_.standard_error}};
+}
+
+/// The standard error of each pixel's luminance, and the radiance by half the paths each.
+std::vector<std::vector<glm::vec4>> ReferenceEngine::layers() const {
+    std::vector<std::vector<glm::vec4>> layers(info().layers.size());
+    for (const PathSums& sums : sums_) {
+        layers[0].emplace_back(glm::vec3(std::sqrt(sums.variance())), 1.0f);
+        layers[1].emplace_back(sums.half_radiance(0), 1.0f);
+        layers[2].emplace_back(sums.half_radiance(1), 1.0f);
+    }
+    return layers;
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_reference_engine() {
+    return std::make_unique<ReferenceEngine>();
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,66 @@
+#include "gi/engines/reference/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "gi/engines/reference/light_sampling.h"
+
+namespace lucarne::gi::reference {
+namespace {
+
+/// A direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
+glm::vec3 sample_cosine_power(const glm::vec3& axis, float n, Random& random) {
+    const auto u = static_cast<float>(random.uniform());
+    const auto phi = static_cast<float>(2 * M_PI * random.uniform());
+    const float cosine = std::pow(1.0f - u, 1.0f / (n + 1.0f));
+    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+    glm::vec3 tangent, bitangent;
+    frame_of(axis, tangent, bitangent);
+    return glm::normalize(tangent * (sine * std::cos(phi)) + bitangent * (sine * std::sin(phi)) +
+                          axis * cosine);
+}
+
+glm::vec3 mirror(const glm::vec3& normal, const glm::vec3& out) {
+    return normal * (2.0f * glm::dot(normal, out)) - out;
+}
+
+float mean(const glm::vec3& v) {
+    return (v.x + v.y + v.z) / 3.0f;
+}
+
+/// Of draws, how many take the specular lobe; less than 0 where nothing is reflected.
+float specular_share(const Reflectance& surface) {
+    const float total = mean(surface.kd) + surface.ks;
+    return total > 0 ? surface.ks / total : -1.0f;
+}
+
+}  // namespace
+
+float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
+                  const glm::vec3& in) {
+    const float share = specular_share(surface), cosine = glm::dot(normal, in);
+    if (share < 0 || cosine <= 0) return 0;
+    float pdf = (1 - share) * cosine / kPi;
+    if (share > 0) {
+        const float lobe_cosine = std::clamp(glm::dot(mirror(normal, out), in), 0.0f, 1.0f);
+        pdf += share * (surface.exponent + 1) / (2 * kPi) * std::pow(lobe_cosine, surface.exponent);
+    }
+    return pdf;
+}
+
+std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
+                                 Random& random) {
+    const float share = specular_share(surface);
+    if (share < 0) return std::nullopt;
+    const bool specular = random.uniform() < share;
+    const glm::vec3 in = sample_cosine_power(specular ? mirror(normal, out) : normal,
+                                             specular ? surface.exponent : 1.0f, random);
+    const float pdf = scatter_pdf(surface, normal, out, in);
+    if (!(pdf > 0)) return std::nullopt;
+    return Scattered{in, brdf(surface, normal, out, in) * (glm::dot(normal, in) / pdf), pdf};
+}
+
+}  // namespace lucarne::gi::reference

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "gi/shared/surfel.h"
+#include "io/core/error.h"
+
+namespace lucarne::gi::reference {
+
+/// A ray starts this many radii above its surfel, along the normal. See
+/// gi/engines/reference/README.md for how it was chosen: what it loses in corners against what noise in the positions
+/// would shade wrongly.
+inline constexpr float kOriginOffset = 1.0f;
+
+/// Ray queries against surfels as opaque discs with two equal sides (Embree's oriented discs). Surfels
+/// without a normal or with a radius that is not positive have no disc and are left out. Thread-safe once
+/// made.
+class SurfelTracer {
+ public:
+    /// Errors: Embree's (out of memory).
+    static Result<std::unique_ptr<SurfelTracer>> create(std::vector<Surfel> surfels);
+    ~SurfelTracer();
+    SurfelTracer(const SurfelTracer&) = delete;
+    SurfelTracer& operator=(const SurfelTracer&) = delete;
+
+    /// Those that can be hit.
+    const std::vector<Surfel>& surfels() const { return surfels_; }
+
+    /// The nearest surfel along a ray (`direction` is a unit vector), as an index into surfels().
+    std::optional<uint32_t> nearest(const glm::vec3& origin, const glm::vec3& direction) const;
+    /// Whether anything stands on the segment, its ends excluded.
+    bool occluded(const glm::vec3& from, const glm::vec3& to) const;
+    /// Whether anything stands on the whole ray.
+    bool occluded_along(const glm::vec3& origin, const glm::vec3& direction) const;
+
+    /// Calls visit(index) once for every surfel on the ray from `begin` to `end`, m, in no order that is
+    /// promised but always the same.
+    void each_crossed(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
+                      const std::function<void(uint32_t)>& visit) const;
+
+    /// Area of all discs over the area of the surface (the sum of the surfels' shares), 0 where that is
+    /// unknown. Randomly placed surfels let a share exp(-coverage) of the rays through.
+    double coverage() const;
+
+ private:
+    struct Embree;
+    SurfelTracer();
+    std::unique_ptr<Embree> embree_;
+    std::vector<Surfel> surfels_;
+};
+
+/// Where a ray from a surfel starts: above its disc, far enough for the rounding of the coordinates as well.
+/// `normal` is turned to the side the ray leaves on.
+glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius);
+
+}  // namespace lucarne::gi::reference

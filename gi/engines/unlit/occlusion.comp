@@ -1,0 +1,63 @@
+// Ambient obscurance of each pixel from the depths around it: McGuire, Mara & Luebke 2012 ("Scalable ambient
+// obscurance", eq. 1 with the falloff of section 2.4), samples on a spiral that turns with the pixel.
+layout(local_size_x = 16, local_size_y = 4) in;
+#include "gi/engines/unlit/texels.glsl"
+
+layout(std430, binding = 4) writeonly buffer Obscurance { float obscurance[]; };
+uniform float reach;  // of the distance to the eye
+
+const int kSamples = 10;
+const float kTurns = 7.0;
+const float kTau = 6.28318531;
+
+// Metres from the eye, along the world's axes.
+vec3 place_of(ivec2 pixel, float depth) {
+    return view_point(camera, vec2(pixel) + 0.5, depth) - camera.origin.xyz;
+}
+
+// Where points have no normal: of the plane through the pixel and its neighbours, on either side those nearest in depth,
+// so that none is taken across an edge.
+vec3 plane_normal(ivec2 pixel, float depth) {
+    vec3 here = place_of(pixel, depth), along[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 step = axis == 0 ? ivec2(2, 0) : ivec2(0, 2);
+        float more = texel_at(pixel + step).depth, less = texel_at(pixel - step).depth;
+        bool forward = less <= 0.0 || (more > 0.0 && abs(more - depth) <= abs(less - depth));
+        along[axis] = forward ? place_of(pixel + step, more > 0.0 ? more : depth) - here
+                              : here - place_of(pixel - step, less);
+    }
+    vec3 normal = cross(along[1], along[0]);
+    float length2 = dot(normal, normal);
+    normal = length2 > 0.0 ? normal * inversesqrt(length2) : -camera.forward.xyz;
+    return dot(normal, toward_viewer(camera, camera.origin.xyz + here)) < 0.0 ? -normal : normal;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= int(camera.width) || pixel.y >= int(camera.height)) return;
+    int index = pixel.y * int(camera.width) + pixel.x;
+    GBufferTexel texel = texel_at(pixel);
+    float sum = 0.0;
+    if (texel.depth > 0.0) {
+        vec3 here = place_of(pixel, texel.depth);
+        vec3 normal = (texel.albedo & kSurfelHasNormal) != 0u ? texel_normal(texel) : plane_normal(pixel, texel.depth);
+        float sight = sight_distance(texel.depth), radius = reach * sight, radius2 = radius * radius;
+        float in_pixels = radius / pixel_height(camera, texel.depth);
+        // Each of the 4 x 4 pixels by another sixteenth of a turn, in an order that neighbours share little of.
+        int turn = ((pixel.x & 3) * 4 + (pixel.y & 3) * 9) & 15;
+        for (int i = 0; i < kSamples; ++i) {
+            float part = (float(i) + 0.5) / float(kSamples);
+            float angle = part * kTurns * kTau + float(turn) * kTau / 16.0;
+            ivec2 at = pixel + ivec2(round(part * in_pixels * vec2(cos(angle), sin(angle))));
+            float depth = texel_at(at).depth;
+            if (!(depth > 0.0)) continue;
+            vec3 apart = place_of(clamp(at, ivec2(0), ivec2(camera.width, camera.height) - 1), depth) - here;
+            float distance2 = dot(apart, apart);
+            float fall = max(radius2 - distance2, 0.0) / radius2;
+            // A surface known to a few thousandths of its distance darkens itself by less.
+            float over = max(dot(apart, normal) - 0.003 * sight, 0.0);
+            sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
+        }
+    }
+    obscurance[index] = min(sum * 5.0 / float(kSamples), 1.0);
+}

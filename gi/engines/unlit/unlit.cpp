@@ -1,0 +1,84 @@
+#include "gi/engines/unlit/unlit.h"
+
+#include <algorithm>
+
+#include "gi/gbuffer/direct_light.h"
+#include "gi/gbuffer/uniforms.h"
+
+namespace lucarne::gi {
+namespace {
+
+enum Binding : uint32_t { kObscurance = 4, kRadiance = 6 };
+enum Unit : uint32_t { kTexels = 3 };
+
+class UnlitEngine : public Engine {
+ public:
+    const EngineInfo& info() const override {
+        static constexpr EngineInfo kInfo{
+            .name = "unlit",
+            .description = "the points' colours without light: flat, eye-dome lighting or ambient occlusion",
+            .unlit = true};
+        return kInfo;
+    }
+    Result<void> prepare(Frame& frame) override {
+        LUCARNE_TRY(upload_sky(frame, sky_));
+        return upload_materials(frame.device, {}, materials_);
+    }
+    Result<void> render(Frame& frame) override;
+    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
+
+ private:
+    Result<void> obscure(Frame& frame);
+
+    Buffer materials_;  // one that emits nothing
+    Sky sky_;
+    Buffer obscurance_;  // float a pixel
+};
+
+/// Ambient occlusion of every pixel, before it is smoothed.
+Result<void> UnlitEngine::obscure(Frame& frame) {
+    const GBuffer& gbuffer = frame.gbuffer;
+    const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
+    LUCARNE_TRY(frame.device.reserve(obscurance_, pixels * sizeof(float), "ambient occlusion"));
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/engines/unlit/occlusion.comp"));
+    gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
+    obscurance_.bind(kObscurance);
+    set(*program, "camera", frame.camera);
+    program->set("reach", static_cast<float>(frame.unlit.occlusion_reach / 100));
+    program->dispatch(gbuffer.width, gbuffer.height);
+    return {};
+}
+
+Result<void> UnlitEngine::render(Frame& frame) {
+    frame.times.begin("background");
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
+    frame.times.end();
+    const Shading shading = frame.unlit.shading;
+    if (shading == Shading::occlusion) {
+        frame.times.begin("ambient occlusion");
+        LUCARNE_TRY(obscure(frame));
+        frame.times.end();
+    }
+    frame.times.begin("colours");
+    static const Defines kDefines[] = {{}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
+    LUCARNE_ASSIGN(const Program* program,
+                   frame.device.program("gi/engines/unlit/colours.comp", kDefines[static_cast<size_t>(shading)]));
+    frame.gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
+    if (shading == Shading::occlusion) obscurance_.bind(kObscurance);
+    frame.radiance.bind(kRadiance);
+    set(*program, "camera", frame.camera);
+    program->set("strength", static_cast<float>(frame.unlit.strength));
+    const double pixels = frame.unlit.eye_dome_pixels * frame.camera.height / 1080.0;
+    program->set("neighbour", static_cast<float>(std::max(pixels, 1.0)));
+    program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    frame.times.end();
+    return {};
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_unlit_engine() {
+    return std::make_unique<UnlitEngine>();
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,45 @@
+// The part of a VPL's disc that lies in the room. A footprint is what the density of VPLs leaves to each; in
+// a corner, or on something small, a disc of that size sticks into the walls, and what its rim sends lands
+// nowhere. A VPL's own map shows how far its plane is clear: over the directions low above the horizon, the
+// mean of the disc up to what stands there is the area that is left. A workgroup a map.
+layout(local_size_x = 64) in;
+
+#include "gi/shared/brdf.h"
+#include "gi/engines/vpl/shadow_maps/parabolic.glsl"
+#include "gi/engines/vpl/vpl_light.h"
+
+layout(std430, binding = 9) buffer Lights {
+    VplLight lights[];
+};
+layout(binding = 5) uniform usamplerBuffer atlas_texels;
+
+uniform float shrink;
+
+shared float shared_sum[64], shared_count[64];
+
+const float kLowest = 0.95, kHighest = 0.5;  // u^2 + v^2: elevations from 1.5 to 20 degrees
+
+void main() {
+    uint map = gl_WorkGroupID.x;
+    uint lane = gl_LocalInvocationID.x;
+    float r2 = lights[map].position.w / kPi;
+    float sum = 0.0, count = 0.0;
+    for (uint i = lane; i < map_side * map_side; i += 64u) {
+        vec2 uv = texel_centre(uvec2(i % map_side, i / map_side));
+        float norm2 = dot(uv, uv);
+        if (norm2 > kLowest || norm2 < kHighest) continue;
+        uint texel = texelFetch(atlas_texels, int(map * map_side * map_side + i)).x;
+        float along = map_distance(texel) * 2.0 * sqrt(norm2) / (1.0 + norm2);
+        sum += texel == kNothing ? r2 : min(r2, along * along);
+        count += 1.0;
+    }
+    shared_sum[lane] = sum;
+    shared_count[lane] = count;
+    barrier();
+    if (lane != 0u) return;
+    for (uint i = 1u; i < 64u; ++i) {
+        sum += shared_sum[i];
+        count += shared_count[i];
+    }
+    if (count > 0.0) lights[map].position.w = shrink * kPi * sum / count;
+}

@@ -1,0 +1,56 @@
+// The estimates of all races together: any VPL of the bounce before might have put a new one here. With the density of
+// all of them, sum over k of p_k(x), the irradiance by all of them over it is the flux of each (multiple importance
+// sampling, the balance heuristic; Veach and Guibas 1995), which varies less than what its own race alone tells; and the
+// footprint is the density's inverse. One invocation a new VPL. A lobe needs one direction of light: it keeps its race's
+// flux.
+layout(local_size_x = 16) in;
+
+#include "gi/engines/vpl/redistribution/redistribution.glsl"
+
+layout(std430, binding = 9) buffer Next { VplLight next[]; };
+layout(binding = 13) uniform usamplerBuffer odds;
+
+uniform uint light_count;
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= light_count) return;
+    VplLight light = next[index];
+    Receiver receiver;
+    receiver.position = light.position.xyz;
+    receiver.normal = light.normal.xyz;
+    receiver.radius = light.normal.w;
+    receiver.to_viewer = light.normal.xyz;
+    receiver.reflectance = Reflectance(vec3(0.0), 0.0, 1.0);
+    vec3 irradiance = vec3(0.0);
+    float density = 0.0, own = 0.0;  // 1/m^2; of all races, of its own
+    for (uint i = 0u; i < light_count; ++i) {
+        float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
+        vec3 offset = receiver.position - vpl_position(i).xyz;
+        float geometry = point_geometry(vpl_normal(i).xyz, offset, receiver);
+        if (!(sum > 0.0) || geometry <= 0.0) continue;
+        vec3 lifted = offset + receiver.normal * receiver.radius;
+        if (i != index && !vpl_sees(i, vpl_normal(i), lifted, receiver.normal)) continue;
+        float distance2 = dot(offset, offset);
+        vec3 direction = offset * inversesqrt(distance2);
+        vec3 intensity = raced_intensity(i, direction, dot(direction, vpl_normal(i).xyz), distance2);
+        float chance = luminance(intensity) * geometry / sum;
+        density += chance;
+        if (i == index) own = chance;
+        // As points, which the races draw by: what is near is bounded by the density, and discs would send less there.
+        irradiance += intensity * geometry;
+    }
+    // Its own race would not come by this rule: it is of its parent's plane, which positions are too coarse to tell, and its
+    // side is a guess. On a roof that would be the one that faces a sealed room.
+    if (!(own > 0.0)) {
+        next[index] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+        return;
+    }
+    density *= reflected_share(Reflectance(light.diffuse.xyz * kPi, light.incident.w, 1.0));
+    next[index].position.w = 1.0 / density;
+#ifdef LUCARNE_BEST_CANDIDATE
+    next[index].diffuse.xyz *= light.flux.xyz;
+#else
+    next[index].diffuse.xyz *= irradiance / density;
+#endif
+}

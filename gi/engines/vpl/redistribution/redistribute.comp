@@ -1,0 +1,140 @@
+// The next bounce's VPLs (Preiner 2010, section 4.5): every VPL's shadow map shows what its light falls on, and one of
+// the map's texels becomes the place of a new VPL. A workgroup a map.
+//
+// The paper takes the best candidate, which has no probability and so no unbiased estimate. Here the texels race: each
+// draws a time -ln(u) / w, u even on (0, 1), and the earliest wins, with probability w / sum(w) (an exponential race;
+// Efraimidis and Spirakis 2006). w is the flux through the texel times the reflectance there, so that the winner's flux
+// times sum(w) / w has the whole flux as its mean, with little variance. kBestCandidate does what the paper does.
+layout(local_size_x = 64) in;
+
+#include "gi/shared/cut.glsl"
+#include "gi/engines/vpl/redistribution/redistribution.glsl"
+
+layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 9) writeonly buffer Next { VplLight next[]; };  // diffuse still without the flux
+layout(std430, binding = 14) writeonly buffer Odds { float odds[]; };  // sum(w) of a map, W
+layout(binding = 12) uniform usamplerBuffer source_texels;
+
+uniform uint seed, id_bits;
+
+shared float shared_key[64], shared_sum[64], shared_all[64], shared_found[64];
+shared uint shared_place[64];
+
+float random(uint a, uint b) {  // in (0, 1); a hash after Jarzynski and Olano 2020 (pcg2d)
+    uvec2 v = uvec2(a, b) * 1664525u + 1013904223u;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16;
+    return (float(v.x >> 8) + 0.5) / 16777216.0;
+}
+
+struct Sight {
+    vec3 direction;     // in the VPL's frame, unit
+    float distance_m;   // 0: nothing there
+    float solid_angle;  // sr, times the cosine at the VPL
+};
+Sight look(uint map, uvec2 at) {
+    Sight sight = Sight(vec3(0.0, 0.0, 1.0), 0.0, 0.0);
+    vec2 uv = texel_centre(at);
+    float norm2 = dot(uv, uv);
+    uint texel = texelFetch(atlas_texels, int(texel_index(map, at))).x;
+    if (norm2 >= 1.0 || texel == kNothing) return sight;
+    float inverse = 1.0 / (1.0 + norm2);
+    sight.direction = map_ray(uv) * inverse;
+    sight.distance_m = map_distance(texel);
+    float side = 2.0 * inverse * 2.0 / float(map_side);
+    sight.solid_angle = side * side * sight.direction.z;
+    return sight;
+}
+
+// W/sr, toward what a texel shows.
+vec3 intensity_at(uint map, mat3 frame, Sight sight) {
+    return raced_intensity(map, frame * sight.direction, sight.direction.z, sight.distance_m * sight.distance_m);
+}
+
+Reflectance reflectance_of(uint item, PackedSurfel surfel) {
+    return make_reflectance(materials[surfel_material(surfel.b)], decode_albedo(surfel.d));
+}
+
+void write_light(uint map, uvec2 at, float inverse_probability) {
+    mat3 frame = frame_about(vpl_normal(map).xyz);
+    Sight sight = look(map, at);
+    uint id = texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u);
+    uint item;
+    PackedSurfel surfel;
+    cut_surfel(id, item, surfel);
+    vec3 direction = frame * sight.direction;
+    vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : -direction;
+    if (dot(normal, direction) > 0.0) normal = -normal;
+    Reflectance r = reflectance_of(item, surfel);
+    float radius = cut_surfel_radius(item, surfel);
+    vec3 flux = intensity_at(map, frame, sight) * sight.solid_angle * inverse_probability;
+    // It stands in the middle of the surfel, which lies on the scanned surface; where the texel's ray ends, the disc's
+    // rim may stick out, even out of a sealed room.
+    next[map] = VplLight(vec4(surfel_position(item, surfel), cut_surfel_area(item, surfel)), vec4(normal, radius),
+                         vec4(r.kd / kPi, r.exponent), vec4(flux, 1.0), vec4(-direction, r.ks));
+}
+
+void main() {
+    uint map = gl_WorkGroupID.x;
+    uint lane = gl_LocalInvocationID.x;
+    mat3 frame = frame_about(vpl_normal(map).xyz);
+    float best = 3e38, sum = 0.0, all = 0.0, found = 0.0;
+    uint place = 0u;
+    for (uint i = lane; i < map_side * map_side; i += 64u) {
+        uvec2 at = uvec2(i % map_side, i / map_side);
+        Sight sight = look(map, at);
+        float flux = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
+        uint source = texelFetch(source_texels, int(texel_index(map, at))).x;
+        uint item;
+        PackedSurfel surfel;
+        bool known = flux > 0.0 && source != kNothing;
+        float weight = 0.0;
+        if (known && cut_surfel(source & ((1u << id_bits) - 1u), item, surfel))
+            weight = flux * reflected_share(reflectance_of(item, surfel));
+        all += flux;
+        found += known ? flux : 0.0;
+        sum += weight;
+#ifdef LUCARNE_BEST_CANDIDATE
+        float key = weight > 0.0 ? -weight : 3e38;
+#else
+        float key = weight > 0.0 ? -log(random(seed + map * 9781u, i)) / weight : 3e38;
+#endif
+        place = key < best ? i : place;
+        best = min(best, key);
+    }
+    shared_key[lane] = best;
+    shared_place[lane] = place;
+    shared_sum[lane] = sum;
+    shared_all[lane] = all;
+    shared_found[lane] = found;
+    barrier();
+    if (lane != 0u) return;
+    for (uint i = 1u; i < 64u; ++i) {
+        if (shared_key[i] < best) place = shared_place[i];
+        best = min(best, shared_key[i]);
+        sum += shared_sum[i];
+        all += shared_all[i];
+        found += shared_found[i];
+    }
+    odds[map] = sum;
+    next[map] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    if (!(sum > 0.0) || best >= 3e38) return;
+    uvec2 at = uvec2(place % map_side, place / map_side);
+    // 1 / probability of the winner. Texels that pull-push filled have no surfel: the others stand in for them.
+    Sight sight = look(map, at);
+    float luminous = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
+    uint item;
+    PackedSurfel surfel;
+    cut_surfel(texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u), item, surfel);
+    float own = luminous * reflected_share(reflectance_of(item, surfel));
+#ifdef LUCARNE_BEST_CANDIDATE
+    float scale = all / luminous;
+#else
+    float scale = sum / own * all / found;
+#endif
+    write_light(map, at, scale);
+}

@@ -1,0 +1,37 @@
+// Level 0 of the importance map: how much light the surface behind a texel of the light G-buffer gives back.
+//
+// weight = I(w) * solid angle of the texel * (luminance(kd) + lobe): the flux that leaves, so that diffuse VPLs come
+// out equally strong. The lobe's term makes the density follow the root mean square of the radiant intensity over
+// the hemisphere (the least variance of an unknown receiver): for the diffuse part kd/pi sqrt(2 pi / 3), for the
+// specular part ks (n+2)/(2 pi) sqrt(2 pi / (2n+3)), of which the first is taken as the unit.
+layout(local_size_x = 16, local_size_y = 16) in;
+
+#include "gi/shared/brdf.h"
+#include "gi/engines/vpl/seeding/importance.glsl"
+
+layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
+
+float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
+
+void main() {
+    uvec2 at = gl_GlobalInvocationID.xy;
+    if (at.x >= importance_side || at.y >= importance_side) return;
+    vec2 value = vec2(0.0);
+    if (at.x < light_view.width && at.y < light_view.height) {
+        GBufferTexel texel = light_texels[at.y * light_view.width + at.x];
+        // The cone's edge crosses texels: the mean of centre and corners, and lit where any of them is.
+        float intensity = 0.0;
+        for (uint i = 0u; i < 5u; ++i) {
+            vec2 offset = i == 4u ? vec2(0.5) : vec2(i & 1u, i >> 1);
+            vec3 ray = view_ray(light_view, vec2(at) + offset);
+            float distance2 = texel.depth * texel.depth * dot(ray, ray);
+            intensity += 0.2 * luminance(view_intensity(normalize(ray), distance2));
+        }
+        if (texel.depth > 0.0 && intensity > 0.0) {
+            Reflectance r = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
+            float lobe = 0.5 * r.ks * (r.exponent + 2.0) * sqrt(3.0 / (2.0 * r.exponent + 3.0));
+            value = vec2(intensity * ray_solid_angle(vec2(at) + 0.5) * (luminance(r.kd) + lobe), 1.0);
+        }
+    }
+    importance[at.y * importance_side + at.x] = value;
+}

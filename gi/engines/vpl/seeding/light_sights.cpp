@@ -1,0 +1,91 @@
+#include "gi/engines/vpl/seeding/light_sights.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/seeding/halton.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+constexpr size_t kLeastHeld = 6;                 // views: a point light's
+constexpr size_t kHeldBytes = size_t{64} << 20;  // where more views fit
+
+}  // namespace
+
+bool emits(const Frame& frame) {
+    return std::any_of(frame.materials.begin(), frame.materials.end(), [](const Material& m) {
+        return m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0;
+    });
+}
+
+void LightSights::begin(const Frame& frame, const SkyDirections& sky) {
+    views_ = light_views(frame, sky);
+    size_t largest = 1;
+    for (const LightView& v : views_) largest = std::max(largest, size_t{v.view.width} * v.view.height);
+    const size_t fit = kHeldBytes / (largest * (sizeof(GBufferTexel) + sizeof(uint32_t)));
+    held_.resize(std::min(views_.size(), std::max(kLeastHeld, fit)));
+}
+
+Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
+    Held& held = held_[index % held_.size()];
+    const LightView& view = views_[index];
+    if (held.whole && held.view == view.view && held.cut == view.cut->fingerprint()) return &held.gbuffer;
+    held.whole = false;
+    const auto swap_pictures = [&] {
+        std::swap(scratch_.texels, held.gbuffer.texels);
+        std::swap(scratch_.ids, held.gbuffer.ids);
+    };
+    swap_pictures();
+    const auto drawn = rasterize(frame.device, *view.cut, view.view, scratch_);
+    swap_pictures();
+    LUCARNE_TRY(drawn);
+    held.view = view.view;
+    held.cut = view.cut->fingerprint();
+    held.gbuffer.width = view.view.width;
+    held.gbuffer.height = view.view.height;
+    held.whole = true;
+    return &held.gbuffer;
+}
+
+Result<Sight> LightSights::sight(Frame& frame, size_t index) {
+    LUCARNE_ASSIGN(const GBuffer* seen, look(frame, index));
+    const LightView& view = views_[index];
+    return Sight{view.light, view.face, view.view, *view.cut, *seen};
+}
+
+Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,
+                               Seeds& target) {
+    LUCARNE_TRY(frame.device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
+    std::vector<double> weights;
+    for (size_t i = 0; i < views_.size(); ++i) {
+        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        materials.bind(kBindMaterials);
+        LUCARNE_ASSIGN(const double weight, map_importance(frame.device, from, importance_));
+        weights.push_back(weight);
+    }
+    emitters_.running.clear();
+    if (emits(frame)) LUCARNE_TRY(weigh_emitters(frame.device, *frame.cuts.light, materials, emitters_));
+    weights.push_back(emitters_.flux());
+    target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
+    const std::vector<uint32_t> shares = share_out(weights, count);
+    LUCARNE_TRY(
+        seed_emitters(frame.device, *frame.cuts.light, materials, emitters_, shares.back(), seed, 0, target));
+    uint32_t first = shares.back();
+    for (size_t i = 0; i < views_.size(); ++i) {
+        if (shares[i] == 0) continue;
+        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        if (views_.size() > 1) {
+            materials.bind(kBindMaterials);
+            LUCARNE_TRY(map_importance(frame.device, from, importance_));
+        }
+        LUCARNE_TRY(seed_view(frame.device, from, importance_, materials, halton_points(shares[i], seed, i),
+                              first, target));
+        first += shares[i];
+    }
+    settle_lights(target, count);
+    return {};
+}
+
+}  // namespace lucarne::gi::vpl

@@ -1,0 +1,123 @@
+#include "gi/engines/vpl/seeding/seeding.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "gi/gbuffer/uniforms.h"
+#include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/seeding/halton.h"
+#include "gi/engines/vpl/vpl_light.h"
+
+namespace lucarne::gi::vpl {
+namespace {
+
+float luminance(const glm::vec4& rgb) {
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+}
+
+/// VPLs that do not stand clear in the light (seed.comp) give their flux to the others: the sum stays what
+/// lands.
+void clear_rims(std::span<VplLight> lights) {
+    double all = 0, clear = 0;
+    for (const VplLight& l : lights) {
+        all += luminance(l.flux);
+        if (l.flux.w >= 1) clear += luminance(l.flux);
+    }
+    const float scale = clear > 0 ? static_cast<float>(all / clear) : 0.0f;
+    for (VplLight& l : lights) {
+        if (l.flux.w < 1) {
+            l = kDeadLight;
+            continue;
+        }
+        for (glm::vec4* flux : {&l.flux, &l.diffuse}) {
+            flux->x *= scale;
+            flux->y *= scale;
+            flux->z *= scale;
+        }
+    }
+}
+
+uint32_t importance_side(const CameraView& view) {
+    return std::bit_ceil(std::max({view.width, view.height, 1u}));
+}
+
+void set_sight(const Program& program, const Sight& sight) {
+    program.set("importance_side", importance_side(sight.view));
+    set(program, "light_view", sight.view);
+    set(program, "light", sight.light);
+    program.set("face", sight.face);
+}
+
+}  // namespace
+
+Result<double> map_importance(Device& device, const Sight& sight, Buffer& target) {
+    LUCARNE_ASSIGN(const Program* importance, device.program("gi/engines/vpl/seeding/importance.comp"));
+    LUCARNE_ASSIGN(const Program* mip, device.program("gi/engines/vpl/seeding/importance_mip.comp"));
+    const uint32_t side = importance_side(sight.view);
+    size_t texels = 0;
+    for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
+    LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
+    sight.seen.texels.bind(kBindGBuffer);
+    target.bind(kBindImportance);
+    set_sight(*importance, sight);
+    set_sight(*mip, sight);
+    importance->dispatch(side, side);
+    for (uint32_t level = 1; side >> level > 0; ++level) {
+        mip->set("level", level);
+        mip->dispatch(side >> level, side >> level);
+    }
+    glm::vec2 sum;
+    target.download((texels - 1) * sizeof(glm::vec2), std::as_writable_bytes(std::span(&sum, 1)));
+    // Where all is black but something is lit, VPLs stand there evenly: they may be glossy at another
+    // wavelength.
+    return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
+}
+
+Result<void> seed_view(Device& device, const Sight& sight, const Buffer& importance, const Buffer& materials,
+                       std::span<const glm::vec2> points, uint32_t first, Seeds& target) {
+    LUCARNE_ASSIGN(const Program* seed, device.program("gi/engines/vpl/seeding/seed.comp"));
+    LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
+    target.points.upload(0, std::as_bytes(points));
+    sight.cut.bind();
+    sight.seen.texels.bind(kBindGBuffer);
+    sight.seen.ids.bind(kBindLightIds);
+    materials.bind(kBindMaterials);
+    importance.bind(kBindImportance);
+    target.points.bind(kBindPoints);
+    target.lights.bind(kBindLights);
+    set_sight(*seed, sight);
+    seed->set("first_light", first);
+    seed->set("light_count", static_cast<uint32_t>(points.size()));
+    seed->dispatch(static_cast<uint32_t>(points.size()));
+    return {};
+}
+
+std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count) {
+    double sum = 0;
+    for (const double w : weights) sum += w;
+    std::vector<uint32_t> shares(weights.size(), 0);
+    if (!(sum > 0)) return shares;
+    // Every light that lands any gets one; the rest goes by where the running sum crosses whole numbers.
+    uint32_t left = count;
+    for (size_t i = 0; i < weights.size() && left > 0; ++i)
+        if (weights[i] > 0) shares[i] = 1, --left;
+    const uint32_t free = left;
+    double running = 0;
+    uint32_t given = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        running += weights[i];
+        const auto upto = static_cast<uint32_t>(std::floor(running / sum * free + 0.5));
+        shares[i] += upto - given;
+        given = upto;
+    }
+    return shares;
+}
+
+void settle_lights(Seeds& seeds, uint32_t count) {
+    seeds.host_lights = seeds.lights.download_all<VplLight>(count);
+    clear_rims(seeds.host_lights);
+    seeds.lights.upload_all(seeds.host_lights);
+}
+
+}  // namespace lucarne::gi::vpl

@@ -1,0 +1,46 @@
+// The geometry-aware filter's choice: see join.glsl.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gi/engines/vpl/shading/join.glsl"
+
+layout(std430, binding = 11) buffer Lonely {  // pixels that lack panes
+    uint lonely_count;
+    uint lonely_pixels[];
+};
+
+// Whether two pixels' surfaces are alike: max(0, n.n')^32 exp(-plane distance / (sigma z)) at least 1/e, one standard
+// width. sigma z is the extent of an n x n window at the receiver's depth: as far as a plane would rise that is tilted
+// by 45 degrees.
+bool alike(vec3 position, vec3 normal, float sigma_z, uvec2 pixel, GBufferTexel texel) {
+    vec3 offset = texel_position(camera, pixel, texel) - position;
+    float normals = max(dot(normal, texel_normal(texel)), 1e-6);
+    return texel.depth > 0.0 && 32.0 * log(normals) - abs(dot(normal, offset)) / sigma_z >= -1.0;
+}
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= camera.width || pixel.y >= camera.height) return;
+    uint index = pixel.y * camera.width + pixel.x;
+    GBufferTexel texel = camera_texel(index);
+    if (texel.depth <= 0.0) return;
+    int n = int(interleave);
+    vec3 position = texel_position(camera, pixel, texel);
+    vec3 normal = texel_normal(texel);
+    float sigma_z = float(n) * pixel_height(camera, texel.depth);
+    uint candidates = 0u, missing = 0u;
+    for (int i = 0; i < n * n; ++i) {
+        bool found = false;
+        int j = 0;
+        do {
+            ivec2 at = window_pixel(ivec2(pixel), n, i, j);
+            bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(camera.width, camera.height)));
+            uint other = inside ? uint(at.y) * camera.width + uint(at.x) : index;
+            found = inside && alike(position, normal, sigma_z, uvec2(at), camera_texel(other));
+            if (found) candidates |= uint(j) << 2 * i;
+            ++j;
+        } while (!found && j < 4);
+        if (!found) missing |= 1u << i;
+    }
+    joints[index] = uvec2(candidates, missing);
+    if (panes_lacking(n, missing) > 0) lonely_pixels[atomicAdd(lonely_count, 1u)] = index;
+}

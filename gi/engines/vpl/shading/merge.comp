@@ -1,0 +1,54 @@
+// The indirect light of every pixel: the mean of its panes, so that every VPL counts alike, times the receiver's
+// reflectance, plus its specular light.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gi/engines/vpl/shading/join.glsl"
+#ifdef LUCARNE_HISTORY
+#include "gi/engines/vpl/shading/history.glsl"
+#endif
+
+layout(binding = 8) uniform samplerBuffer diffuse_panes;
+layout(binding = 9) uniform samplerBuffer specular_panes;
+layout(binding = 10) uniform samplerBuffer own_diffuse;
+layout(binding = 11) uniform samplerBuffer own_specular;
+layout(std430, binding = 14) writeonly buffer Radiance { vec4 radiance[]; };
+
+void main() {
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= camera.width || pixel.y >= camera.height) return;
+    uint index = pixel.y * camera.width + pixel.x;
+    GBufferTexel texel = camera_texel(index);
+    vec3 light = vec3(0.0);
+    if (texel.depth > 0.0) {
+        int n = int(interleave);
+        uvec2 joint = joints[index];
+        int lacking = panes_lacking(n, joint.y);
+        // What a lonely pixel shaded itself; elsewhere these are 0.
+        vec3 irradiance = texelFetch(own_diffuse, int(index)).xyz;
+        vec3 specular = vec3(0.0);
+#ifdef LUCARNE_GLOSSY
+        specular = texelFetch(own_specular, int(index)).xyz;
+#endif
+        for (int i = 0; i < n * n; ++i) {
+            ivec2 at = window_pixel(ivec2(pixel), n, i, int(joint.x >> 2 * i & 3u));
+            if ((joint.y >> i & 1u) != 0u) continue;
+            int other = at.y * int(camera.width) + at.x;
+            irradiance += texelFetch(diffuse_panes, other).xyz;
+#ifdef LUCARNE_GLOSSY
+            specular += texelFetch(specular_panes, other).xyz;
+#endif
+        }
+        float panes = float(n * n - bitCount(joint.y) + lacking);
+        Receiver receiver = pixel_receiver(pixel, texel);
+        irradiance /= panes;
+#ifdef LUCARNE_HISTORY
+        irradiance = with_history(index, receiver.position, receiver.normal, texel.depth, irradiance);
+#endif
+        light = irradiance * receiver.reflectance.kd / kPi + specular / panes;
+    }
+#ifdef LUCARNE_HISTORY
+    else
+        next_surfaces[index] = uvec2(0u);
+#endif
+    radiance[index] = vec4(light, 1.0);
+}

@@ -1,0 +1,34 @@
+// A pixel of the camera's G-buffer as shading and merging see it.
+#include "gi/shared/gbuffer.glsl"
+#include "gi/engines/vpl/shading/gather.glsl"
+
+layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
+layout(binding = 4) uniform usamplerBuffer camera_words;  // GBufferTexel[]
+
+uniform CameraView camera;
+uniform uint interleave;   // n
+uniform uint light_count;  // M
+
+GBufferTexel camera_texel(uint index) {
+    uvec4 words = texelFetch(camera_words, int(index));
+    return GBufferTexel(uintBitsToFloat(words.x), words.y, words.z, words.w);
+}
+
+Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
+    Receiver receiver;
+    receiver.position = texel_position(camera, pixel, texel);
+    receiver.normal = texel_normal(texel);
+    receiver.radius = texel_radius(texel);
+    receiver.to_viewer = toward_viewer(camera, receiver.position);
+    receiver.reflectance = make_reflectance(materials[texel_material(texel)], texel_albedo(texel));
+    return receiver;
+}
+
+// One pane's estimate of the light from all VPLs.
+Gathered gather_pane(Receiver receiver, uint pane) {
+    uint panes = interleave * interleave;
+    Gathered gathered = gather(receiver, pane, panes, light_count);
+    gathered.irradiance *= float(panes);
+    gathered.specular *= float(panes);
+    return gathered;
+}

@@ -1,0 +1,34 @@
+// Shades pixels that have too few neighbours of their own surface by the panes that they lack.
+layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
+#include "gi/engines/vpl/shading/join.glsl"
+
+layout(std430, binding = 11) readonly buffer Lonely {
+    uint lonely_count;
+    uint lonely_pixels[];
+};
+layout(std430, binding = 12) buffer OwnDiffuse { vec4 own_diffuse[]; };
+layout(std430, binding = 13) buffer OwnSpecular { vec4 own_specular[]; };
+
+void main() {
+    uint number = thread_number();
+    if (number >= lonely_count) return;
+    uint index = lonely_pixels[number];
+    uvec2 pixel = uvec2(index % camera.width, index / camera.width);
+    Receiver receiver = pixel_receiver(pixel, camera_texel(index));
+    int n = int(interleave);
+    uint missing = joints[index].y;
+    int lacking = panes_lacking(n, missing);
+    Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+    do {
+        Gathered pane = gather_pane(receiver, window_pane(ivec2(pixel), n, findLSB(missing)));
+        sum.irradiance += pane.irradiance;
+        sum.specular += pane.specular;
+        missing &= missing - 1u;
+        --lacking;
+    } while (lacking > 0);
+    own_diffuse[index] += vec4(sum.irradiance, 0.0);
+#ifdef LUCARNE_GLOSSY
+    own_specular[index] += vec4(sum.specular, 0.0);
+#endif
+}

@@ -1,0 +1,63 @@
+// Closes the holes between the cores of the splats by their fringes: a texel takes its fringe where cores at two
+// opposite sides of it, a texel or two away, are of the fringe's sheet or before it. Below the horizon nothing is drawn:
+// surfaces are taken to go on there. The result replaces the fringe.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gi/engines/vpl/shadow_maps/fringe.glsl"
+#include "gi/engines/vpl/shadow_maps/parabolic.glsl"
+
+layout(binding = 5) uniform usamplerBuffer cores;  // the atlas
+#ifdef LUCARNE_SOURCES
+layout(std430, binding = 8) readonly buffer Sources { uint sources[]; };  // sources.glsl
+#endif
+
+// Of the sine between the normals of a texel and of the surface: their code is off by up to 2 degrees.
+const float kNormalError = 0.05;
+
+vec3 map_point(ivec2 at, uint texel) {
+    vec2 uv = texel_centre(uvec2(at));
+    return map_ray(uv) * (map_distance(texel) / (1.0 + dot(uv, uv)));
+}
+
+// Whether the texel at `other`, inside the map, goes on with the sheet of a fringe at `point`: it is as near, or on the
+// fringe's plane, which near the horizon recedes by its distance within a texel.
+bool goes_on(uint map, ivec2 other, uint own, vec3 point) {
+    uint texel = texelFetch(cores, int(texel_index(map, uvec2(other)))).x;
+    if (texel == kNothing) return false;
+    float own_distance = map_distance(own);
+    if (map_distance(texel) <= own_distance + 2.0 * splat_radius(map_radius(own), own_distance)) return true;
+    vec3 offset = map_point(other, texel) - point;
+    return abs(dot(map_normal(own), offset)) <= kNormalError * length(offset) + map_tolerance(map_radius(own), own_distance);
+}
+
+bool supported(uint map, ivec2 at, uint own) {
+    vec3 point = map_point(at, own);
+    const ivec2 kAxes[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
+    for (int axis = 0; axis < 4; ++axis) {
+        int sides = 0;
+        for (int sign = -1; sign <= 1; sign += 2) {
+            bool met = false;
+            for (int step = 1; step <= 2 && !met; ++step) {
+                ivec2 other = at + sign * step * kAxes[axis];
+                vec2 uv = texel_centre(uvec2(max(other, ivec2(0))));
+                met = min(other.x, other.y) < 0 || dot(uv, uv) >= 1.0 || goes_on(map, other, own, point);
+            }
+            if (met) ++sides;
+        }
+        if (sides == 2) return true;
+    }
+    return false;
+}
+
+void main() {
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uint map = gl_GlobalInvocationID.z;
+    if (max(at.x, at.y) >= map_side) return;
+    uint index = texel_index(map, at);
+    uint core = texelFetch(cores, int(index)).x, own = fringe[index];
+    if (own < core && supported(map, ivec2(at), own)) return;
+    fringe[index] = core;
+#ifdef LUCARNE_SOURCES
+    fringe_sources[index] = sources[index];
+#endif
+}

@@ -1,0 +1,93 @@
+// A surfel as a disc in a VPL's shadow map, and how it takes the map's texels.
+//
+// Per texel the texel's central ray is intersected with the disc's plane: one flat depth a splat would shadow its own
+// surface.
+#include "gi/engines/vpl/shadow_maps/casters.glsl"
+#include "gi/engines/vpl/shadow_maps/fringe.glsl"
+#include "gi/engines/vpl/lights.glsl"
+#include "gi/engines/vpl/shadow_maps/parabolic.glsl"
+#include "gi/engines/vpl/shadow_maps/queue.glsl"
+#include "gi/engines/vpl/shadow_maps/thinning.glsl"
+
+struct Disc {
+    vec3 centre;  // in the VPL's frame, the VPL at the origin
+    vec3 normal;
+    float radius;
+    float surfel_radius;
+    float core;  // what of the radius is surface for sure; the rest is the fringe
+    float lowest;  // hits up to this height over the VPL's tangent plane do not count
+};
+
+// The disc that `caster` becomes in the map of VPL `map`; false where none of it can be hit.
+bool disc_over(uint map, Caster caster, out Disc disc) {
+    vec3 light_normal = vpl_normal(map).xyz;
+    vec3 offset = caster.position - vpl_map_centre(map);
+    float distance2 = max(dot(offset, offset), 1e-12);
+    float distance_m = sqrt(distance2);
+    if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
+    float radius = thinned_radius(caster.radius, distance_m, abs(dot(caster.normal, offset)) / distance_m);
+    float cosine = dot(light_normal, caster.normal);
+    // What is nearly parallel to the VPL's surface and hardly above the map's centre is the VPL's own sheet.
+    float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
+    float top = dot(light_normal, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
+    mat3 frame = frame_about(light_normal);
+    float core = max(caster.radius, kCore * radius);
+    disc = Disc(offset * frame, caster.normal * frame, radius, caster.radius, core, lowest);
+    return top > lowest;
+}
+
+// The texels whose centres the disc may cover, first to last; none where first exceeds last. The cone about the disc's
+// bounding sphere becomes a circle in the map, for the projection is stereographic.
+void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
+    float inverse = inversesqrt(dot(disc.centre, disc.centre));
+    float sine = min(disc.radius * inverse, 1.0);
+    // 0 where the cone holds the map's pole at infinity: then the circle is the whole map.
+    float opposite = disc.centre.z * inverse + sqrt(1.0 - sine * sine);
+    vec2 low = vec2(-1.0), high = vec2(1.0);
+    if (opposite > 0.0 && sine < 1.0) {
+        vec2 middle = disc.centre.xy * inverse / opposite;
+        float reach = sine / opposite;
+        low = max(middle - reach, low);
+        high = min(middle + reach, high);
+    }
+    first = max(ivec2(ceil((low * 0.5 + 0.5) * float(map_side) - 0.5)), ivec2(0));
+    last = min(ivec2(floor((high * 0.5 + 0.5) * float(map_side) - 0.5)), ivec2(map_side) - 1);
+}
+
+#ifdef LUCARNE_SOURCES
+#include "gi/engines/vpl/shadow_maps/sources.glsl"
+#endif
+
+// Where the central ray of a texel meets the disc.
+struct Hit {
+    float t;  // along the ray, times (1 + u^2 + v^2); 0 where it is not met
+    bool core;
+};
+Hit disc_hit(Disc disc, float offset, vec2 uv) {
+    vec3 ray = map_ray(uv);
+    float t = offset / dot(disc.normal, ray);
+    vec3 hit = t * ray;
+    vec3 from_centre = hit - disc.centre;
+    float square = dot(from_centre, from_centre);
+    bool met = t > 0.0 && square <= disc.radius * disc.radius && hit.z > disc.lowest;
+    return Hit(met ? t : 0.0, square <= disc.core * disc.core);
+}
+
+void take_core(uvec2 pair, uint index, float distance_m, uint surface) {
+    atomicMin(atlas[index], pack_map_texel(distance_m, surface));
+#ifdef LUCARNE_SOURCES
+    atomicMin(sources[index], pack_source(distance_m, pair.x));
+#endif
+}
+void take_fringe(uvec2 pair, uint index, float distance_m, uint surface) {
+    atomicMin(fringe[index], pack_map_texel(distance_m, surface));
+#ifdef LUCARNE_SOURCES
+    atomicMin(fringe_sources[index], pack_source(distance_m, pair.x));
+#endif
+}
+
+// What all texels of a disc share: dot(normal, centre), and the code of its surface.
+float disc_offset(Disc disc) { return dot(disc.normal, disc.centre); }
+uint disc_surface(Disc disc) {
+    return map_surface(disc.surfel_radius, disc_offset(disc) > 0.0 ? -disc.normal : disc.normal);
+}

@@ -1,0 +1,33 @@
+// Pull: one level of every map's pyramid from the level below (after Marroquim, Kraus, Cavalcanti 2007).
+//
+// A coarse texel stands for the nearest sheet among its 2 x 2 children if at least three of them lie within the depth
+// interval [d, d + 2 r] of the nearest: then a fourth that is empty or deeper is a hole between splats. Two and two
+// is the edge of a real opening: the coarse texel is open and fills nothing. Children belong to one map always.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gi/engines/vpl/shadow_maps/pyramid.glsl"
+
+void main() {
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uint map = gl_GlobalInvocationID.z;
+    if (max(at.x, at.y) >= map_side >> level) return;
+    uint child[4];
+    uint nearest = kNothing;
+    for (uint i = 0u; i < 4u; ++i) {
+        child[i] = pyramid_texel(level - 1u, map, 2u * at + uvec2(i & 1u, i >> 1));
+        nearest = min(nearest, child[i]);
+    }
+    uint value = nearest;
+    if (nearest < kOpen) {
+        float deepest = sheet_end(nearest);
+        float sum = 0.0;
+        uint support = 0u;
+        for (uint i = 0u; i < 4u; ++i) {
+            if (child[i] >= kOpen || map_distance(child[i]) > deepest) continue;
+            sum += map_distance(child[i]);
+            ++support;
+        }
+        value = support >= 3u ? pack_map_texel(sum / float(support), nearest & 0xffffu) : kOpen;
+    }
+    set_pyramid_texel(level, map, at, value);
+}

@@ -1,0 +1,60 @@
+// Splats the queued pairs of surfel and map into the VPLs' imperfect shadow maps (Ritschel et al. 2008): one
+// invocation a pair; large discs go to splat_large.comp.
+layout(local_size_x = 256) in;
+
+#include "gi/engines/vpl/shadow_maps/disc.glsl"
+
+const int kLargeTexels = 32;  // a bit each
+
+// The texel of the lowest bit of a box from `first` on.
+uvec2 first_of(uint bits, ivec2 first, int width) {
+    int i = findLSB(bits);
+    int row = int((float(i) + 0.5) / float(width));
+    return uvec2(first + ivec2(i - row * width, row));
+}
+
+float distance_at(Disc disc, float offset, uvec2 at) {
+    vec2 uv = texel_centre(at);
+    return offset / dot(disc.normal, map_ray(uv)) * (1.0 + dot(uv, uv));
+}
+
+void main() {
+    uint place = gl_GlobalInvocationID.x;
+    if (place >= pair_count) return;
+    uvec2 pair = pairs[place];
+    Disc disc;
+    if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
+    ivec2 first, last;
+    disc_box(disc, first, last);
+    if (first.x > last.x || first.y > last.y) return;
+    ivec2 size = last - first + 1;
+    if (size.x * size.y > kLargeTexels) {
+        large_places[atomicAdd(large_count, 1u)] = place;
+        return;
+    }
+    float offset = disc_offset(disc);
+    uint surface = disc_surface(disc);
+    // First all texels are tested, then those that are met are written: llvmpipe writes one lane after the other, and few
+    // lanes meet theirs in the same step. Loops test at their end, for it runs a body that no lane enters.
+    uint core = 0u, rest = 0u, bit = 1u;
+    ivec2 at = first;
+    do {
+        Hit hit = disc_hit(disc, offset, texel_centre(uvec2(at)));
+        if (hit.t > 0.0 && hit.core) core |= bit;
+        if (hit.t > 0.0 && !hit.core) rest |= bit;
+        bit <<= 1;
+        at = at.x < last.x ? at + ivec2(1, 0) : ivec2(first.x, at.y + 1);
+    } while (at.y <= last.y);
+    do {
+        if (core == 0u) break;
+        uvec2 texel = first_of(core, first, size.x);
+        take_core(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        core &= core - 1u;
+    } while (core != 0u);
+    do {
+        if (rest == 0u) break;
+        uvec2 texel = first_of(rest, first, size.x);
+        take_fringe(pair, texel_index(pair.y, texel), distance_at(disc, offset, texel), surface);
+        rest &= rest - 1u;
+    } while (rest != 0u);
+}

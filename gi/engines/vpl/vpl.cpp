@@ -1,0 +1,200 @@
+#include "gi/engines/vpl/vpl.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "gi/gbuffer/direct_light.h"
+#include "gi/engines/vpl/footprints.h"
+#include "gi/engines/vpl/seeding/light_sights.h"
+#include "gi/engines/vpl/lobes.h"
+#include "gi/engines/vpl/redistribution/redistribution.h"
+#include "gi/engines/vpl/shading/shading.h"
+#include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace vpl {
+namespace {
+
+/// What VPLs and maps are made from.
+struct Basis {
+    EngineSettings settings;
+    std::vector<Light> lights;
+    std::vector<Material> materials;
+    std::vector<uint64_t> cuts;
+    Bounds bounds;
+    std::shared_ptr<const Environment> environment;
+    uint64_t index = UINT64_MAX;
+    bool operator==(const Basis&) const = default;
+};
+
+/// One bounce's VPLs, and their maps.
+struct Bounce {
+    Seeds seeds;
+    Buffer atlas;
+};
+
+// Bytes of maps that are held from frame to frame: sixteen bounces of `interactive`, one of `high`.
+constexpr size_t kMostKept = size_t{64} << 20;
+
+class VplEngine : public Engine {
+ public:
+    const EngineInfo& info() const override;
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
+    std::vector<std::pair<std::string, double>> stats() const override;
+
+ private:
+    Result<void> add_direct(Frame& frame);
+    Result<void> light_indirectly(Frame& frame);
+
+    Buffer materials_;
+    Sky sky_;
+    LightSights sights_;
+    std::vector<Bounce> bounces_;
+    ShadowMaps maps_;  ///< its atlas is a bounce's while that is drawn or read
+    Basis basis_;      ///< of bounces_
+    Panes panes_;
+    History history_;
+    Redistribution redistribution_;
+    bool indirect_ = false;  ///< the last frame had indirect light
+};
+
+bool wants_direct(const EngineSettings& s) {
+    return s.only_bounce <= 0;
+}
+bool wants_indirect(const EngineSettings& s) {
+    return s.only_bounce < 0 ? s.bounces > 0 : s.only_bounce > 0;
+}
+
+bool glossy(const Frame& frame) {
+    return std::any_of(frame.materials.begin(), frame.materials.end(),
+                       [](const Material& m) { return m.diffuse.w > 0; });
+}
+
+template <class Body>
+Result<void> pass(Frame& frame, const char* name, const Body& body) {
+    frame.times.begin(name);
+    auto done = body();
+    frame.times.end();
+    return done;
+}
+
+const EngineInfo& VplEngine::info() const {
+    static constexpr EngineInfo kInfo{"vpl", "virtual point lights with imperfect shadow maps"};
+    return kInfo;
+}
+
+Result<void> VplEngine::prepare(Frame& frame) {
+    const EngineSettings& s = frame.settings;
+    if (s.interleave != 1 && s.interleave != 2 && s.interleave != 4)
+        return bad_arguments("vpl", fmt::format("it cannot interleave {0} x {0} pixels", s.interleave),
+                             "choose 1, 2 or 4");
+    LUCARNE_TRY(atlas_layout(s.atlas, s.vpls));
+    if (frame.cuts.light_views.size() < frame.lights.size())
+        return failed("vpl", "there are fewer light views than lights");
+    LUCARNE_TRY(upload_sky(frame, sky_));
+    return upload_materials(frame.device, frame.materials, materials_);
+}
+
+/// Everything that the VPLs and their maps follow from.
+Basis basis_of(const Frame& frame) {
+    Basis basis{frame.settings, frame.lights,      frame.materials, {frame.cuts.light->fingerprint()},
+                frame.bounds,   frame.environment, frame.index};
+    for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
+    return basis;
+}
+
+/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
+/// next bounce: frame.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the camera
+/// moves.
+Result<void> VplEngine::light_indirectly(Frame& frame) {
+    const EngineSettings& s = frame.settings;
+    const uint32_t last = s.only_bounce < 0 ? s.bounces : static_cast<uint32_t>(s.only_bounce);
+    LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
+    const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
+    Basis basis = basis_of(frame);
+    const bool held = keep && basis == basis_;
+    basis_ = {};  // until all is drawn
+    // Frame by frame less is blurred, so that what is averaged converges.
+    const float shrink = 1.0f / static_cast<float>(frame.index + 1);
+    bounces_.resize(std::max<size_t>(bounces_.size(), last));
+    redistribution_.best_candidate = s.best_candidate;
+    redistribution_.footprint_variance = footprint_variance(frame.index);
+    LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_panes(frame, glossy(frame), panes_); }));
+    if (!held) {
+        LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
+            return sights_.seed(frame, materials_, s.vpls, mix64(s.seed, frame.index), bounces_[0].seeds);
+        }));
+        LUCARNE_TRY(pass(frame, "ISM casters",
+                         [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
+    }
+    for (uint32_t bounce = 1; bounce <= last; ++bounce) {
+        Seeds& seeds = bounces_[bounce - 1].seeds;
+        Buffer& atlas = bounces_[keep ? bounce - 1 : 0].atlas;
+        std::swap(maps_.atlas, atlas);
+        Result<void> done = held ? Result<void>{}
+                                 : draw_shadow_maps(frame.device, *frame.cuts.light, seeds, layout,
+                                                    bounce < last, frame.times, maps_);
+        if (done && !held)
+            done = pass(frame, "VPL footprints",
+                        [&] { return trim_footprints(frame.device, maps_, shrink, seeds); });
+        if (done && (s.only_bounce < 0 || bounce == last))
+            done = pass(frame, "VPL shading",
+                        [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
+        if (done && !held && bounce < last)
+            done = pass(frame, "VPL redistribution", [&] {
+                const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
+                return redistribute(frame.device, *frame.cuts.light, maps_, materials_, glossy(frame), salt,
+                                    seeds, redistribution_, bounces_[bounce].seeds);
+            });
+        std::swap(maps_.atlas, atlas);
+        LUCARNE_TRY(done);
+    }
+    basis_ = std::move(basis);
+    const bool reuse = frame.moving && s.reuse;
+    if (reuse) LUCARNE_TRY(history_.begin(frame));
+    return pass(frame, "VPL merge",
+                [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
+}
+
+/// Emission, background and what the lights' first reflection sends to the eye.
+Result<void> VplEngine::add_direct(Frame& frame) {
+    frame.times.begin("direct light");
+    LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
+    for (size_t i = 0; i < sights_.views().size(); ++i) {
+        LUCARNE_ASSIGN(const GBuffer* seen, sights_.look(frame, i));
+        LUCARNE_TRY(add_light(frame, materials_, sights_.views()[i], *seen));
+    }
+    frame.times.end();
+    return {};
+}
+
+Result<void> VplEngine::render(Frame& frame) {
+    sights_.begin(frame, sky_.directions);
+    frame.times.begin("light G-buffer");
+    if (!sights_.views().empty()) LUCARNE_TRY(sights_.look(frame, 0));
+    frame.times.end();
+    indirect_ = wants_indirect(frame.settings) && (!sights_.views().empty() || emits(frame));
+    if (indirect_)
+        LUCARNE_TRY(light_indirectly(frame));
+    else
+        frame.radiance.clear(0);
+    return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};
+}
+
+std::vector<std::pair<std::string, double>> VplEngine::stats() const {
+    if (!indirect_) return {{"vpls", 0}};
+    return {{"vpls", maps_.layout.maps}, {"ism_side", maps_.layout.side}};
+}
+
+}  // namespace
+}  // namespace vpl
+
+std::unique_ptr<Engine> make_vpl_engine() {
+    return std::make_unique<vpl::VplEngine>();
+}
+
+}  // namespace lucarne::gi
