@@ -1,5 +1,5 @@
 # Writes OUT: one C++ table of (path from ROOT, text) for FILES. Long texts are cut into several literals.
-set(body "// Generated from the shader files; do not edit.\n#include \"gi/device/shader_texts.h\"\n\n")
+set(body "// Generated from the shader files; do not edit.\n#include \"gi/device/gl/shader_texts.h\"\n\n")
 string(APPEND body "namespace lucarne::gi {\nconst std::vector<ShaderText>& shader_texts() {\n    static const std::vector<ShaderText> texts = {\n")
 foreach(file IN LISTS FILES)
   file(RELATIVE_PATH name ${ROOT} ${file})

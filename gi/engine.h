@@ -9,11 +9,11 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/device/device.h"
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/device/gl/device.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/scene/environment.h"
 #include "gi/scene/look.h"
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"

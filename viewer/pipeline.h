@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gi/engine.h"
-#include "gi/scene/colouring.h"
+#include "gi/surfels/colouring.h"
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/tree/source.h"

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "gi/scene/baked_light.h"
+#include "gi/surfels/baked_light.h"
 #include "gi/scene/scene.h"
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::viewer {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "gi/device/context_watch.h"
+#include "gi/device/gl/context_watch.h"
 #include "io/core/options.h"
 #include "io/image/image.h"
 #include "viewer/key_chord.h"

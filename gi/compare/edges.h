@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/raster/gbuffer.h"
 #include "io/image/image.h"
 
 namespace lucarne::gi {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 
 namespace lucarne::gi {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gi/device/device.h"
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/device/gl/device.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/scene/look.h"
 
 namespace lucarne::gi {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 #include "gi/scene/scene.h"
 
 namespace lucarne::gi {

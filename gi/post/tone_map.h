@@ -6,7 +6,7 @@
 
 #include <glm/vec4.hpp>
 
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 #include "gi/scene/scene.h"
 
 namespace lucarne::gi {

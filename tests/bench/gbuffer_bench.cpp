@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/raster/gbuffer.h"
 #include "io/core/random.h"
 #include "tests/bench/bench_run.h"
 #include "tests/gi/surfel_cloud.h"

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/raster/gbuffer.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
 #include "viewer/commands/drawing_options.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gi/scene/scene.h"
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/format.h"
 #include "octree/stream/cut.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 
 namespace lucarne::gi {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "io/files/file.h"
 #include "octree/stream/cut.h"
 #include "viewer/input.h"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 #include "tests/viewer/program.h"
 #include "viewer/input.h"
 #include "viewer/kept_cache.h"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
-#include "gi/scene/colouring.h"
+#include "gi/surfels/colouring.h"
 #include "gi/scene/render_settings_file.h"
 #include "io/core/log.h"
 #include "octree/tree/bulk.h"

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "gi/scene/colouring.h"
+#include "gi/surfels/colouring.h"
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "viewer/tools/measurement.h"
 #include "viewer/tools/node_cache.h"
 

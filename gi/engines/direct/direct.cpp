@@ -1,6 +1,6 @@
 #include "gi/engines/direct/direct.h"
 
-#include "gi/gbuffer/direct_light.h"
+#include "gi/lighting/direct_light.h"
 
 namespace lucarne::gi {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "gi/gbuffer/direct_light.h"
+#include "gi/lighting/direct_light.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 

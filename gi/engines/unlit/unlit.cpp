@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "gi/gbuffer/direct_light.h"
-#include "gi/gbuffer/uniforms.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
 namespace {

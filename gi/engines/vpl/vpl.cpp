@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "gi/gbuffer/direct_light.h"
+#include "gi/lighting/direct_light.h"
 #include "gi/engines/vpl/footprints.h"
 #include "gi/engines/vpl/seeding/light_sights.h"
 #include "gi/engines/vpl/lobes.h"

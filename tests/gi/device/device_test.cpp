@@ -1,4 +1,4 @@
-#include "gi/device/device.h"
+#include "gi/device/gl/device.h"
 
 #include <cstdlib>
 #include <numeric>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/device/shader_source.h"
+#include "gi/device/gl/shader_source.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
@@ -81,11 +81,11 @@ TEST_F(DeviceTest, UnknownShaderIsAnError) {
 }
 
 TEST_F(DeviceTest, ShaderThatDoesNotCompileIsAnErrorThatNamesItsFile) {
-    const auto program = device->program("gi/gbuffer/resolve.comp", {{"uint", "unsigned"}});
+    const auto program = device->program("gi/raster/resolve.comp", {{"uint", "unsigned"}});
     ASSERT_FALSE(program);
-    EXPECT_EQ(program.error().what, "shader gi/gbuffer/resolve.comp");
+    EXPECT_EQ(program.error().what, "shader gi/raster/resolve.comp");
     EXPECT_NE(program.error().why.find("gi/"), std::string::npos) << program.error().why;
-    EXPECT_TRUE(device->program("gi/gbuffer/resolve.comp"))
+    EXPECT_TRUE(device->program("gi/raster/resolve.comp"))
         << "the same file without the define is another program";
 }
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "gi/device/context_watch.h"
+#include "gi/device/gl/context_watch.h"
 #include "tests/gi/on_device.h"
 
 namespace lucarne::gi {

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/device/shader_source.h"
-#include "gi/device/shader_texts.h"
+#include "gi/device/gl/shader_source.h"
+#include "gi/device/gl/shader_texts.h"
 #include "tests/viewer/program.h"
 
 namespace lucarne::gi {

@@ -1,4 +1,4 @@
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/raster/gbuffer.h"
 
 #include <random>
 

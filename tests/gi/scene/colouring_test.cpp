@@ -1,11 +1,11 @@
-#include "gi/scene/colouring.h"
+#include "gi/surfels/colouring.h"
 
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/attributes.h"
 

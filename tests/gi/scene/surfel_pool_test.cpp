@@ -1,4 +1,4 @@
-#include "gi/scene/surfel_pool.h"
+#include "gi/surfels/surfel_pool.h"
 
 #include <limits>
 #include <numeric>

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "gi/device/device.h"
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/device/gl/device.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/seeding.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/gbuffer/direct_light.h"
+#include "gi/lighting/direct_light.h"
 #include "gi/engines/vpl/redistribution/redistribution.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/surfel_cloud.h"

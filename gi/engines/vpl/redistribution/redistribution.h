@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gi/device/device.h"
-#include "gi/scene/surfel_pool.h"
+#include "gi/device/gl/device.h"
+#include "gi/surfels/surfel_pool.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 

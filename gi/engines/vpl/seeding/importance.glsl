@@ -4,7 +4,7 @@
 // Level 0 has `importance_side` (a power of two) texels along a side; each level above sums 2 x 2 texels of the one
 // below; all levels lie one after the other in one buffer.
 
-#include "gi/gbuffer/shadow.glsl"
+#include "gi/lighting/shadow.glsl"
 #include "gi/shared/light.h"
 
 layout(std430, binding = 8) buffer Importance { vec2 importance[]; };

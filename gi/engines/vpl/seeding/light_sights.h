@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gi/engine.h"
-#include "gi/gbuffer/light_view.h"
+#include "gi/lighting/light_view.h"
 #include "gi/engines/vpl/seeding/emitters.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 

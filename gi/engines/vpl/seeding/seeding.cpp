@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "gi/gbuffer/uniforms.h"
+#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
 #include "gi/engines/vpl/vpl_light.h"

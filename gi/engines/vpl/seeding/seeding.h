@@ -5,8 +5,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "gi/device/device.h"
-#include "gi/gbuffer/gbuffer.h"
+#include "gi/device/gl/device.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/engines/vpl/vpl_light.h"
 
 namespace lucarne::gi::vpl {
@@ -18,7 +18,7 @@ struct Seeds {
     std::vector<VplLight> host_lights;  ///< the same
 };
 
-/// What a light sees of its cut through one of its views (gi/gbuffer/light_view.h).
+/// What a light sees of its cut through one of its views (gi/lighting/light_view.h).
 struct Sight {
     const Light& light;
     uint32_t face;

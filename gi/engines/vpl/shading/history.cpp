@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "gi/gbuffer/uniforms.h"
+#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 
 namespace lucarne::gi::vpl {

@@ -1,6 +1,6 @@
 #include "gi/engines/vpl/shading/shading.h"
 
-#include "gi/gbuffer/uniforms.h"
+#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "gi/device/device.h"
-#include "gi/scene/surfel_pool.h"
+#include "gi/device/gl/device.h"
+#include "gi/surfels/surfel_pool.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 
 namespace lucarne::gi::vpl {

@@ -1,0 +1,305 @@
+#include "gi/device/gl/device.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include <epoxy/gl.h>
+
+#include "gi/device/gl/context_watch.h"
+#include "gi/device/gl/egl.h"
+#include "gi/device/gl/shader_folder.h"
+#include "gi/device/gl/shader_source.h"
+#include "io/core/log.h"
+
+namespace lucarne::gi {
+namespace {
+
+constexpr const char* kMemoryTodo = "lower the number of points or the picture's size";
+
+std::string gl_string(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+#ifndef NDEBUG
+void on_debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text,
+                      const void*) {
+    if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) log::warn("OpenGL: {}", text);
+}
+#endif
+
+void clear_errors() {
+    while (glGetError() != GL_NO_ERROR) {
+    }
+}
+
+/// A linked program's name; errors carry the compiler's first message.
+Result<GLuint> compile(std::string_view path, const ShaderSource& source) {
+    const char* text = source.text.c_str();
+    const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
+    GLint linked = GL_FALSE;
+    if (id) glGetProgramiv(id, GL_LINK_STATUS, &linked);
+    if (linked) return id;
+    GLint length = 0;
+    if (id) glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+    if (length > 0) glGetProgramInfoLog(id, length, &length, log.data());
+    log.resize(static_cast<size_t>(std::max(length, 0)));
+    glDeleteProgram(id);
+    return failed("shader " + std::string(path), readable_message(log, source.files),
+                  "the driver is " + gl_string(GL_VERSION));
+}
+
+/// A program and what it was made of.
+struct CompiledProgram {
+    std::string text;
+    std::unique_ptr<Program> program;
+};
+
+}  // namespace
+
+struct Device::State {
+    std::unique_ptr<HeadlessContext> context;  // empty: a window's; last to go
+    DeviceInfo info;
+    uint64_t cap = UINT64_MAX, used = 0;
+    bool refused = false;
+    std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
+    std::optional<ShaderFolder> shaders;
+    std::string shader_problem;
+    ContextWatch watch;
+};
+
+Device::Device() : state_(std::make_unique<State>()) {}
+Device::~Device() {
+    state_->programs.clear();
+}
+
+Result<std::unique_ptr<Device>> Device::headless() {
+    LUCARNE_ASSIGN(auto context, HeadlessContext::create());
+    LUCARNE_ASSIGN(auto device, current());
+    device->state_->context = std::move(context);
+    return device;
+}
+
+Result<std::unique_ptr<Device>> Device::current() {
+    if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 45)
+        return failed("OpenGL", "no usable device: it has only " + gl_string(GL_VERSION),
+                      "OpenGL 4.5 is needed");
+    std::unique_ptr<Device> device(new Device);
+    DeviceInfo& info = device->state_->info;
+    info.vendor = gl_string(GL_VENDOR);
+    info.renderer = gl_string(GL_RENDERER);
+    info.version = gl_string(GL_VERSION);
+    for (const char* name : {"llvmpipe", "softpipe", "SWR", "Software"})
+        info.software = info.software || info.renderer.find(name) != std::string::npos;
+    info.atomic_int64 = epoxy_has_gl_extension("GL_NV_shader_atomic_int64") &&
+                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    GLint texels = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    info.max_texel_bytes = uint64_t{16} * static_cast<uint64_t>(texels);
+    info.max_buffer_bytes = std::min(static_cast<uint64_t>(bytes), info.max_texel_bytes);
+    if (const char* folder = std::getenv("LUCARNE_SHADERS")) device->use_shader_folder(folder);
+#ifndef NDEBUG
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_debug_message, nullptr);
+#endif
+    return device;
+}
+
+const DeviceInfo& Device::info() const {
+    return state_->info;
+}
+void Device::set_memory_cap(uint64_t bytes) {
+    state_->cap = bytes;
+}
+uint64_t Device::memory_cap() const {
+    return state_->cap;
+}
+uint64_t Device::memory_used() const {
+    return state_->used;
+}
+bool Device::take_refusal() {
+    return std::exchange(state_->refused, false);
+}
+void Device::finish() {
+    glFinish();
+}
+Result<void> Device::check() {
+    if (!state_->watch.lost()) return {};
+    return failed("graphics device", state_->watch.reason(), "see that its driver is up to date");
+}
+void Device::lose_after(uint32_t checks) {
+    state_->watch.lose_after(checks);
+}
+
+Result<Buffer> Device::buffer(size_t bytes, std::string_view what) {
+    return make(bytes, state_->info.max_buffer_bytes, what);
+}
+Result<Buffer> Device::texels(size_t bytes, std::string_view what) {
+    return make(bytes, state_->info.max_texel_bytes, what);
+}
+
+Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) {
+    constexpr size_t kGrain = 16;  // a storage block ends on a vec4
+    const std::string name(what);
+    if (bytes > most)
+        return failed(name,
+                      fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20,
+                                  state_->info.renderer, most >> 20),
+                      kMemoryTodo);
+    bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
+    state_->refused |= bytes > state_->cap - std::min(state_->cap, state_->used);
+    if (bytes > state_->cap - std::min(state_->cap, state_->used))
+        return failed(name,
+                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
+                                  bytes >> 20, state_->used >> 20, state_->cap >> 20),
+                      kMemoryTodo);
+    clear_errors();
+    Buffer made;
+    glCreateBuffers(1, &made.id_);
+    glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (glGetError() != GL_NO_ERROR)  // no share of the budget was taken yet: device_ is empty
+        return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
+    made.device_ = this;
+    made.bytes_ = bytes;
+    state_->used += bytes;
+    return made;
+}
+
+Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what) {
+    if (target && target.bytes() >= bytes) return {};
+    target = Buffer();  // first, so that the old and the new never count together
+    LUCARNE_ASSIGN(target, buffer(bytes, what));
+    return {};
+}
+
+Result<const Program*> Device::program(std::string_view path, const Defines& defines) {
+    std::tuple<std::string, Defines> key(path, defines);
+    if (const auto found = state_->programs.find(key); found != state_->programs.end())
+        return found->second.program.get();
+    const auto make = [&](const std::vector<ShaderText>& texts) -> Result<CompiledProgram> {
+        LUCARNE_ASSIGN(ShaderSource source, shader_source(path, defines, texts));
+        LUCARNE_ASSIGN(const GLuint id, compile(path, source));
+        return CompiledProgram{std::move(source.text), std::unique_ptr<Program>(new Program(id))};
+    };
+    auto made = make(state_->shaders ? state_->shaders->texts() : shader_texts());
+    if (!made && state_->shaders) {
+        note_shader_problem(made.error());
+        made = make(shader_texts());
+    }
+    if (!made) return tl::make_unexpected(std::move(made).error());
+    return state_->programs.emplace(std::move(key), std::move(*made)).first->second.program.get();
+}
+
+void Device::use_shader_folder(const std::filesystem::path& folder) {
+    state_->shaders.emplace(folder);
+    state_->programs.clear();
+    state_->shader_problem.clear();
+}
+
+void Device::reload_shaders() {
+    if (!state_->shaders) return;
+    state_->shaders->read();
+    state_->shader_problem.clear();
+    for (auto& [key, compiled] : state_->programs) {
+        const auto& [path, defines] = key;
+        auto source = shader_source(path, defines, state_->shaders->texts());
+        if (source && source->text == compiled.text) continue;
+        const Result<GLuint> id =
+            source ? compile(path, *source) : tl::make_unexpected(std::move(source).error());
+        if (!id) {
+            note_shader_problem(id.error());
+            continue;
+        }
+        compiled.text = std::move(source->text);
+        compiled.program.reset(new Program(*id));
+    }
+}
+
+const std::string& Device::shader_problem() const {
+    return state_->shader_problem;
+}
+
+void Device::note_shader_problem(const Error& error) {
+    log::warn("{}", error.line());
+    if (state_->shader_problem.empty()) state_->shader_problem = error.line();
+}
+
+Buffer::Buffer(Buffer&& other) noexcept {
+    *this = std::move(other);
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(id_, other.id_);
+    std::swap(bytes_, other.bytes_);
+    std::swap(textures_, other.textures_);
+    return *this;
+}
+
+Buffer::~Buffer() {
+    for (const uint32_t texture : textures_)
+        if (texture) glDeleteTextures(1, &texture);
+    if (id_) glDeleteBuffers(1, &id_);
+    if (device_) device_->state_->used -= bytes_;
+}
+
+void Buffer::bind(uint32_t binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
+
+void Buffer::bind_texels(uint32_t unit, TexelView view) const {
+    uint32_t& texture = textures_[static_cast<size_t>(view)];
+    if (!texture) {
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &texture);
+        constexpr GLenum kFormats[] = {GL_R32UI, GL_RG32UI, GL_RGBA32UI, GL_RGBA32F};
+        glTextureBuffer(texture, kFormats[static_cast<size_t>(view)], id_);
+    }
+    glBindTextureUnit(unit, texture);
+}
+
+void Buffer::upload(size_t offset, std::span<const std::byte> data) {
+    if (offset > bytes_ || data.size() > bytes_ - offset)
+        throw std::logic_error("upload beyond the buffer's end");
+    if (data.empty()) return;
+    glNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
+                         data.data());
+}
+
+void Buffer::download(size_t offset, std::span<std::byte> out) const {
+    if (offset > bytes_ || out.size() > bytes_ - offset)
+        throw std::logic_error("download beyond the buffer's end");
+    if (out.empty()) return;
+    glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(out.size()),
+                            out.data());
+}
+
+void Buffer::clear(uint32_t word) {
+    if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+namespace {
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+}  // namespace
+
+void PassTimes::begin(std::string name) {
+    device_.finish();
+    name_ = std::move(name);
+    start_ = seconds_now();
+}
+
+void PassTimes::end() {
+    device_.finish();
+    passes_.push_back({std::move(name_), seconds_now() - start_});
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,110 @@
+#include <stdexcept>
+
+#include <epoxy/gl.h>
+
+#include "gi/device/gl/device.h"
+
+namespace lucarne::gi {
+namespace {
+
+/// Of gi/shared/many_threads.glsl.
+constexpr const char* kThreadsARow = "threads_a_row";
+
+constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                                 GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+
+}  // namespace
+
+Program::Program(uint32_t id) : id_(id) {
+    GLint local[3] = {1, 1, 1};
+    glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, local);
+    for (int i = 0; i < 3; ++i) local_[i] = static_cast<uint32_t>(local[i]);
+    GLint uniforms = 0, longest = 0;
+    glGetProgramiv(id_, GL_ACTIVE_UNIFORMS, &uniforms);
+    glGetProgramiv(id_, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+    std::string name(static_cast<size_t>(longest) + 1, '\0');
+    for (GLint i = 0; i < uniforms; ++i) {
+        GLsizei length = 0;
+        GLint count = 0;
+        GLenum type = 0;
+        glGetActiveUniform(id_, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &count,
+                           &type, name.data());
+        std::string key = name.substr(0, static_cast<size_t>(length));
+        const GLint location = glGetUniformLocation(id_, key.c_str());
+        if (key.ends_with("[0]")) key.resize(key.size() - 3);
+        uniforms_.emplace(std::move(key), Uniform{location, type});
+    }
+}
+
+Program::~Program() {
+    glDeleteProgram(id_);
+}
+
+const Program::Uniform* Program::find(std::string_view uniform) const {
+    const auto found = uniforms_.find(uniform);
+    return found == uniforms_.end() ? nullptr : &found->second;
+}
+
+void Program::set(std::string_view uniform, int32_t value) const {
+    if (const auto* u = find(uniform)) glProgramUniform1i(id_, u->location, value);
+}
+void Program::set(std::string_view uniform, uint32_t value) const {
+    if (const auto* u = find(uniform)) glProgramUniform1ui(id_, u->location, value);
+}
+void Program::set(std::string_view uniform, float value) const {
+    if (const auto* u = find(uniform)) glProgramUniform1f(id_, u->location, value);
+}
+
+void Program::set_block(std::string_view uniform, std::span<const float> values) const {
+    const auto* u = find(uniform);
+    if (!u) return;
+    const auto count = static_cast<GLsizei>(values.size());
+    switch (u->type) {
+        case GL_FLOAT:
+            glProgramUniform1fv(id_, u->location, count, values.data());
+            break;
+        case GL_FLOAT_VEC2:
+            glProgramUniform2fv(id_, u->location, count / 2, values.data());
+            break;
+        case GL_FLOAT_VEC3:
+            glProgramUniform3fv(id_, u->location, count / 3, values.data());
+            break;
+        case GL_FLOAT_VEC4:
+            glProgramUniform4fv(id_, u->location, count / 4, values.data());
+            break;
+        default:
+            throw std::logic_error("set_block: not a float uniform: " + std::string(uniform));
+    }
+}
+
+void Program::dispatch(uint32_t x, uint32_t y, uint32_t z) const {
+    const uint32_t wanted[3] = {x, y, z};
+    GLuint groups[3], rows = 1;
+    for (GLuint i = 0; i < 3; ++i) {
+        if (wanted[i] == 0) return;
+        GLint most = 0;
+        glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, i, &most);
+        groups[i] = (wanted[i] - 1) / local_[i] + 1;
+        if (groups[i] <= static_cast<GLuint>(most)) continue;
+        if (i > 0 || y * z != 1 || !find(kThreadsARow))
+            throw std::logic_error("dispatch: more groups than OpenGL takes");
+        rows = (groups[0] - 1) / static_cast<GLuint>(most) + 1;
+        groups[0] = (groups[0] - 1) / rows + 1;
+    }
+    if (rows > 1) {
+        groups[1] = rows;
+        set(kThreadsARow, uint32_t{groups[0] * local_[0]});
+    }
+    glUseProgram(id_);
+    glDispatchCompute(groups[0], groups[1], groups[2]);
+    glMemoryBarrier(kAllReads);
+}
+
+void Program::dispatch_indirect(const Buffer& groups, size_t offset) const {
+    glUseProgram(id_);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
+    glDispatchComputeIndirect(static_cast<GLintptr>(offset));
+    glMemoryBarrier(kAllReads);
+}
+
+}  // namespace lucarne::gi

@@ -1,4 +1,0 @@
-// A workgroup for each disc of the queue.
-#include "gi/gbuffer/large.glsl"
-
-void main() { draw_large(large_ids[gl_WorkGroupID.x]); }

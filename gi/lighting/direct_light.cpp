@@ -1,0 +1,68 @@
+#include "gi/lighting/direct_light.h"
+
+#include "gi/raster/uniforms.h"
+
+namespace lucarne::gi {
+namespace {
+
+enum Binding : uint32_t { kCameraTexels = 3, kLightTexels = 4, kMaterials = 5, kRadiance = 6, kSky = 7 };
+
+}  // namespace
+
+std::vector<Material> device_materials(std::vector<Material> materials) {
+    if (materials.empty()) materials.push_back({glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)});
+    materials.resize(LUCARNE_DEVICE_MATERIALS, materials.front());
+    return materials;
+}
+
+Result<void> upload_materials(Device& device, const std::vector<Material>& materials, Buffer& target) {
+    const auto held = device_materials(materials);
+    LUCARNE_TRY(device.reserve(target, held.size() * sizeof(Material), "materials"));
+    target.upload_all(held);
+    return {};
+}
+
+Result<void> upload_sky(const Frame& frame, Sky& sky) {
+    const std::vector<glm::vec3> plain = {frame.background};
+    const auto& texels = frame.environment ? frame.environment->texels : plain;
+    if (frame.environment && frame.environment == sky.directions.environment()) return {};
+    if (sky.texels.bytes() != texels.size() * sizeof(glm::vec3)) {
+        sky.texels = Buffer();
+        LUCARNE_ASSIGN(sky.texels, frame.device.buffer(texels.size() * sizeof(glm::vec3), "environment"));
+    }
+    sky.texels.upload_all(texels);
+    if (frame.environment != sky.directions.environment()) sky.directions = SkyDirections(frame.environment);
+    return {};
+}
+
+Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
+    const Defines defines = add ? Defines{{"LUCARNE_ADD", "1"}} : Defines{};
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/lighting/own_light.comp", defines));
+    frame.gbuffer.texels.bind(kCameraTexels);
+    materials.bind(kMaterials);
+    frame.radiance.bind(kRadiance);
+    sky.texels.bind(kSky);
+    const uint32_t pixels = frame.gbuffer.width * frame.gbuffer.height;
+    set(*program, "camera", frame.camera);
+    program->set("sky_width", frame.environment ? frame.environment->width : 1u);
+    program->set("sky_height", frame.environment ? frame.environment->height : 1u);
+    program->set("sky_rotation", frame.environment ? frame.environment->rotation : 0.0f);
+    program->dispatch(pixels);
+    return {};
+}
+
+Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/lighting/light.comp"));
+    frame.gbuffer.texels.bind(kCameraTexels);
+    seen.texels.bind(kLightTexels);
+    materials.bind(kMaterials);
+    frame.radiance.bind(kRadiance);
+    set(*program, "camera", frame.camera);
+    set(*program, "light_view", from.view);
+    set(*program, "light", from.light);
+    program->set("face", from.face);
+    program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    return {};
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,185 @@
+#include "gi/lighting/light_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "gi/shared/brdf.h"
+#include "io/core/random.h"
+
+namespace lucarne::gi {
+namespace {
+
+glm::vec3 xyz(const glm::vec4& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Even points of a square, moved by a vector of the seed, others for each frame.
+class Strata {
+ public:
+    Strata(uint32_t count, const Frame& frame, uint64_t light)
+        : count_(count), frame_(static_cast<double>(frame.index)) {
+        Random random(frame.settings.seed, light);
+        shift_ = {random.uniform(), random.uniform()};
+    }
+    uint32_t count() const { return count_; }
+
+    /// The R2 sequence (Roberts 2018), multiples of powers of the plastic number on the torus: a frame goes
+    /// on where the last one ended.
+    glm::dvec2 sequence(uint32_t i) const {
+        const double at = frame_ * count_ + i;
+        return on_torus(at * kPlastic);
+    }
+    /// A Fibonacci lattice, which becomes a spiral on a sphere: better for few points; frames move it.
+    glm::dvec2 lattice(uint32_t i) const {
+        return on_torus(frame_ * kPlastic +
+                        glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
+    }
+
+ private:
+    static constexpr glm::dvec2 kPlastic{0.7548776662466927, 0.5698402909980532};
+
+    glm::dvec2 on_torus(const glm::dvec2& point) const { return glm::fract(point + shift_); }
+
+    uint32_t count_;
+    double frame_;
+    glm::dvec2 shift_;
+};
+
+bool has_size(const Light& light) {
+    return light.kind == kRectangleLight || light.kind == kDiscLight ||
+           (light.kind == kDirectionalLight && light.direction.w > 0);
+}
+
+bool shines(const Light& light) {
+    return light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0;
+}
+
+/// More samples of the sun than its penumbra has texels, at most, would show nothing.
+uint32_t most_samples(const Light& sun, uint32_t resolution) {
+    const double tangent = std::tan(std::min<double>(sun.direction.w, 1.5));
+    return static_cast<uint32_t>(1 + std::min(2 * tangent * resolution, 1e6));
+}
+
+/// Two unit vectors across a unit vector (Duff et al. 2017).
+void across(const glm::vec3& n, glm::vec3& u, glm::vec3& v) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    u = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    v = {b, sign + n.y * n.y * a, -n.y};
+}
+
+/// Directions of the cap, evenly: each with its share of the irradiance of a surface that faces its middle,
+/// E / (pi sin^2 a) * 2 pi (1 - cos a).
+void add_sun(const Light& sun, const Strata& strata, const DeviceCut* cut, std::vector<SharpLight>& target) {
+    const double radius = sun.direction.w, half_sine = std::sin(radius / 2);
+    const double height = 2 * half_sine * half_sine;  // 1 - cos a, which small angles do not cancel
+    const double sine_a = std::sin(radius);
+    const auto share = static_cast<float>(2 * height / (sine_a * sine_a) / strata.count());
+    glm::vec3 u, v;
+    across(xyz(sun.direction), u, v);
+    for (uint32_t i = 0; i < strata.count(); ++i) {
+        const glm::dvec2 point = strata.lattice(i);
+        const double drop = point.y * height, sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
+        const double phi = 2 * M_PI * point.x;
+        Light light = sun;
+        const glm::vec3 direction = glm::normalize(u * static_cast<float>(sine * std::cos(phi)) +
+                                                   v * static_cast<float>(sine * std::sin(phi)) +
+                                                   xyz(sun.direction) * static_cast<float>(1 - drop));
+        light.direction = glm::vec4(direction, 0);
+        light.strength *= share;
+        target.push_back({light, cut});
+    }
+}
+
+/// Points of a rectangle or a disc.
+void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
+              std::vector<SharpLight>& target) {
+    const glm::vec3 normal = xyz(area.direction);
+    glm::vec3 u, v;
+    float square_metres = 0;
+    if (area.kind == kDiscLight) {
+        across(normal, u, v);
+        square_metres = kPi * area.extent.w * area.extent.w;
+    } else {
+        const float half = glm::length(xyz(area.extent));
+        if (!(half > 0)) return;
+        u = xyz(area.extent) / half;
+        v = glm::cross(normal, u);
+        square_metres = 4 * half * area.extent.w;
+    }
+    if (!(square_metres > 0)) return;
+    for (uint32_t i = 0; i < strata.count(); ++i) {
+        const glm::dvec2 point = strata.sequence(i);
+        double x = 2 * point.x - 1, y = 2 * point.y - 1;
+        float width = glm::length(xyz(area.extent));
+        if (area.kind == kDiscLight) {
+            const double r = std::sqrt(point.y), phi = 2 * M_PI * point.x;
+            x = r * std::cos(phi), y = r * std::sin(phi);
+            width = area.extent.w;
+        }
+        Light light{};
+        light.kind = kCosineLight;
+        light.position = area.position + glm::vec4(u * (width * static_cast<float>(x)) +
+                                                       v * (area.extent.w * static_cast<float>(y)),
+                                                   0.0f);
+        light.direction = area.direction;
+        light.strength = area.strength * (square_metres / static_cast<float>(strata.count()));
+        light.extent = glm::vec4(u, 0);
+        target.push_back({light, cut});
+    }
+}
+
+void add_sky(const SkyDirections& sky, const Strata& strata, const DeviceCut* cut,
+             std::vector<SharpLight>& target) {
+    for (uint32_t i = 0; i < strata.count(); ++i) {
+        const auto [direction, flux] = sky.draw(strata.lattice(i));
+        Light light{};
+        light.kind = kDirectionalLight;
+        light.direction = glm::vec4(-direction, 0);
+        light.strength = glm::vec4(flux / static_cast<float>(strata.count()), 0);
+        target.push_back({light, cut});
+    }
+}
+
+}  // namespace
+
+uint32_t light_faces(const Light& light) {
+    return light.kind == kPointLight ? 6 : light.kind == kCosineLight ? 4 : 1;
+}
+
+std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky) {
+    std::vector<SharpLight> result;
+    std::vector<size_t> areas, suns;
+    for (size_t i = 0; i < frame.lights.size(); ++i) {
+        const Light& light = frame.lights[i];
+        if (!has_size(light))
+            result.push_back({light, frame.cuts.light_views[i]});
+        else if (shines(light))
+            (light.kind == kDirectionalLight ? suns : areas).push_back(i);
+    }
+    // An even share each; what narrow suns leave goes to the others.
+    uint32_t views = frame.settings.light_samples;
+    auto takers = static_cast<uint32_t>(suns.size() + areas.size() + (sky.dark() ? 0 : 1));
+    const auto share = [&](uint32_t most, uint32_t faces) {
+        const uint32_t samples = std::clamp(views / takers-- / faces, 1u, most);
+        views -= std::min(views, samples * faces);
+        return samples;
+    };
+    const auto strata = [&](size_t i, uint32_t count) { return Strata(count, frame, i); };
+    for (const size_t i : suns) {
+        const uint32_t count = share(most_samples(frame.lights[i], frame.settings.light_resolution), 1);
+        add_sun(frame.lights[i], strata(i, count), frame.cuts.light_views[i], result);
+    }
+    for (const size_t i : areas)
+        add_area(frame.lights[i], strata(i, share(UINT32_MAX, 4)), frame.cuts.light_views[i], result);
+    if (!sky.dark()) {
+        const size_t beyond = frame.lights.size();
+        add_sky(sky, strata(beyond, share(UINT32_MAX, 1)), frame.cuts.light, result);
+    }
+    return result;
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,90 @@
+#include "gi/lighting/sky_directions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace lucarne::gi {
+namespace {
+
+constexpr uint32_t kMostColumns = 512;
+
+double luminance(const glm::vec3& c) {
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;  // Rec. 709
+}
+
+/// The first of the running sums that is beyond `at`, a share in [0, 1) of the last one; `at` becomes the
+/// share within that step.
+uint32_t take(std::span<const double> running, double& at) {
+    const double value = at * running.back();
+    size_t found = static_cast<size_t>(std::ranges::upper_bound(running, value) - running.begin());
+    // Rounding may go past the end: then the last step that is not empty.
+    if (found == running.size())
+        found = static_cast<size_t>(std::ranges::lower_bound(running, running.back()) - running.begin());
+    const double before = found ? running[found - 1] : 0;
+    at = std::clamp((value - before) / (running[found] - before), 0.0, 1.0 - 1e-15);
+    return static_cast<uint32_t>(found);
+}
+
+}  // namespace
+
+SkyDirections::SkyDirections(std::shared_ptr<const Environment> environment)
+    : environment_(std::move(environment)) {
+    if (!environment_) return;
+    const uint32_t width = environment_->width, height = environment_->height;
+    block_ = (std::max(width, height) + kMostColumns - 1) / kMostColumns;
+    columns_ = (width + block_ - 1) / block_;
+    rows_ = (height + block_ - 1) / block_;
+    block_sums_.assign(size_t{columns_} * rows_, 0);
+    row_sums_.assign(rows_, 0);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            block_sums_[size_t{y / block_} * columns_ + x / block_] += weight(x, y);
+    for (uint32_t row = 0; row < rows_; ++row) {
+        double* sums = &block_sums_[size_t{row} * columns_];
+        for (uint32_t i = 1; i < columns_; ++i) sums[i] += sums[i - 1];
+        total_ += sums[columns_ - 1];
+        row_sums_[row] = total_;
+    }
+}
+
+/// Luminance times solid angle of a texel.
+double SkyDirections::weight(uint32_t x, uint32_t y) const {
+    const double step = M_PI / environment_->height;
+    const double heights = std::cos(y * step) - std::cos((y + 1.0) * step);
+    return luminance(environment_->texels[size_t{y} * environment_->width + x]) * heights * 2 * M_PI /
+           environment_->width;
+}
+
+double SkyDirections::row_weight(uint32_t first_x, uint32_t end_x, uint32_t y) const {
+    double sum = 0;
+    for (uint32_t x = first_x; x < end_x; ++x) sum += weight(x, y);
+    return sum;
+}
+
+SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
+    const Environment& sky = *environment_;
+    double u = point.x, v = point.y;
+    const uint32_t row = take(row_sums_, v);
+    const uint32_t column = take({&block_sums_[size_t{row} * columns_], columns_}, u);
+    const uint32_t first_x = column * block_, end_x = std::min(first_x + block_, sky.width);
+    const uint32_t first_y = row * block_, end_y = std::min(first_y + block_, sky.height);
+    std::vector<double> running;
+    const auto step = [&](double more) { running.push_back((running.empty() ? 0 : running.back()) + more); };
+    for (uint32_t y = first_y; y < end_y; ++y) step(row_weight(first_x, end_x, y));
+    const uint32_t y = first_y + take(running, v);
+    running.clear();
+    for (uint32_t x = first_x; x < end_x; ++x) step(weight(x, y));
+    const uint32_t x = first_x + take(running, u);
+    // Evenly over the texel's solid angle; gi/shared/environment.h says where it lies.
+    const double slice = M_PI / sky.height;
+    const double top = std::cos(y * slice), low = std::cos((y + 1.0) * slice);
+    const double z = top + (low - top) * v, sine = std::sqrt(std::max(0.0, 1 - z * z));
+    const double turns = 2 * M_PI * ((x + u) / sky.width - .5) - sky.rotation;  // from +y to +x
+    const glm::vec3& radiance = sky.texels[size_t{y} * sky.width + x];
+    // The density is luminance over total.
+    return {glm::vec3(sine * std::sin(turns), sine * std::cos(turns), z),
+            radiance * static_cast<float>(total_ / luminance(radiance))};
+}
+
+}  // namespace lucarne::gi

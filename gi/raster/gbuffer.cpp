@@ -1,0 +1,107 @@
+#include "gi/raster/gbuffer.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/geometric.hpp>
+
+#include "gi/raster/queues.h"
+
+namespace lucarne::gi {
+namespace {
+
+void set_view(const Program& program, const CameraView& view, const PointSize& size) {
+    const auto axis = [&](std::string_view name, const glm::vec3& v, float w) {
+        const std::array<float, 4> values = {v.x, v.y, v.z, w};
+        program.set_block(name, values);
+    };
+    const glm::vec3 right(view.right.x, view.right.y, view.right.z), up(view.up.x, view.up.y, view.up.z);
+    const float tan_x = glm::length(right), tan_y = glm::length(up);
+    axis("view_right", right / tan_x, tan_x);
+    axis("view_down", up / -tan_y, tan_y);
+    axis("view_forward", {view.forward.x, view.forward.y, view.forward.z}, view.origin.w);
+    axis("view_origin", {view.origin.x, view.origin.y, view.origin.z},
+         view.projection == kOrthographic ? 1.0f : 0.0f);
+    program.set("view_width", view.width);
+    program.set("view_height", view.height);
+    program.set("point_scale", size.scale);
+    program.set("point_pixels", size.pixels);
+}
+
+const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
+
+/// `places`: ids that the cut may have.
+Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& target) {
+    const auto hold = [&](Buffer& buffer, size_t bytes) { return device.reserve(buffer, bytes, "G-buffer"); };
+    LUCARNE_TRY(hold(target.texels, pixels * sizeof(GBufferTexel)));
+    LUCARNE_TRY(hold(target.ids, pixels * sizeof(uint32_t)));
+    LUCARNE_TRY(hold(target.keys, pixels * sizeof(uint32_t)));
+    LUCARNE_TRY(hold(target.queues, sizeof(QueueHeader) + kLargeQueue * sizeof(uint32_t)));
+    return hold(target.candidates, places * sizeof(uint32_t));
+}
+
+Result<void> draw_large(Device& device, const CameraView& view, const PointSize& size, const GBuffer& target,
+                        const Defines& defines) {
+    LUCARNE_ASSIGN(const Program* queued, device.program("gi/raster/splat_large.comp", defines));
+    LUCARNE_ASSIGN(const Program* overflow, device.program("gi/raster/splat_overflow.comp", defines));
+    for (const Program* program : {queued, overflow}) set_view(*program, view, size);
+    queued->dispatch_indirect(target.queues, offsetof(QueueHeader, large_groups));
+    overflow->dispatch_indirect(target.queues, offsetof(QueueHeader, overflow_groups));
+    return {};
+}
+
+}  // namespace
+
+Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target,
+                       const PointSize& size) {
+    const size_t pixels = size_t{view.width} * view.height;
+    const uint32_t places = cut.blocks() * kBlockSurfels;
+    target.width = view.width;
+    target.height = view.height;
+    LUCARNE_TRY(reserve(device, pixels, places, target));
+    LUCARNE_ASSIGN(const Program* splat, device.program("gi/raster/splat.comp"));
+    LUCARNE_ASSIGN(const Program* splat_ids, device.program("gi/raster/splat.comp", kIdPass));
+    LUCARNE_ASSIGN(const Program* plan, device.program("gi/raster/plan.comp"));
+    LUCARNE_ASSIGN(const Program* resolve, device.program("gi/raster/resolve.comp"));
+    target.keys.clear(UINT32_MAX);
+    target.ids.clear(kNoSurfel);
+    target.queues.clear(0);
+    cut.bind();
+    target.keys.bind(3);
+    target.keys.bind_texels(3, TexelView::four_words);
+    target.ids.bind(4);
+    target.queues.bind(5);
+    target.texels.bind(6);
+    target.candidates.bind(7);
+    for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view, size);
+    plan->set("blocks", cut.blocks());
+    splat->dispatch(places);
+    plan->dispatch(1);
+    LUCARNE_TRY(draw_large(device, view, size, target, {}));
+    splat_ids->dispatch_indirect(target.queues, offsetof(QueueHeader, candidate_groups));
+    LUCARNE_TRY(draw_large(device, view, size, target, kIdPass));
+    resolve->dispatch(static_cast<uint32_t>(pixels));
+    return {};
+}
+
+CameraView spot_view(const Light& spot, uint32_t resolution) {
+    const glm::vec3 forward(spot.direction.x, spot.direction.y, spot.direction.z);
+    // Any frame about the axis will do; the helper axis is the one least along it.
+    const glm::vec3 helper = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, helper));
+    const glm::vec3 up = glm::cross(right, forward);
+    // A pinhole cannot see a half space: fields beyond 170 degrees are cut.
+    const float cosine = std::max(spot.position.w, std::cos(1.4835f));
+    const float tangent = std::sqrt(std::max(1 - cosine * cosine, 1e-6f)) / cosine;
+    CameraView view{};
+    constexpr float kNear = 1e-3f;  // m
+    view.origin = {spot.position.x, spot.position.y, spot.position.z, kNear};
+    view.forward = {forward.x, forward.y, forward.z, 0.0f};
+    view.right = {right.x * tangent, right.y * tangent, right.z * tangent, 0.0f};
+    view.up = {up.x * tangent, up.y * tangent, up.z * tangent, 0.0f};
+    view.width = view.height = resolution;
+    return view;
+}
+
+}  // namespace lucarne::gi

@@ -1,0 +1,30 @@
+// One invocation a pixel: the texel of the surfel that took it.
+layout(local_size_x = 64) in;
+#include "gi/shared/many_threads.glsl"
+#include "gi/raster/disc.glsl"
+
+layout(std430, binding = 4) readonly buffer Ids { uint ids[]; };
+layout(std430, binding = 6) writeonly buffer Texels { GBufferTexel texels[]; };
+
+void main() {
+    uint at = thread_number();
+    if (at >= view_width * view_height) return;
+    uint id = ids[at];
+    uint item;
+    PackedSurfel surfel;
+    Disc disc;
+    GBufferTexel texel = GBufferTexel(0.0, 0u, 0u, 0u);
+    if (id != kNoSurfel && cut_surfel(id, item, surfel) && view_disc(item, surfel, disc)) {
+        vec2 tangent = pixel_tangent(vec2(at % view_width, at / view_width));
+        vec3 ray = vec3(ray_slope(tangent), 1.0);
+        // Points of a fixed size are drawn facing the eye, but are lit as they lie.
+        vec3 normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : disc.normal;
+        if (dot(normal, ray) > 0.0) normal = -normal;
+        vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;
+        texel.depth = disc_depth(disc, tangent);
+        texel.normal = encode_octahedral(world);
+        texel.albedo = surfel.d;
+        texel.material = surfel_material(surfel.b) | packHalf2x16(vec2(0.0, disc.radius));
+    }
+    texels[at] = texel;
+}

@@ -1,0 +1,104 @@
+// Draws small discs pixel by pixel, one invocation each. The first pass goes through the cut, queues the large discs for
+// splat_large.comp and lists those that were the nearest in some pixel when they were drawn; the second pass
+// (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
+layout(local_size_x = 256) in;
+#include "gi/raster/splat.glsl"
+
+layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
+
+// A small disc in the picture, to first order about its centre (what is left out is a share radius/depth of the
+// disc): over pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth
+// has the gradient `slope`.
+struct Ellipse {
+    vec2 centre;  // in pixels, their centres at whole numbers
+    float xx, xy, yy;
+    vec2 slope;  // m a pixel
+};
+
+Ellipse project(Disc disc) {
+    vec2 scale = pixels_per_tangent();
+    vec2 place = disc.centre.xy / view_scale(disc.centre.z), tangent = ray_slope(place);
+    Ellipse e;
+    e.centre = place * scale + 0.5 * vec2(view_width, view_height) - 0.5;
+    float facing = dot(disc.normal, vec3(tangent, 1.0));
+    if (abs(facing) < 1e-4) facing = 1e-4;
+    vec2 step = view_scale(disc.centre.z) / scale;  // m a pixel at the centre's depth
+    e.slope = -step * disc.normal.xy / facing;
+    vec3 along_x = vec3(e.slope.x * tangent + vec2(step.x, 0.0), e.slope.x);
+    vec3 along_y = vec3(e.slope.y * tangent + vec2(0.0, step.y), e.slope.y);
+    float inverse = 1.0 / max(disc.radius * disc.radius, 1e-12);
+    e.xx = dot(along_x, along_x) * inverse;
+    e.xy = 2.0 * dot(along_x, along_y) * inverse;
+    e.yy = dot(along_y, along_y) * inverse;
+    return e;
+}
+
+float ellipse_distance2(Ellipse e, vec2 d) { return d.x * (e.xx * d.x + e.xy * d.y) + e.yy * d.y * d.y; }
+
+// The order of the disc at an offset, see disc_key; at a pixel of its centre that it does not cover (seen edge-on, or
+// smaller than a pixel) that of its centre's depth.
+uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
+    precise float distance2 = ellipse_distance2(e, d);
+    precise float slope = e.slope.x * d.x + e.slope.y * d.y;
+    precise float key = disc.centre.z + (distance2 <= 1.0 ? slope + disc.push * distance2 : disc.push);
+    return floatBitsToUint(key);
+}
+
+// True where the disc took a pixel.
+bool draw_small(Disc disc, uint id) {
+    Ellipse e = project(disc);
+    vec2 home = floor(e.centre + 0.5);
+    float determinant = max(e.xx * e.yy - 0.25 * e.xy * e.xy, 1e-12);
+    vec2 reach = min(sqrt(vec2(e.yy, e.xx) / determinant), vec2(kSmallRadius + 1.0));
+    vec2 low = max(min(ceil(e.centre - reach), home), vec2(0.0));
+    vec2 high = min(max(floor(e.centre + reach), home), vec2(view_width, view_height) - 1.0);
+    if (low.x > high.x || low.y > high.y) return false;
+    float columns = high.x - low.x + 1.0;
+    // Up to 32 pixels are tested, then those that it takes are written: llvmpipe writes one lane after the other, and
+    // few lanes take the same place in the loop. Loops test at their end, since llvmpipe runs a body that no lane
+    // enters.
+    vec2 pixel = low;
+    bool took = false;
+    do {
+        vec2 start = pixel;
+        uint taken = 0u, bit = 1u;
+        do {
+            vec2 d = pixel - e.centre;
+            bool covered = ellipse_distance2(e, d) <= 1.0 || pixel == home;
+            if (covered && may_take_pixel(pixel, ellipse_key(disc, e, d))) taken |= bit;
+            pixel = pixel.x < high.x ? vec2(pixel.x + 1.0, pixel.y) : vec2(low.x, pixel.y + 1.0);
+            bit <<= 1;
+        } while (bit != 0u && pixel.y <= high.y);
+        do {
+            if (taken == 0u) break;
+            float column = start.x - low.x + float(findLSB(taken));
+            taken &= taken - 1u;
+            float row = floor((column + 0.5) / columns);
+            vec2 chosen = vec2(low.x + column - row * columns, start.y + row);
+            if (take_pixel(chosen, ellipse_key(disc, e, chosen - e.centre), id)) took = true;
+        } while (taken != 0u);
+    } while (pixel.y <= high.y);
+    return took;
+}
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+#ifdef LUCARNE_ID_PASS
+    if (id >= queues.candidate_count) return;
+    id = candidates[id];
+#endif
+    uint item;
+    PackedSurfel surfel;
+    Disc disc;
+    if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc)) return;
+#ifdef LUCARNE_ID_PASS
+    draw_small(disc, id);
+#else
+    if (is_small(disc)) {
+        if (draw_small(disc, id)) candidates[atomicAdd(queues.candidate_count, 1u)] = id;
+        return;
+    }
+    uint place = atomicAdd(queues.large_count, 1u);
+    if (place < kLargeQueue) large_ids[place] = id;
+#endif
+}
