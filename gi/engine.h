@@ -21,7 +21,7 @@
 
 namespace lucarne::gi {
 
-/// Everything an engine can be told; presets (viewer/presets.h) fill it. Engines ignore what they do not use.
+/// Everything an engine can be told; presets (viewer/frame/presets.h) fill it. Engines ignore what they do not use.
 struct EngineSettings {
     uint32_t bounces = 1;      ///< indirect bounces; 0: direct light alone
     int32_t only_bounce = -1;  ///< >= 0: just that bounce (0: direct light)

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/axis_marks.h"
-#include "viewer/free_name.h"
+#include "viewer/overlay/axis_marks.h"
+#include "io/files/free_name.h"
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 

@@ -11,10 +11,10 @@
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "viewer/actions.h"
-#include "viewer/free_name.h"
+#include "io/files/free_name.h"
 #include "viewer/lights/light_edits.h"
 #include "viewer/panels/panels.h"
-#include "viewer/rgba.h"
+#include "viewer/frame/rgba.h"
 #include "viewer/shell/unsaved.h"
 
 namespace lucarne::viewer {

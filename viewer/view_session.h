@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "io/core/interrupt.h"
-#include "viewer/cost_model.h"
+#include "viewer/frame/cost_model.h"
 #include "viewer/lights/sky_loader.h"
 #include "viewer/measure_session.h"
 #include "viewer/panels/legend_handles.h"
-#include "viewer/picture_worker.h"
-#include "viewer/quality.h"
+#include "viewer/frame/picture_worker.h"
+#include "viewer/frame/quality.h"
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/shell/scan_set.h"

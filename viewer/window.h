@@ -13,7 +13,7 @@
 #include "io/core/options.h"
 #include "io/image/image.h"
 #include "viewer/key_chord.h"
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 
 struct GLFWwindow;
 

@@ -20,7 +20,7 @@
 #include "tests/bench/scan.h"
 #include "tests/gi/analytic_frame.h"
 #include "tests/gi/surfel_scenes.h"
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne {
 namespace {

@@ -18,8 +18,8 @@
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/input.h"
-#include "viewer/rgba.h"
+#include "viewer/inputs/input.h"
+#include "viewer/frame/rgba.h"
 
 namespace lucarne {
 namespace {

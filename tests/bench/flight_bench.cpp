@@ -15,7 +15,7 @@
 #include "tests/bench/bench_run.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/flythrough/flight.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne {
 namespace {

@@ -15,8 +15,8 @@
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/input.h"
-#include "viewer/views.h"
+#include "viewer/inputs/input.h"
+#include "viewer/frame/views.h"
 
 namespace lucarne {
 namespace {

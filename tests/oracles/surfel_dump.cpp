@@ -6,7 +6,7 @@
 #include "gi/surfels/surfel_pool.h"
 #include "io/files/file.h"
 #include "octree/stream/cut.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/cut_choice.h"
+#include "viewer/frame/cut_choice.h"
 
 #include <set>
 

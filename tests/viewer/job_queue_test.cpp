@@ -1,5 +1,5 @@
 // Background jobs that throw: whoever asked for them is told, and the thread goes on.
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 
 #include <future>
 #include <new>

@@ -9,7 +9,7 @@
 #include "io/core/random.h"
 #include "tests/viewer/measured_scan.h"
 #include "tests/viewer/program.h"
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/measure_model.h"
 #include "viewer/tools/nearest.h"

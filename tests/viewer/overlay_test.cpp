@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 #include "viewer/overlay/draw_marks.h"
 #include "viewer/overlay/look_tools.h"
 

@@ -1,4 +1,4 @@
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "gi/device/gl/device.h"
 #include "tests/viewer/program.h"
-#include "viewer/input.h"
-#include "viewer/kept_cache.h"
-#include "viewer/pipeline.h"
+#include "viewer/inputs/input.h"
+#include "viewer/inputs/kept_cache.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "octree/tree/bulk.h"
 #include "tests/viewer/program.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
 namespace {

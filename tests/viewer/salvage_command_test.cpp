@@ -8,7 +8,7 @@
 
 #include "octree/cache/cache.h"
 #include "tests/viewer/program.h"
-#include "viewer/kept_cache.h"
+#include "viewer/inputs/kept_cache.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 #include "viewer/shell/bookmarks.h"
 #include "viewer/shell/file_browser.h"
 #include "viewer/shell/floor_finder.h"

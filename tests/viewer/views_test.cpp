@@ -1,4 +1,4 @@
-#include "viewer/views.h"
+#include "viewer/frame/views.h"
 
 #include <cmath>
 #include <set>
@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne::viewer {
 namespace {

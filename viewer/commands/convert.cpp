@@ -22,9 +22,9 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/edit_report.h"
 #include "viewer/commands/outputs.h"
-#include "viewer/describe.h"
-#include "viewer/input.h"
-#include "viewer/scan_list.h"
+#include "viewer/inputs/describe.h"
+#include "viewer/inputs/input.h"
+#include "viewer/inputs/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -10,7 +10,7 @@
 #include "octree/tree/source.h"
 #include "viewer/commands/light_options.h"
 #include "viewer/commands/look_options.h"
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace CLI {
 class App;

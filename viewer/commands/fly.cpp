@@ -21,7 +21,7 @@
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/html_report.h"
 #include "viewer/flythrough/video.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
 namespace {

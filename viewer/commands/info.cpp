@@ -18,10 +18,10 @@
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
-#include "viewer/describe.h"
-#include "viewer/input.h"
-#include "viewer/scan_list.h"
-#include "viewer/tools/units.h"
+#include "viewer/inputs/describe.h"
+#include "viewer/inputs/input.h"
+#include "viewer/inputs/scan_list.h"
+#include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -13,7 +13,7 @@
 #include "io/core/terminal.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/nearest.h"
 #include "viewer/tools/section.h"

@@ -23,7 +23,7 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 #include "viewer/show/finished_picture.h"
 
 namespace lucarne::viewer {

@@ -15,7 +15,7 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/path.h"
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/view_session.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 

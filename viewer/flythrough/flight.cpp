@@ -9,8 +9,8 @@
 #include "io/files/file.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
-#include "viewer/cost_model.h"
-#include "viewer/rgba.h"
+#include "viewer/frame/cost_model.h"
+#include "viewer/frame/rgba.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/core/machine.h"
 #include "viewer/flythrough/flicker.h"
 #include "viewer/flythrough/picture_change.h"
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 

@@ -9,7 +9,7 @@
 
 #include "gi/registry.h"
 #include "gi/scene/scene_lights.h"
-#include "viewer/free_name.h"
+#include "io/files/free_name.h"
 
 namespace lucarne::viewer {
 namespace {

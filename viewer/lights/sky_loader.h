@@ -7,7 +7,7 @@
 #include <string>
 
 #include "gi/scene/environment.h"
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 
 namespace lucarne::viewer {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/post/false_colour.h"
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "viewer/axis_marks.h"
-#include "viewer/tools/units.h"
-#include "viewer/views.h"
+#include "viewer/overlay/axis_marks.h"
+#include "viewer/inputs/units.h"
+#include "viewer/frame/views.h"
 
 namespace lucarne::viewer {
 namespace {

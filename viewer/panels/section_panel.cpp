@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 
 namespace lucarne::viewer {
 namespace {

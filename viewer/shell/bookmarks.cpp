@@ -10,7 +10,7 @@
 #include "io/files/file.h"
 #include "io/files/json.h"
 #include "io/core/random.h"
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 #include "viewer/shell/settings.h"
 
 namespace lucarne::viewer {

@@ -5,7 +5,7 @@
 
 #include "viewer/shell/file_browser.h"
 #include "viewer/shell/floor_finder.h"
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 #include "viewer/shell/native_dialog.h"
 #include "viewer/shell/scan_set.h"
 #include "viewer/view_model.h"

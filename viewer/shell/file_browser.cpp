@@ -4,7 +4,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "viewer/scan_list.h"
+#include "viewer/inputs/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "octree/tree/source.h"
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 
 namespace lucarne::viewer {
 

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "io/core/process.h"
-#include "viewer/scan_list.h"
+#include "viewer/inputs/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/core/log.h"
 #include "octree/open.h"
 #include "octree/stream/joined_source.h"
-#include "viewer/scan_list.h"
+#include "viewer/inputs/scan_list.h"
 
 namespace lucarne::viewer {
 namespace {

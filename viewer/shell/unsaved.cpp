@@ -5,7 +5,7 @@
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
-#include "viewer/free_name.h"
+#include "io/files/free_name.h"
 #include "viewer/lights/light_edits.h"
 
 namespace lucarne::viewer {

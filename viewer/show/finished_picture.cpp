@@ -7,7 +7,7 @@
 #include "viewer/overlay/draw_marks.h"
 #include "viewer/overlay/figure_scale.h"
 #include "viewer/overlay/overlay.h"
-#include "viewer/rgba.h"
+#include "viewer/frame/rgba.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "gi/scene/scene.h"
 #include "io/image/image.h"
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 

@@ -9,7 +9,7 @@
 #include "io/files/file.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/video.h"
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 
 namespace lucarne::viewer {
 

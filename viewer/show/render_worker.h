@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "viewer/flythrough/path.h"
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 #include "viewer/show/finished_picture.h"
 
 namespace lucarne::viewer {

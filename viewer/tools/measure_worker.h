@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 #include "viewer/tools/pick.h"
 #include "viewer/tools/section.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "viewer/tools/exact_point.h"
-#include "viewer/tools/units.h"
+#include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {
 

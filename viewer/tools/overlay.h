@@ -6,7 +6,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 #include "viewer/tools/measurement.h"
 
 namespace lucarne::viewer {

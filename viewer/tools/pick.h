@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 #include "viewer/tools/exact_point.h"
 #include "viewer/tools/node_cache.h"
 

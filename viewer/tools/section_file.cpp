@@ -6,7 +6,7 @@
 
 #include "io/files/file.h"
 #include "octree/tree/stored_names.h"
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 #include "viewer/tools/measure_file.h"
 #include "viewer/tools/section.h"
 

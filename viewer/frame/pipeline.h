@@ -12,7 +12,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/tree/source.h"
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne::viewer {
 

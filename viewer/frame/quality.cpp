@@ -1,4 +1,4 @@
-#include "viewer/quality.h"
+#include "viewer/frame/quality.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/input.h"
+#include "viewer/inputs/input.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -16,9 +16,9 @@
 #include "octree/cache/cache.h"
 #include "octree/open.h"
 #include "octree/stream/joined_source.h"
-#include "viewer/kept_cache.h"
-#include "viewer/scan_list.h"
-#include "viewer/tools/units.h"
+#include "viewer/inputs/kept_cache.h"
+#include "viewer/inputs/scan_list.h"
+#include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/prepare.h"
+#include "viewer/frame/prepare.h"
 
 #include <cstring>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "viewer/views.h"
+#include "viewer/frame/views.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/axis_marks.h"
+#include "viewer/overlay/axis_marks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/core/options.h"
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne::viewer {
 

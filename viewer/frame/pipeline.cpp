@@ -1,4 +1,4 @@
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,9 @@
 #include "octree/tree/bulk.h"
 #include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
-#include "viewer/cut_choice.h"
-#include "viewer/prepare.h"
-#include "viewer/views.h"
+#include "viewer/frame/cut_choice.h"
+#include "viewer/frame/prepare.h"
+#include "viewer/frame/views.h"
 
 namespace lucarne::viewer {
 namespace {

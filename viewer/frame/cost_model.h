@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 

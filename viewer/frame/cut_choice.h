@@ -7,7 +7,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/stream/cut.h"
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/presets.h"
+#include "viewer/frame/presets.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "viewer/free_name.h"
+#include "io/files/free_name.h"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "viewer/picture_worker.h"
+#include "viewer/frame/picture_worker.h"
 
 #include <condition_variable>
 #include <future>

@@ -1,11 +1,11 @@
-#include "viewer/describe.h"
+#include "viewer/inputs/describe.h"
 
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
 #include "io/formats/las/bounds.h"
 #include "io/formats/mesh/source.h"
-#include "viewer/tools/units.h"
+#include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {
 

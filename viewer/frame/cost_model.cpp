@@ -1,4 +1,4 @@
-#include "viewer/cost_model.h"
+#include "viewer/frame/cost_model.h"
 
 #include <algorithm>
 #include <cmath>

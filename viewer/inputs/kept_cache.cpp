@@ -1,4 +1,4 @@
-#include "viewer/kept_cache.h"
+#include "viewer/inputs/kept_cache.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "viewer/shell/job_queue.h"
+#include "io/core/job_queue.h"
 
 #include "io/core/log.h"
 

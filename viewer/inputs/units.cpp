@@ -1,4 +1,4 @@
-#include "viewer/tools/units.h"
+#include "viewer/inputs/units.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/scan_list.h"
+#include "viewer/inputs/scan_list.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "viewer/cut_choice.h"
+#include "viewer/frame/cut_choice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <glm/common.hpp>
 
-#include "viewer/views.h"
+#include "viewer/frame/views.h"
 
 namespace lucarne::viewer {
 namespace {

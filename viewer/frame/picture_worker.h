@@ -9,7 +9,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "viewer/pipeline.h"
+#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 
