@@ -14,7 +14,7 @@
 #include "viewer/frame/presets.h"
 #include "viewer/shell/shell.h"
 #include "viewer/show/show_model.h"
-#include "viewer/tools/measure_model.h"
+#include "viewer/measure/model.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/tools/exact_point.h"
+#include "viewer/picking/exact_point.h"
 
 #include <limits>
 

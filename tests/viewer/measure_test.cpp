@@ -10,11 +10,11 @@
 #include "tests/viewer/measured_scan.h"
 #include "tests/viewer/program.h"
 #include "viewer/overlay/axis_marks.h"
-#include "viewer/tools/measure_file.h"
-#include "viewer/tools/measure_model.h"
-#include "viewer/tools/nearest.h"
-#include "viewer/tools/profile_raster.h"
-#include "viewer/tools/section.h"
+#include "viewer/measure/file.h"
+#include "viewer/measure/model.h"
+#include "viewer/picking/nearest.h"
+#include "viewer/measure/profile_raster.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 namespace {

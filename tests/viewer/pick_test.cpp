@@ -1,4 +1,4 @@
-#include "viewer/tools/pick.h"
+#include "viewer/picking/pick.h"
 
 #include <semaphore>
 
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/measured_scan.h"
-#include "viewer/tools/overlay.h"
+#include "viewer/measure/marks.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include "io/files/file.h"
 #include "tests/viewer/program.h"
 #include "viewer/lights/light_edits.h"
-#include "viewer/tools/measure_file.h"
+#include "viewer/measure/file.h"
 
 namespace lucarne::viewer {
 namespace {

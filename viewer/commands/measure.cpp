@@ -14,9 +14,9 @@
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
-#include "viewer/tools/measure_file.h"
-#include "viewer/tools/nearest.h"
-#include "viewer/tools/section.h"
+#include "viewer/measure/file.h"
+#include "viewer/picking/nearest.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 namespace {

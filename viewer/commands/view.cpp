@@ -16,7 +16,7 @@
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
-#include "viewer/tools/measure_file.h"
+#include "viewer/measure/file.h"
 #include "viewer/view_session.h"
 
 namespace lucarne::viewer {

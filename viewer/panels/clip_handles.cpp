@@ -5,7 +5,7 @@
 
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
-#include "viewer/tools/pick.h"
+#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -2,7 +2,7 @@
 #include <imgui.h>
 
 #include "viewer/panels/panels.h"
-#include "viewer/tools/overlay_layout.h"
+#include "viewer/measure/marks_layout.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -10,7 +10,7 @@
 #include "viewer/lights/light_handles.h"
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
-#include "viewer/tools/pick.h"
+#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 namespace {

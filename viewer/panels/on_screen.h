@@ -5,7 +5,7 @@
 #include <imgui.h>
 
 #include "viewer/camera.h"
-#include "viewer/tools/pick.h"
+#include "viewer/picking/pick.h"
 #include "viewer/window.h"
 
 namespace lucarne::viewer {

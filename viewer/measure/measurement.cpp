@@ -1,4 +1,4 @@
-#include "viewer/tools/measurement.h"
+#include "viewer/measure/measurement.h"
 
 #include <array>
 #include <cmath>

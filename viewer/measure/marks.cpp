@@ -1,11 +1,11 @@
-#include "viewer/tools/overlay.h"
+#include "viewer/measure/marks.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "viewer/tools/overlay_layout.h"
+#include "viewer/measure/marks_layout.h"
 
 namespace lucarne::viewer {
 namespace {

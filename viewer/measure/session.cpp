@@ -1,4 +1,4 @@
-#include "viewer/measure_session.h"
+#include "viewer/measure/session.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,4 +1,4 @@
-#include "viewer/tools/section.h"
+#include "viewer/measure/section.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/core/error.h"
-#include "viewer/tools/measurement.h"
+#include "viewer/measure/measurement.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/tools/node_cache.h"
+#include "viewer/picking/node_cache.h"
 
 namespace lucarne::viewer {
 

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 
 #include "viewer/frame/picture_worker.h"
-#include "viewer/tools/measurement.h"
+#include "viewer/measure/measurement.h"
 
 namespace lucarne::viewer {
 

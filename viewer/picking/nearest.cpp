@@ -1,4 +1,4 @@
-#include "viewer/tools/nearest.h"
+#include "viewer/picking/nearest.h"
 
 #include <queue>
 #include <tuple>

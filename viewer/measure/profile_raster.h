@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "viewer/tools/section.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 

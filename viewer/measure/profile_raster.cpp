@@ -1,4 +1,4 @@
-#include "viewer/tools/profile_raster.h"
+#include "viewer/measure/profile_raster.h"
 
 #include <algorithm>
 #include <cmath>

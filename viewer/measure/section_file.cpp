@@ -7,8 +7,8 @@
 #include "io/files/file.h"
 #include "octree/tree/stored_names.h"
 #include "viewer/overlay/axis_marks.h"
-#include "viewer/tools/measure_file.h"
-#include "viewer/tools/section.h"
+#include "viewer/measure/file.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/tools/pick.h"
+#include "viewer/picking/pick.h"
 
 #include <algorithm>
 #include <cmath>

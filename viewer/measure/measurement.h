@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/tools/exact_point.h"
+#include "viewer/picking/exact_point.h"
 #include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {

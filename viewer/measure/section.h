@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gi/surfels/surfel_pool.h"
-#include "viewer/tools/measurement.h"
-#include "viewer/tools/node_cache.h"
+#include "viewer/measure/measurement.h"
+#include "viewer/picking/node_cache.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/tools/measure_list.h"
+#include "viewer/measure/list.h"
 
 #include <algorithm>
 #include <utility>

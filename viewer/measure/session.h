@@ -1,7 +1,7 @@
 #pragma once
 
-#include "viewer/panels/section_panel.h"
-#include "viewer/tools/measure_worker.h"
+#include "viewer/measure/section_panel.h"
+#include "viewer/measure/worker.h"
 #include "viewer/view_model.h"
 
 namespace lucarne::viewer {

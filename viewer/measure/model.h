@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "viewer/tools/measure_list.h"
-#include "viewer/tools/section.h"
+#include "viewer/measure/list.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/tools/measure_file.h"
+#include "viewer/measure/file.h"
 
 #include <cmath>
 

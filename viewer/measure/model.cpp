@@ -1,11 +1,11 @@
-#include "viewer/tools/measure_model.h"
+#include "viewer/measure/model.h"
 
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "viewer/tools/measure_file.h"
+#include "viewer/measure/file.h"
 
 namespace lucarne::viewer {
 

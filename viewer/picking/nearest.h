@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "viewer/tools/exact_point.h"
-#include "viewer/tools/node_cache.h"
+#include "viewer/picking/exact_point.h"
+#include "viewer/picking/node_cache.h"
 
 namespace lucarne::viewer {
 

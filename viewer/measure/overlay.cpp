@@ -5,7 +5,7 @@
 
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
-#include "viewer/tools/overlay.h"
+#include "viewer/measure/marks.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/tools/measurement.h"
+#include "viewer/measure/measurement.h"
 
 namespace lucarne::viewer {
 

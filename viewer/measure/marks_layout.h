@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "viewer/tools/overlay.h"
-#include "viewer/tools/pick.h"
+#include "viewer/measure/marks.h"
+#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/tools/measure_worker.h"
+#include "viewer/measure/worker.h"
 
 #include <utility>
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/core/job_queue.h"
-#include "viewer/tools/pick.h"
-#include "viewer/tools/section.h"
+#include "viewer/picking/pick.h"
+#include "viewer/measure/section.h"
 
 namespace lucarne::viewer {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "viewer/tools/profile_raster.h"
+#include "viewer/measure/profile_raster.h"
 #include "viewer/view_model.h"
 
 struct ImVec2;

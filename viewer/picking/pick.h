@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 
 #include "viewer/frame/picture_worker.h"
-#include "viewer/tools/exact_point.h"
-#include "viewer/tools/node_cache.h"
+#include "viewer/picking/exact_point.h"
+#include "viewer/picking/node_cache.h"
 
 namespace lucarne::viewer {
 

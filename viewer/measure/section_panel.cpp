@@ -1,5 +1,5 @@
 // The selected section as a drawing: along the line to the right, height upward, both to the same scale.
-#include "viewer/panels/section_panel.h"
+#include "viewer/measure/section_panel.h"
 
 #include <algorithm>
 #include <cmath>
