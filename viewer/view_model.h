@@ -7,7 +7,7 @@
 #include "io/input/controller.h"
 #include "viewer/camera.h"
 #include "viewer/health.h"
-#include "viewer/lights/light_tools.h"
+#include "viewer/light/tools.h"
 #include "viewer/navigation.h"
 #include "viewer/overlay/look_tools.h"
 #include "viewer/frame/picture_worker.h"

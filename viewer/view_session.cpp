@@ -12,7 +12,7 @@
 #include "io/core/process.h"
 #include "viewer/actions.h"
 #include "io/files/free_name.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 #include "viewer/panels/panels.h"
 #include "viewer/frame/rgba.h"
 #include "viewer/shell/unsaved.h"

@@ -7,7 +7,7 @@
 
 #include "io/core/interrupt.h"
 #include "viewer/frame/cost_model.h"
-#include "viewer/lights/sky_loader.h"
+#include "viewer/light/sky_loader.h"
 #include "viewer/measure/session.h"
 #include "viewer/panels/legend_handles.h"
 #include "viewer/frame/picture_worker.h"

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/program.h"
-#include "viewer/lights/light_edits.h"
-#include "viewer/lights/light_handles.h"
+#include "viewer/light/edits.h"
+#include "viewer/light/handles.h"
 #include "viewer/overlay/figure_scale.h"
 
 namespace lucarne::viewer {

@@ -7,7 +7,7 @@
 
 #include "gi/scene/render_settings_file.h"
 #include "tests/viewer/measuring_window.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "io/files/file.h"
 #include "tests/viewer/program.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 #include "viewer/measure/file.h"
 
 namespace lucarne::viewer {

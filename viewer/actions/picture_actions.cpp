@@ -7,7 +7,7 @@
 
 #include "gi/registry.h"
 #include "viewer/actions.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {

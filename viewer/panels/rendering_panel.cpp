@@ -5,7 +5,7 @@
 
 #include "gi/post/false_colour.h"
 #include "gi/registry.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {

@@ -6,7 +6,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/files/free_name.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include "gi/scene/photometry.h"
 #include "gi/shared/surfel_code.h"
 #include "viewer/actions.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "viewer/actions.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {

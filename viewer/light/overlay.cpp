@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/lights/light_edits.h"
-#include "viewer/lights/light_handles.h"
+#include "viewer/light/edits.h"
+#include "viewer/light/handles.h"
 #include "viewer/panels/on_screen.h"
 #include "viewer/panels/panels.h"
 #include "viewer/picking/pick.h"

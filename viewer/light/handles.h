@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "viewer/lights/light_tools.h"
+#include "viewer/light/tools.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/lights/sky_loader.h"
+#include "viewer/light/sky_loader.h"
 
 #include <utility>
 

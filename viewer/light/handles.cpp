@@ -1,4 +1,4 @@
-#include "viewer/lights/light_handles.h"
+#include "viewer/light/handles.h"
 
 #include <cmath>
 

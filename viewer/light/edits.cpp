@@ -1,4 +1,4 @@
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 
 #include <algorithm>
 #include <cmath>

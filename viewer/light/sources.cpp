@@ -9,7 +9,7 @@
 #include <imgui_stdlib.h>
 
 #include "gi/scene/colour_map.h"
-#include "viewer/lights/light_edits.h"
+#include "viewer/light/edits.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {
