@@ -9,7 +9,7 @@
 #include "viewer/health.h"
 #include "viewer/light/tools.h"
 #include "viewer/navigation.h"
-#include "viewer/overlay/look_tools.h"
+#include "viewer/style/look_tools.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/presets.h"
 #include "viewer/shell/shell.h"

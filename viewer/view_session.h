@@ -9,7 +9,7 @@
 #include "viewer/frame/cost_model.h"
 #include "viewer/light/sky_loader.h"
 #include "viewer/measure/session.h"
-#include "viewer/panels/legend_handles.h"
+#include "viewer/style/legend_handles.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/quality.h"
 #include "viewer/shell/controller_input.h"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "viewer/actions.h"
-#include "viewer/look_edits.h"
+#include "viewer/style/look_edits.h"
 #include "viewer/overlay/overlay.h"
 
 namespace lucarne::viewer {

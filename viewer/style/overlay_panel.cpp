@@ -6,7 +6,7 @@
 
 #include "viewer/overlay/figure_scale.h"
 #include "viewer/panels/on_screen.h"
-#include "viewer/panels/overlay_view.h"
+#include "viewer/style/overlay_view.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <imgui.h>
 
-#include "viewer/look_edits.h"
+#include "viewer/style/look_edits.h"
 #include "viewer/panels/panels.h"
 
 namespace lucarne::viewer {

@@ -1,4 +1,4 @@
-#include "viewer/overlay/look_tools.h"
+#include "viewer/style/look_tools.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/look_edits.h"
+#include "viewer/style/look_edits.h"
 
 #include <set>
 

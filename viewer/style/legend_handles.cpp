@@ -1,4 +1,4 @@
-#include "viewer/panels/legend_handles.h"
+#include "viewer/style/legend_handles.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/panels/on_screen.h"
-#include "viewer/panels/overlay_view.h"
+#include "viewer/style/overlay_view.h"
 
 namespace lucarne::viewer {
 namespace {
