@@ -14,7 +14,7 @@
 #include "viewer/frame/quality.h"
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 #include "viewer/show/show_session.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"

@@ -8,10 +8,10 @@
 #include "tests/viewer/program.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/shell/bookmarks.h"
-#include "viewer/shell/file_browser.h"
+#include "viewer/scans/file_browser.h"
 #include "viewer/shell/floor_finder.h"
-#include "viewer/shell/native_dialog.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/native_dialog.h"
+#include "viewer/scans/scan_set.h"
 #include "viewer/shell/settings.h"
 #include "viewer/shell/side_bar.h"
 

@@ -4,7 +4,7 @@
 #include <imgui.h>
 
 #include "viewer/panels/panels.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 #include "viewer/shell/unsaved.h"
 
 namespace lucarne::viewer {

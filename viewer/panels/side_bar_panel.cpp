@@ -7,7 +7,7 @@
 #include <imgui.h>
 
 #include "viewer/panels/panels.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {
 namespace {

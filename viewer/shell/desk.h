@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <span>
 
-#include "viewer/shell/file_browser.h"
+#include "viewer/scans/file_browser.h"
 #include "viewer/shell/floor_finder.h"
 #include "io/core/job_queue.h"
-#include "viewer/shell/native_dialog.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/native_dialog.h"
+#include "viewer/scans/scan_set.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
 

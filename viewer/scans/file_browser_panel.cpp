@@ -2,7 +2,7 @@
 
 #include "io/core/options.h"
 #include "viewer/panels/panels.h"
-#include "viewer/shell/file_browser.h"
+#include "viewer/scans/file_browser.h"
 
 namespace lucarne::viewer {
 namespace {

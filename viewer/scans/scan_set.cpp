@@ -1,4 +1,4 @@
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 
 #include <algorithm>
 #include <filesystem>

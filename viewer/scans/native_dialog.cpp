@@ -1,4 +1,4 @@
-#include "viewer/shell/native_dialog.h"
+#include "viewer/scans/native_dialog.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include "viewer/actions.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "io/core/options.h"
 #include "viewer/panels/panels.h"
-#include "viewer/shell/scan_set.h"
+#include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/shell/file_browser.h"
+#include "viewer/scans/file_browser.h"
 
 #include <algorithm>
 #include <system_error>
