@@ -13,7 +13,7 @@
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/presets.h"
 #include "viewer/shell/shell.h"
-#include "viewer/show/show_model.h"
+#include "viewer/publish/model.h"
 #include "viewer/measure/model.h"
 
 namespace lucarne::viewer {

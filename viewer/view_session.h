@@ -15,7 +15,7 @@
 #include "viewer/shell/controller_input.h"
 #include "viewer/shell/desk.h"
 #include "viewer/scans/scan_set.h"
-#include "viewer/show/show_session.h"
+#include "viewer/publish/session.h"
 #include "viewer/view_model.h"
 #include "viewer/window.h"
 

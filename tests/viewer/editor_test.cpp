@@ -1,4 +1,4 @@
-#include "viewer/flythrough/editor.h"
+#include "viewer/publish/editor.h"
 
 #include <cmath>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/program.h"
-#include "viewer/show/show_model.h"
+#include "viewer/publish/model.h"
 
 namespace lucarne::viewer {
 namespace {

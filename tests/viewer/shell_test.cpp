@@ -7,7 +7,7 @@
 
 #include "tests/viewer/program.h"
 #include "viewer/frame/picture_worker.h"
-#include "viewer/shell/bookmarks.h"
+#include "viewer/bookmarks/bookmarks.h"
 #include "viewer/scans/file_browser.h"
 #include "viewer/shell/floor_finder.h"
 #include "viewer/scans/native_dialog.h"

@@ -24,7 +24,7 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
-#include "viewer/show/finished_picture.h"
+#include "viewer/publish/finished_picture.h"
 
 namespace lucarne::viewer {
 namespace {

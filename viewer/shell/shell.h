@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/shell/bookmarks.h"
+#include "viewer/bookmarks/bookmarks.h"
 #include "viewer/shell/settings.h"
 
 namespace lucarne::viewer {

@@ -1,4 +1,4 @@
-#include "viewer/show/show_model.h"
+#include "viewer/publish/model.h"
 
 #include <algorithm>
 #include <utility>

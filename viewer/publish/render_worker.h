@@ -9,7 +9,7 @@
 
 #include "viewer/flythrough/path.h"
 #include "viewer/frame/picture_worker.h"
-#include "viewer/show/finished_picture.h"
+#include "viewer/publish/finished_picture.h"
 
 namespace lucarne::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/show/finished_picture.h"
+#include "viewer/publish/finished_picture.h"
 
 #include <algorithm>
 

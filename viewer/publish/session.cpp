@@ -1,4 +1,4 @@
-#include "viewer/show/show_session.h"
+#include "viewer/publish/session.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/show/show_model.h"
+#include "viewer/publish/model.h"
 
 namespace lucarne::viewer {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "viewer/show/render_worker.h"
+#include "viewer/publish/render_worker.h"
 #include "viewer/view_model.h"
 
 namespace lucarne::viewer {

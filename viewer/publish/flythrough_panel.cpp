@@ -8,7 +8,7 @@
 #include <imgui_stdlib.h>
 
 #include "viewer/panels/panels.h"
-#include "viewer/panels/render_progress.h"
+#include "viewer/publish/render_progress.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/shell/bookmarks.h"
+#include "viewer/bookmarks/bookmarks.h"
 
 #include <algorithm>
 #include <numbers>

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "viewer/flythrough/editor.h"
-#include "viewer/show/render_worker.h"
+#include "viewer/publish/editor.h"
+#include "viewer/publish/render_worker.h"
 
 namespace lucarne::viewer {
 

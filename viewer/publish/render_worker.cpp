@@ -1,4 +1,4 @@
-#include "viewer/show/render_worker.h"
+#include "viewer/publish/render_worker.h"
 
 #include <atomic>
 #include <mutex>

@@ -1,4 +1,4 @@
-#include "viewer/flythrough/editor.h"
+#include "viewer/publish/editor.h"
 
 #include <algorithm>
 #include <utility>
