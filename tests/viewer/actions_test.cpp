@@ -1,4 +1,4 @@
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,4 +1,4 @@
-#include "viewer/drawn_frame.h"
+#include "viewer/window/drawn_frame.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

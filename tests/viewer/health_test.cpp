@@ -1,4 +1,4 @@
-#include "viewer/health.h"
+#include "viewer/window/health.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "tests/octree/plane_source.h"
 #include "tests/viewer/window_fixture.h"
-#include "viewer/shell/floor_finder.h"
+#include "viewer/camera/floor_finder.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/navigation.h"
+#include "viewer/camera/navigation.h"
 
 #include <cmath>
 

@@ -9,11 +9,11 @@
 #include "viewer/frame/picture_worker.h"
 #include "viewer/bookmarks/bookmarks.h"
 #include "viewer/scans/file_browser.h"
-#include "viewer/shell/floor_finder.h"
+#include "viewer/camera/floor_finder.h"
 #include "viewer/scans/native_dialog.h"
 #include "viewer/scans/scan_set.h"
-#include "viewer/shell/settings.h"
-#include "viewer/shell/side_bar.h"
+#include "viewer/window/settings.h"
+#include "viewer/window/side_bar.h"
 
 namespace lucarne::viewer {
 namespace {

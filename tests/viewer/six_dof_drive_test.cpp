@@ -1,4 +1,4 @@
-#include "viewer/six_dof_drive.h"
+#include "viewer/camera/six_dof_drive.h"
 
 #include <numbers>
 

@@ -1,5 +1,5 @@
 // Which work of the user is in no file, and how it gets into one.
-#include "viewer/shell/unsaved.h"
+#include "viewer/window/unsaved.h"
 
 #include <gmock/gmock.h>
 

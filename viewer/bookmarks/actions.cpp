@@ -5,7 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {

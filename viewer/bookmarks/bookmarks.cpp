@@ -11,7 +11,7 @@
 #include "io/files/json.h"
 #include "io/core/random.h"
 #include "viewer/frame/picture_worker.h"
-#include "viewer/shell/settings.h"
+#include "viewer/window/settings.h"
 
 namespace lucarne::viewer {
 namespace {

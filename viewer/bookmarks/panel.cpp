@@ -1,6 +1,6 @@
 #include <imgui.h>
 
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 

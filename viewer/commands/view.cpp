@@ -17,7 +17,7 @@
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
-#include "viewer/view_session.h"
+#include "viewer/window/view_session.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
 
 namespace lucarne::viewer {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 

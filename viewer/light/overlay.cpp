@@ -8,8 +8,8 @@
 
 #include "viewer/light/edits.h"
 #include "viewer/light/handles.h"
-#include "viewer/panels/on_screen.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/on_screen.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {

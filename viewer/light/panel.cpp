@@ -6,9 +6,9 @@
 
 #include "gi/scene/photometry.h"
 #include "gi/shared/surfel_code.h"
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

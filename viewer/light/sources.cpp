@@ -10,7 +10,7 @@
 
 #include "gi/scene/colour_map.h"
 #include "viewer/light/edits.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -3,7 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <imgui.h>
 
-#include "viewer/panels/on_screen.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/on_screen.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/measure/marks.h"
 
 namespace lucarne::viewer {

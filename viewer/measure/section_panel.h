@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "viewer/measure/profile_raster.h"
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 struct ImVec2;
 

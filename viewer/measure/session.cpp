@@ -5,8 +5,8 @@
 
 #include "viewer/overlay/axis_marks.h"
 #include "io/files/free_name.h"
-#include "viewer/panels/on_screen.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/on_screen.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

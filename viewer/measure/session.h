@@ -2,7 +2,7 @@
 
 #include "viewer/measure/section_panel.h"
 #include "viewer/measure/worker.h"
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 

@@ -1,7 +1,7 @@
 // A flythrough's path over the picture.
 #include <imgui.h>
 
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/measure/marks_layout.h"
 
 namespace lucarne::viewer {

@@ -7,7 +7,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/publish/render_progress.h"
 
 namespace lucarne::viewer {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
 
 namespace lucarne::viewer {

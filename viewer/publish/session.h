@@ -1,7 +1,7 @@
 #pragma once
 
 #include "viewer/publish/render_worker.h"
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 

@@ -4,7 +4,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "viewer/actions.h"
+#include "viewer/window/actions.h"
 #include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {

@@ -1,7 +1,7 @@
 #include <imgui.h>
 
 #include "io/core/options.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/scans/file_browser.h"
 
 namespace lucarne::viewer {

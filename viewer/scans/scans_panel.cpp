@@ -2,7 +2,7 @@
 #include <imgui.h>
 
 #include "io/core/options.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/panels/on_screen.h"
+#include "viewer/window/panels/on_screen.h"
 #include "viewer/style/overlay_view.h"
 
 namespace lucarne::viewer {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "viewer/overlay/overlay.h"
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/view_model.h"
+#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 

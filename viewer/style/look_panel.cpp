@@ -6,7 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/style/look_edits.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -5,9 +5,9 @@
 #include <imgui.h>
 
 #include "viewer/overlay/figure_scale.h"
-#include "viewer/panels/on_screen.h"
+#include "viewer/window/panels/on_screen.h"
 #include "viewer/style/overlay_view.h"
-#include "viewer/panels/panels.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

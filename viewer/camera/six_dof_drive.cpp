@@ -1,0 +1,35 @@
+#include "viewer/camera/six_dof_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kTurn = std::numbers::pi / 2;  ///< radians a second
+constexpr double kPan = 1;                      ///< heights of the picture a second
+constexpr double kZoom = 2;                     ///< times the distance a second
+constexpr double kLongestStep = 0.25;  ///< s: a slow frame does not throw the camera out of the house
+
+}  // namespace
+
+bool drive(const io::SixDofState& cap, SixDofHold hold, double speed, double seconds, CameraRig& rig) {
+    const double step = std::clamp(seconds, 0.0, kLongestStep);
+    const glm::dvec3 push = cap.push * step;
+    const double pitch = cap.turn.x * kTurn * step, yaw = cap.turn.y * kTurn * step;
+    if (push == glm::dvec3(0.0) && pitch == 0 && yaw == 0) return false;
+    if (hold == SixDofHold::camera) {
+        rig.look(yaw, pitch);
+        rig.fly(push * speed);
+    } else {
+        rig.orbit(-yaw, -pitch);
+        rig.pan(glm::dvec2(push.x, push.y) * kPan);
+        rig.zoom(std::pow(kZoom, push.z), rig.pivot());
+    }
+    return true;
+}
+
+}  // namespace lucarne::viewer

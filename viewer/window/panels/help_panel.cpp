@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <array>
+
+#include <imgui.h>
+
+#include "viewer/window/actions.h"
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+void row(const char* key, const char* what) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(key);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(what);
+}
+
+/// In lines that the window holds.
+void warning(const std::string& text, float width) {
+    ImGui::PushTextWrapPos(width - 4 * ImGui::GetFontSize());
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.8f, 0.4f, 1.0f));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
+}
+
+}  // namespace
+
+void draw_help(ViewModel& model) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowBgAlpha(0.95f);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(size.x, size.y - 4 * ImGui::GetFontSize()));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
+    if (ImGui::Begin("Keys and mouse", &model.show_help, flags) &&
+        ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const Gesture& gesture : gestures()) row(gesture.gesture, gesture.what);
+        for (const Action& action : actions()) row(key_text(action.chord).c_str(), action.name);
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void draw_message(const ViewModel& model, bool busy) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const auto left = static_cast<float>(model.side_bar().pixels(ImGui::GetFontSize(), size.x));
+    ImGui::SetNextWindowPos(ImVec2((left + size.x) / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
+    ImGui::SetNextWindowBgAlpha(0.6f);
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                   ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                                   ImGuiWindowFlags_NoNav;
+    const Health& health = model.health;
+    const std::array problems = {&health.device, &health.shaders, &health.nodes};
+    const bool healthy = std::ranges::all_of(problems, [](const auto* problem) { return problem->empty(); });
+    if (model.message.empty() && !busy && healthy) return;
+    if (ImGui::Begin("##message", nullptr, flags)) {
+        for (const std::string* problem : problems)
+            if (!problem->empty()) warning(*problem, size.x - left);
+        if (!model.message.empty() || busy)
+            ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
+    }
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include <imgui.h>
+
+#include "viewer/camera/camera.h"
+#include "viewer/picking/pick.h"
+#include "viewer/window/window.h"
+
+namespace lucarne::viewer {
+
+/// Where a world point stands in the window; none where it is behind the camera.
+inline std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
+    const auto seen = project(picture, world);
+    if (!seen) return std::nullopt;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    return ImVec2(static_cast<float>(seen->pixel.x / picture.size.width) * size.x,
+                  static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
+}
+
+/// The ray through the cursor.
+inline CameraRig::Ray cursor_ray(const CameraRig& rig) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return rig.ray({2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
+                   static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
+}
+
+/// A length for what is drawn over the picture, of `dots` on a screen of scale 1: it grows with the text.
+inline float scaled(float dots) {
+    return dots * ImGui::GetFontSize() / kTextPixels;
+}
+
+}  // namespace lucarne::viewer

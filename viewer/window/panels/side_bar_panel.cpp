@@ -1,0 +1,99 @@
+// The one bar that all panels stand in, so that none covers another and each can be reached in a small
+// window.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <imgui.h>
+
+#include "viewer/window/panels/panels.h"
+#include "viewer/scans/scan_set.h"
+
+namespace lucarne::viewer {
+namespace {
+
+struct SectionEntry {
+    const char* title;
+    void (*draw)(ViewModel& model);
+    bool needs_view;
+};
+/// In the order of `BarSection`.
+constexpr std::array<SectionEntry, kSections> kEntries = {{
+    {"Scans", draw_scans_panel, false},
+    {"Rendering", draw_rendering_panel, true},
+    {"Look", draw_look_panel, true},
+    {"Light", draw_light_panel, true},
+    {"Measure", draw_measure_panel, true},
+    {"Bookmarks", draw_bookmarks_panel, true},
+    {"Flythrough", draw_flythrough_panel, true},
+    {"Save a picture", draw_picture_panel, true},
+    {"Statistics", draw_statistics_panel, true},
+    {"6-DoF controller", draw_controller_panel, false},
+}};
+
+/// With nothing open the start page is all there is, unless something was asked for that needs no scan.
+bool is_there(const ViewModel& model, BarSection section, bool has_view) {
+    if (has_view) return true;
+    if (section == BarSection::scans) return model.shell.scans && !model.shell.scans->rows().empty();
+    return !kEntries[static_cast<size_t>(section)].needs_view && model.side_bar().is_open(section);
+}
+
+void draw_section(ViewModel& model, BarSection section) {
+    SideBar& bar = model.side_bar();
+    const SectionEntry& entry = kEntries[static_cast<size_t>(section)];
+    bool& open = bar.open[static_cast<size_t>(section)];
+    if (bar.sought == section) {
+        ImGui::SetScrollHereY(0);
+        bar.sought.reset();
+    }
+    ImGui::SetNextItemOpen(open);
+    open = ImGui::CollapsingHeader(entry.title);
+    if (!open) return;
+    ImGui::PushID(entry.title);
+    entry.draw(model);
+    ImGui::PopID();
+    ImGui::Spacing();
+}
+
+}  // namespace
+
+bool fold(const char* label) {
+    return ImGui::TreeNodeEx(label, ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth);
+}
+
+void draw_side_bar(ViewModel& model, bool has_view) {
+    SideBar& bar = model.side_bar();
+    bool any = false;
+    for (size_t i = 0; i < kSections; ++i) any = any || is_there(model, static_cast<BarSection>(i), has_view);
+    if (!bar.shown || !any) return;
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const float font = ImGui::GetFontSize(), top = ImGui::GetFrameHeight(), height = window.y - top;
+    const auto width = static_cast<float>(bar.pixels(font, window.x));
+    ImGui::SetNextWindowPos(ImVec2(0, top));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    // Its right edge can be dragged, its height cannot.
+    const auto widest = static_cast<float>(SideBar{.width = SideBar::kMost}.pixels(font, window.x));
+    const float narrowest = std::min(static_cast<float>(SideBar::kLeast) * font, widest);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(narrowest, height), ImVec2(widest, height));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                             ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                             ImGuiWindowFlags_AlwaysVerticalScrollbar;
+    // Tab goes from one field to the next only from within one: it is an action's key.
+    if (!ImGui::IsAnyItemActive()) flags |= ImGuiWindowFlags_NoNavInputs;
+    if (ImGui::Begin("##side bar", nullptr, flags)) {
+        const float dragged = ImGui::GetWindowWidth();
+        // ImGui floors sizes: only a whole pixel more or less, and only by the mouse, is the user's will.
+        if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && std::abs(dragged - width) >= 1)
+            bar.width = std::clamp(static_cast<double>(dragged / font), SideBar::kLeast, SideBar::kMost);
+        ImGui::PushItemWidth(-9 * font);  // leaves room for labels
+        for (size_t i = 0; i < kSections; ++i)
+            if (is_there(model, static_cast<BarSection>(i), has_view))
+                draw_section(model, static_cast<BarSection>(i));
+        ImGui::PopItemWidth();
+    }
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,52 @@
+#include <imgui.h>
+
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr size_t kMostShown = 8;  ///< recent files
+
+void recent_files(Shell& shell) {
+    if (shell.settings.recent.empty()) return;
+    ImGui::Spacing();
+    ImGui::TextDisabled("Opened before");
+    for (size_t i = 0; i < std::min(shell.settings.recent.size(), kMostShown); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Selectable(shell.settings.recent[i].c_str())) shell.to_open = {shell.settings.recent[i]};
+        ImGui::PopID();
+    }
+}
+
+}  // namespace
+
+void draw_start_page(ViewModel& model) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const float font = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(std::min(size.x - 16, font * 40), 0), ImGuiCond_Always);
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus;
+    if (ImGui::Begin("##start", nullptr, flags)) {
+        ImGui::TextUnformatted("Lucarne lets light into scans.");
+        ImGui::Spacing();
+        ImGui::TextWrapped(
+            "Drop scan files or folders here, or open them. They are shown at once and converted in the "
+            "background; the cache is kept beside the scan, so the next time is faster.");
+        ImGui::Spacing();
+        if (ImGui::Button("Open scans...")) model.shell.want_file = true;
+        ImGui::SameLine();
+        ImGui::TextDisabled("Ctrl+O");
+        ImGui::TextWrapped("Lucarne's own caches (.luc), LAS, LAZ, COPC, E57, PLY, PCD, PTX, PTS, OBJ and text.");
+        recent_files(model.shell);
+        ImGui::Spacing();
+        ImGui::Separator();
+        ImGui::BulletText("Left drag turns around what is under the cursor, right drag shifts,");
+        ImGui::BulletText("scrolling goes there; double-click chooses the point to turn around.");
+        ImGui::BulletText("L puts the light where you stand; Shift and drag aims it.");
+        ImGui::BulletText("F1 lists every key; each also stands in its menu.");
+    }
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer

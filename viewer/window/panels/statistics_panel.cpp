@@ -1,0 +1,66 @@
+#include <imgui.h>
+
+#include "io/core/options.h"
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+void points_row(const char* name, uint64_t points) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    ImGui::TableNextColumn();
+    ImGui::Text("%.3f M", static_cast<double>(points) / 1e6);
+}
+
+void passes_table(const FrameStats& stats) {
+    if (!ImGui::BeginTable("passes", 2)) return;
+    for (const auto& pass : stats.passes) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(pass.name.c_str());
+        ImGui::TableNextColumn();
+        ImGui::Text("%.1f ms", pass.seconds * 1e3);
+    }
+    points_row("view points", stats.view_points);
+    points_row("light-view points", stats.light_view_points);
+    points_row("light points", stats.light_points);
+    for (const auto& [name, value] : stats.engine) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(name.c_str());
+        ImGui::TableNextColumn();
+        ImGui::Text("%.6g", value);
+    }
+    ImGui::EndTable();
+}
+
+}  // namespace
+
+void draw_statistics_panel(ViewModel& model) {
+    const FrameTimes& frames = model.health.frames;
+    ImGui::Text("window: %.1f ms a frame, 95 %% within %.1f ms", frames.quantile(0.5) * 1e3,
+                frames.quantile(0.95) * 1e3);
+    if (model.picture) {
+        const Picture& picture = *model.picture;
+        const FrameStats& stats = picture.stats;
+        ImGui::Text("%.1f ms a picture, %u x %u%s", stats.seconds * 1e3, picture.size.width,
+                    picture.size.height, picture.moving ? ", moving" : "");
+        ImGui::Text("cuts %.1f %% complete, %llu nodes to come", stats.complete() * 100,
+                    static_cast<unsigned long long>(stats.nodes_pending));
+        if (stats.nodes_lost > 0)
+            ImGui::Text("%llu nodes left out: they cannot be read",
+                        static_cast<unsigned long long>(stats.nodes_lost));
+        ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
+        ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
+        ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
+                    bytes_text(model.caps.memory).c_str());
+        ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
+                    bytes_text(model.caps.device_memory).c_str());
+        ImGui::Text("the program holds %s", bytes_text(stats.memory.resident).c_str());
+        passes_table(stats);
+    } else {
+        ImGui::TextUnformatted("The first picture is on its way.");
+    }
+    ImGui::TextDisabled("%s", model.device.renderer.c_str());
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,67 @@
+#include "viewer/window/unsaved.h"
+
+#include <system_error>
+#include <utility>
+
+#include "io/core/counted.h"
+#include "io/core/log.h"
+#include "io/files/free_name.h"
+#include "viewer/light/edits.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// `file`, unless there is another than `own` under that name. Without a question: in the window's own folder, since
+/// that of a file that was opened may be anybody's.
+std::filesystem::path place(const ViewModel& model, const std::filesystem::path& file, const std::filesystem::path& own,
+                            SaveTo to) {
+    if (to == SaveTo::own_files && file == own) return file;
+    const auto wanted = to == SaveTo::own_files ? file : model.pictures / file.filename();
+    std::error_code ignored;
+    if (!std::filesystem::exists(wanted, ignored)) return wanted;
+    const std::string extension = wanted.extension().string();
+    return free_name(wanted.parent_path(), wanted.stem().string(), {extension}).string() + extension;
+}
+
+std::string measurements_text(const MeasureModel& measure) {
+    return counted(measure.list.all().size() + (measure.can_finish() ? 1 : 0), "measurements");
+}
+
+}  // namespace
+
+std::vector<Unsaved> unsaved(const ViewModel& model, SaveTo to) {
+    std::vector<Unsaved> all;
+    if (const MeasureModel& measure = model.measure; measure.unsaved()) {
+        const auto file = place(model, model.pictures / measure.file, measure.own_file, to);
+        all.push_back({measurements_text(measure), file, [file](ViewModel& of) {
+                           of.measure.finish();
+                           return of.measure.save(file);
+                       }});
+    }
+    if (const ShowModel& show = model.show; show.editor.unsaved()) {
+        const auto file = place(model, model.pictures / show.path_file, show.own_path, to);
+        const size_t keys = show.editor.path().keys.size();
+        all.push_back({"a flythrough of " + counted(keys, "key frames"), file,
+                       [file](ViewModel& of) { return of.show.save_path(file); }});
+    }
+    if (const LightTools& tools = model.light_tools; tools.saved.differs(model.scene, model.scene_version)) {
+        const auto file = place(model, scene_place(model), tools.scene_file, to);
+        all.push_back({"the scene: lights, look or clips were changed", file,
+                       [file](ViewModel& of) { return save_scene_as(of, file); }});
+    }
+    return all;
+}
+
+Result<void> save_unsaved(ViewModel& model, SaveTo to) {
+    Result<void> first;
+    for (const Unsaved& one : unsaved(model, to)) {
+        auto saved = one.save(model);
+        std::error_code unknown;
+        const auto whole = std::filesystem::absolute(one.file, unknown);
+        if (saved) log::info("saved {}", (unknown ? one.file : whole).lexically_normal().string());
+        if (!saved && first) first = std::move(saved);
+    }
+    return first;
+}
+
+}  // namespace lucarne::viewer

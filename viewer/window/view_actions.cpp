@@ -1,0 +1,93 @@
+#include <array>
+#include <numbers>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "viewer/window/actions.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr double kRight = std::numbers::pi / 2;  ///< angle
+
+void go_home(ViewModel& model) {
+    model.go_to(model.home);
+}
+void fit(ViewModel& model) {
+    model.rig.fit(model.box);
+}
+bool has_picture(const ViewModel& model) {
+    return model.picture != nullptr;
+}
+
+/// From outside, at all that is open. North (y) is up from above.
+template <int kYaw, int kPitch>
+void look(ViewModel& model) {
+    model.rig.look_along(kYaw * kRight, kPitch * kRight);
+    model.rig.fit(model.box);
+}
+
+void toggle_projection(ViewModel& model) {
+    model.rig.set_orthographic(!model.rig.orthographic());
+}
+bool orthographic(const ViewModel& model) {
+    return model.rig.orthographic();
+}
+
+template <NavigationMode kMode>
+void navigate(ViewModel& model) {
+    model.navigation.set_mode(kMode);
+    if (!model.navigation.turns_scene()) model.rig.set_orthographic(false);  // nobody moves in parallels
+    switch (kMode) {
+        case NavigationMode::orbit:
+            model.message = "drags turn around the point under the cursor";
+            break;
+        case NavigationMode::turntable:
+            model.message = "drags turn around the point of the last double-click";
+            break;
+        case NavigationMode::fly:
+            model.message = "flying: W A S D, E and Q for up and down";
+            break;
+        case NavigationMode::walk:
+            model.message = "walking: W A S D, at eye height above the floor";
+            break;
+    }
+}
+template <NavigationMode kMode>
+bool navigates(const ViewModel& model) {
+    return model.navigation.mode() == kMode;
+}
+void toggle_gravity(ViewModel& model) {
+    model.navigation.set_gravity(!model.navigation.gravity());
+}
+bool gravity(const ViewModel& model) {
+    return model.navigation.gravity();
+}
+
+}  // namespace
+
+std::span<const Action> view_actions() {
+    using enum NavigationMode;
+    static constexpr const char *kMenu = "View", *kSides = "View/From a side", *kModes = "View/Navigation";
+    static constexpr std::array kActions = {
+        Action{{GLFW_KEY_HOME}, kMenu, "Back to the first view", go_home, has_picture},
+        Action{{GLFW_KEY_0}, kMenu, "Fit all", fit, has_picture},
+        Action{{GLFW_KEY_9}, kMenu, "Orthographic", toggle_projection, nullptr, orthographic},
+        Action{{GLFW_KEY_1}, kSides, "Front", look<1, 0>, has_picture},
+        Action{{GLFW_KEY_2}, kSides, "Back", look<-1, 0>, has_picture},
+        Action{{GLFW_KEY_3}, kSides, "Left", look<0, 0>, has_picture},
+        Action{{GLFW_KEY_4}, kSides, "Right", look<2, 0>, has_picture},
+        Action{{GLFW_KEY_5}, kSides, "Top", look<1, -1>, has_picture},
+        Action{{GLFW_KEY_6}, kSides, "Bottom", look<1, 1>, has_picture},
+        Action{{GLFW_KEY_O}, kModes, "Orbit", navigate<orbit>, nullptr, navigates<orbit>},
+        Action{{GLFW_KEY_T}, kModes, "Turntable", navigate<turntable>, nullptr, navigates<turntable>},
+        Action{{GLFW_KEY_F}, kModes, "Fly", navigate<fly>, nullptr, navigates<fly>},
+        Action{{GLFW_KEY_H}, kModes, "Walk", navigate<walk>, nullptr, navigates<walk>},
+        Action{{GLFW_KEY_J}, kModes, "Gravity while walking", toggle_gravity, nullptr, gravity},
+    };
+    return kActions;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "io/core/interrupt.h"
+#include "viewer/frame/cost_model.h"
+#include "viewer/light/sky_loader.h"
+#include "viewer/measure/session.h"
+#include "viewer/style/legend_handles.h"
+#include "viewer/frame/picture_worker.h"
+#include "viewer/frame/quality.h"
+#include "viewer/window/controller_input.h"
+#include "viewer/window/desk.h"
+#include "viewer/scans/scan_set.h"
+#include "viewer/publish/session.h"
+#include "viewer/window/view_model.h"
+#include "viewer/window/window.h"
+
+namespace lucarne::viewer {
+
+/// For scripts: the window's own picture is saved once it shows the average of exactly so many whole pictures, the same
+/// on every run, and the window closes. With nothing open it shows the start page, once that has its final size.
+struct ScriptedShot {
+    std::filesystem::path file;
+    uint32_t pictures = 1;
+    bool overwrite = false;
+};
+
+/// The loop of the window: input into the model, the model into requests, pictures onto the screen.
+class ViewSession {
+ public:
+    ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
+                ScanSet& scans, InterruptRequest& interrupt)
+        : window_(window),
+          worker_(worker),
+          model_(model),
+          shot_(std::move(shot)),
+          scans_(scans),
+          interrupt_(interrupt),
+          desk_(window, model, scans),
+          quality_(model.frame_time),
+          budget_(model.frame_time),
+          show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
+
+    /// Until the window is closed. Where it ends without a question (SIGTERM, an error), unsaved work goes into files
+    /// with free names. Errors: the scripted shot cannot be made or written, or is not of all scans; the window is
+    /// lost; such a file cannot be written.
+    Result<void> run();
+
+ private:
+    using Clock = std::chrono::steady_clock;
+
+    Result<void> show_until_closed();
+    void take_picture();
+    Result<void> recover();
+    void follow_device();
+    void follow_scans();
+    void follow_sky();
+    void take_extent();
+    void take_input();
+    void take_light_gesture();
+    bool take_navigation();
+    void draw_panels();
+    void send_request();
+    std::string unfinished() const;
+    Result<void> save();
+    Result<void> save_shot();
+    double seconds_at_rest() const;
+
+    Window& window_;
+    PictureWorker& worker_;
+    ViewModel& model_;
+    std::optional<ScriptedShot> shot_;
+    ScanSet& scans_;
+    InterruptRequest& interrupt_;
+    Desk desk_;
+    bool placed_ = false;  ///< there has been a view to begin with
+    bool first_told_ = false;
+    ControllerInput controller_{&Window::wake};
+    RecoveryTries tries_;
+    bool given_up_ = false;  ///< the device is lost for good
+    MovingQuality quality_;
+    FrameBudget budget_;
+    LegendHandles legend_;
+    SkyLoader skies_{&Window::wake};
+    MeasureSession measure_{&Window::wake};
+    ShowSession show_;
+    PictureRequest sent_;
+    uint64_t sent_number_ = 0;
+    uint64_t own_scene_ = 1;  ///< the version that is no user's
+    uint64_t scene_seen_ = 0;
+    uint32_t whole_pictures_ = 0;  ///< in the average that is shown
+    uint32_t idle_frames_ = 0;     ///< of the window, with nothing open
+    Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
+};
+
+}  // namespace lucarne::viewer
