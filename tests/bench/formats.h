@@ -9,7 +9,7 @@
 #include "io/formats/scan.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/rows.h"
-#include "tests/io/e57_builder.h"
+#include "tests/io/formats/e57/e57_builder.h"
 
 namespace lucarne::bench {
 

@@ -4,7 +4,7 @@
 
 #include "tests/fault/run_lucarne.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne {
 namespace {

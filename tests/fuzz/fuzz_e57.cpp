@@ -1,5 +1,5 @@
 #include "tests/fuzz/fuzz_scan.h"
-#include "tests/io/e57_builder.h"
+#include "tests/io/formats/e57/e57_builder.h"
 
 /// The input is an E57 file without checksums, which would stop every change. They are made here, and the
 /// header is put right, so that what is tried are lies and no accidents.

@@ -8,7 +8,7 @@
 #include "octree/cache/cache.h"
 #include "octree/export/export.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::octree {
 namespace {

@@ -1,6 +1,6 @@
 """A digest of a list of numbers: two exact sums modulo 2^64 over their 64-bit patterns b_i (integers sign-extended,
 floats as doubles), sum b_i and sum (i + 1) b_i, so that a changed value and a changed order both show. The same in C++:
-tests/io/digest.h.
+tests/io/formats/digest.h.
 """
 import numpy as np
 

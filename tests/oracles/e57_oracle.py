@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What libE57Format reads in the E57 files of the shared data, as tests/io/e57_oracle_test.cpp compares it with our reader.
+"""What libE57Format reads in the E57 files of the shared data, as tests/io/formats/e57/oracle_test.cpp compares it with our reader.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install pye57==0.4.19 numpy
     /tmp/oracle/bin/python tests/oracles/e57_oracle.py ../shared/data/e57 tests/io > tests/oracles/e57_expected.json
@@ -9,7 +9,7 @@ that a scan lacks counts as 0. Integers and floats are compared by a digest (dig
 (scaled, moved, turned, spherical) depend on the order of operations in the last digit: of them there are two sums, of
 x_i and of (i + 1) x_i, and how large the terms of the second are in all.
 
-With --write FILE it writes tests/io/e57_posed.e57 instead: three scans by libE57Format, turned and moved, some
+With --write FILE it writes tests/io/formats/e57/posed.e57 instead: three scans by libE57Format, turned and moved, some
 with colours, some with intensities, every tenth point invalid.
 """
 import json

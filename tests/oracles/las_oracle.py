@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What laspy reads in the LAS and LAZ files of the shared data, as tests/io/las_oracle_test.cpp compares it with our reader.
+"""What laspy reads in the LAS and LAZ files of the shared data, as tests/io/formats/las/oracle_test.cpp compares it with our reader.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install laspy==2.7.0 laszip lazrs numpy
     /tmp/oracle/bin/python tests/oracles/las_oracle.py ../shared/data/las > tests/oracles/las_expected.json

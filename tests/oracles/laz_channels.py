@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small LAZ files by LASzip whose points change between scanner channels, for tests/io/laz_test.cpp; laz-rs must write
+"""Small LAZ files by LASzip whose points change between scanner channels, for tests/io/formats/las/laz_test.cpp; laz-rs must write
 the same bytes.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install laspy==2.7.0 laszip lazrs numpy

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small LAZ files of point formats 0 to 3 by LASzip, for tests/io/laz_test.cpp; laz-rs must write the same bytes.
+"""Small LAZ files of point formats 0 to 3 by LASzip, for tests/io/formats/las/laz_test.cpp; laz-rs must write the same bytes.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install laspy==2.7.0 laszip lazrs numpy
     /tmp/oracle/bin/python tests/oracles/laz_items.py tests/io

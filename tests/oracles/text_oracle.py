@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What numpy (PTX, PTS) and pypcd4 (PCD) read in the shared data, as tests/io/text_oracle_test.cpp compares it with our
+"""What numpy (PTX, PTS) and pypcd4 (PCD) read in the shared data, as tests/io/formats/text/oracle_test.cpp compares it with our
 readers.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install numpy pypcd4

@@ -1,7 +1,7 @@
 // A 6-DoF controller that umockdev replays, in a real window.
 #include <gtest/gtest.h>
 
-#include "tests/io/replayed_controller.h"
+#include "tests/io/input/replayed_controller.h"
 #include "tests/viewer/window_fixture.h"
 
 namespace lucarne {

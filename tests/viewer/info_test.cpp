@@ -12,7 +12,7 @@ namespace {
 TEST(InfoCommand, ListsTheScansAndStationsOfAnE57File) {
     const TemporaryFolder folder;
     const std::string json_file = folder / "info.json";
-    const auto outcome = lucarne("info " LUCARNE_SOURCE_DIR "/tests/io/e57_posed.e57 --json " + json_file);
+    const auto outcome = lucarne("info " LUCARNE_SOURCE_DIR "/tests/io/formats/e57/posed.e57 --json " + json_file);
     ASSERT_EQ(outcome.code, 0) << outcome.output;
     EXPECT_THAT(outcome.output, testing::HasSubstr("E57 1.0, 3 scans, 0 images"));
     std::ifstream in(json_file);
@@ -130,7 +130,7 @@ TEST(UnitOption, IsTheUnitOfFilesOfEveryFormatAndOfTheCachesMadeOfThem) {
          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
          "z\nend_header\n1 2 3\n"},
         {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
-    std::vector<std::string> paths = {LUCARNE_SOURCE_DIR "/tests/io/e57_posed.e57"};
+    std::vector<std::string> paths = {LUCARNE_SOURCE_DIR "/tests/io/formats/e57/posed.e57"};
     for (const auto& [name, text] : files) {
         std::ofstream(folder / name) << text;
         paths.push_back(folder / name);

@@ -1,6 +1,6 @@
 // Small E57 files without checksums, one of each kind, as fuzz_e57 takes them.
 #include "tests/fuzz/seeds/seeds.h"
-#include "tests/io/e57_builder.h"
+#include "tests/io/formats/e57/e57_builder.h"
 
 namespace lucarne::fuzz {
 namespace {

@@ -1,10 +1,10 @@
-// LAS of every version and point format by hand (tests/io/las_builder.h), without and with all that may stand
+// LAS of every version and point format by hand (tests/io/formats/las/las_builder.h), without and with all that may stand
 // beside the points.
 #include <fmt/format.h>
 
 #include "io/formats/las/header.h"
 #include "tests/fuzz/seeds/seeds.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::fuzz {
 namespace {

@@ -12,7 +12,7 @@
 #include "io/formats/las/laz/writer.h"
 #include "io/formats/scan.h"
 #include "tests/fuzz/seeds/seeds.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::fuzz {
 namespace {

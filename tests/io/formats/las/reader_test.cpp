@@ -9,7 +9,7 @@
 #include "io/core/random.h"
 #include "tests/io/io_testing.h"
 #include "io/formats/las/bounds.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {

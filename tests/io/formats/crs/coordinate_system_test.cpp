@@ -3,7 +3,7 @@
 #include "io/formats/crs/registry.h"
 #include "io/formats/las/crs.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {

@@ -1,5 +1,5 @@
 // Our LAS reader against laspy: see tests/oracles/las_oracle.py, which wrote las_expected.json.
-#include "tests/io/digest.h"
+#include "tests/io/formats/digest.h"
 
 namespace lucarne::io {
 namespace {

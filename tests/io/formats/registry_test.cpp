@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "io/formats/common/format.h"
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

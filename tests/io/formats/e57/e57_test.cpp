@@ -7,7 +7,7 @@
 
 #include "io/core/random.h"
 #include "io/formats/e57/packets.h"
-#include "tests/io/e57_builder.h"
+#include "tests/io/formats/e57/e57_builder.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::io {

@@ -9,7 +9,7 @@
 
 #include "io/core/random.h"
 #include "io/formats/mesh/source.h"
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

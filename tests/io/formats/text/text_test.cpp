@@ -8,7 +8,7 @@
 
 #include "io/core/parallel.h"
 #include "io/core/random.h"
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

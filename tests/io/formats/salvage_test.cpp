@@ -10,9 +10,9 @@
 #include "io/core/counted.h"
 #include "io/formats/las/header.h"
 #include "io/formats/las/laz/chunk_table.h"
-#include "tests/io/e57_builder.h"
+#include "tests/io/formats/e57/e57_builder.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {
@@ -317,7 +317,7 @@ TEST(Salvage, OfATruncatedE57WholePacketsOfWholePages) {
 
 TEST(Salvage, OfAnE57WithoutItsDescriptionNothing) {
     const testing::TemporaryFolder folder;
-    const std::string bytes = testing::read_bytes(LUCARNE_SOURCE_DIR "/tests/io/e57_posed.e57");
+    const std::string bytes = testing::read_bytes(LUCARNE_SOURCE_DIR "/tests/io/formats/e57/posed.e57");
     testing::write_bytes(folder / "a.e57", std::string_view(bytes).substr(0, bytes.size() / 2));
     EXPECT_FALSE(salvage(folder / "a.e57"));
     const auto usual = read_as_usual(folder / "a.e57");

@@ -13,7 +13,7 @@
 #include "io/core/random.h"
 #include "io/formats/mesh/sampler.h"
 #include "io/image/image.h"
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

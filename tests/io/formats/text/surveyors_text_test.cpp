@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

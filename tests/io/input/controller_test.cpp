@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "io/core/random.h"
-#include "tests/io/replayed_controller.h"
+#include "tests/io/input/replayed_controller.h"
 
 namespace lucarne::io {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/formats/las/laz/encoder.h"
 #include "io/formats/las/laz/integers.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {
@@ -217,12 +217,12 @@ TEST(LazWriter, AScanWithoutPointsIsAFileWithoutPoints) {
     EXPECT_EQ(read_all(**opened)->count, 0u);
 }
 
-/// tests/io/channels*.laz, by LASzip (tests/oracles/laz_channels.py): point formats 6 to 8.
+/// tests/io/formats/las/channels*.laz, by LASzip (tests/oracles/laz_channels.py): point formats 6 to 8.
 class LazChannels : public ::testing::TestWithParam<int> {
  protected:
     static constexpr uint64_t kPoints = 240;
     std::string file() const {
-        return LUCARNE_SOURCE_DIR "/tests/io/channels" + std::to_string(GetParam()) + ".laz";
+        return LUCARNE_SOURCE_DIR "/tests/io/formats/las/channels" + std::to_string(GetParam()) + ".laz";
     }
     static uint32_t value(uint64_t i, uint64_t k) {
         return static_cast<uint32_t>(i / (1 + k % 4) * 2654435761 + k * 2246822519) >> 16;
@@ -280,7 +280,7 @@ std::string chunk_of(const std::string& path) {
 class LaszipFile : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(LaszipFile, WrittenAgainItHasTheSameBytesAndPointFormat) {
-    const std::string file = std::string(LUCARNE_SOURCE_DIR "/tests/io/") + GetParam() + ".laz";
+    const std::string file = std::string(LUCARNE_SOURCE_DIR "/tests/io/formats/las/") + GetParam() + ".laz";
     const testing::TemporaryFolder folder;
     const auto scan = open_scan(file);
     ASSERT_TRUE(scan) << scan.error().line();

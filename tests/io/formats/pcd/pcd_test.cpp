@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
-#include "tests/io/scan_text.h"
+#include "tests/io/formats/scan_text.h"
 
 namespace lucarne::io {
 namespace {

@@ -1,7 +1,7 @@
 // Our E57 reader against libE57Format: see tests/oracles/e57_oracle.py, which wrote e57_expected.json.
 #include <cmath>
 
-#include "tests/io/digest.h"
+#include "tests/io/formats/digest.h"
 
 namespace lucarne::io {
 namespace {

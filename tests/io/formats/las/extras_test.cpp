@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "io/formats/las/extras.h"
 #include "tests/io/io_testing.h"
-#include "tests/io/las_builder.h"
+#include "tests/io/formats/las/las_builder.h"
 
 namespace lucarne::io {
 namespace {
