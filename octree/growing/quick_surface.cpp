@@ -21,7 +21,7 @@ constexpr double kShift = 0.3717;   ///< of the cube, between the curves: no bor
 constexpr float kFlatness = 0.15f;  ///< most variance across a plane by the mean of those along it
 /// Of the share, because some neighbours are missed and those found in their place are farther:
 /// measured, 1.25 times the surface of a square and a sphere of random points
-/// (tests/octree/growing_build_test.cpp holds it to a tenth).
+/// (tests/octree/growing/growing_build_test.cpp holds it to a tenth).
 constexpr double kMissed = 0.8;
 /// A point whose share is so many times that of its neighbours hangs in the air: as octree/normals has it.
 constexpr float kStray = 49;

@@ -10,7 +10,7 @@
 
 #include "octree/normals/pcl_normals.h"
 #include "tests/bench/bench_run.h"
-#include "tests/octree/virtual_scans.h"
+#include "tests/octree/normals/virtual_scans.h"
 
 namespace lucarne::octree {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "octree/normals/surface/area_floor.h"
-#include "tests/octree/normal_clouds.h"
+#include "tests/octree/normals/normal_clouds.h"
 
 namespace lucarne::octree {
 namespace {

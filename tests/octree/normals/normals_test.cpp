@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/octree/normal_clouds.h"
+#include "tests/octree/normals/normal_clouds.h"
 
 namespace lucarne::octree {
 namespace {

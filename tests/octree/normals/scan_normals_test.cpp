@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "octree/normals/neighbours/point_index.h"
-#include "tests/octree/virtual_scans.h"
+#include "tests/octree/normals/virtual_scans.h"
 
 namespace lucarne::octree {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "octree/normals/neighbours/leaf_index.h"
 #include "octree/normals/surface/plane.h"
-#include "tests/octree/virtual_scans.h"
+#include "tests/octree/normals/virtual_scans.h"
 
 namespace lucarne::octree {
 namespace {

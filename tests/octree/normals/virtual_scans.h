@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/synthetic/synthetic.h"
-#include "tests/octree/normal_clouds.h"
+#include "tests/octree/normals/normal_clouds.h"
 
 namespace lucarne::octree::testing {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "octree/normals/orientation/signed_forest.h"
-#include "tests/octree/normal_clouds.h"
+#include "tests/octree/normals/normal_clouds.h"
 
 namespace lucarne::octree {
 namespace {
