@@ -18,8 +18,8 @@
 #include "gi/compare/metrics.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
-#include "tests/gi/analytic_frame.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
 #include "viewer/frame/presets.h"
 
 namespace lucarne {

@@ -10,7 +10,7 @@
 #include "gi/raster/gbuffer.h"
 #include "io/core/random.h"
 #include "tests/bench/bench_run.h"
-#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/engines/surfel_cloud.h"
 
 namespace lucarne::gi {
 namespace {

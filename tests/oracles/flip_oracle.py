@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What NVIDIA's flip-evaluator finds between pairs of pictures that tests/gi/flip_test.cpp makes by the same formulas.
+"""What NVIDIA's flip-evaluator finds between pairs of pictures that tests/gi/compare/flip_test.cpp makes by the same formulas.
 
     python3 -m venv /tmp/oracle && /tmp/oracle/bin/pip install flip-evaluator==1.7 numpy
     /tmp/oracle/bin/python tests/oracles/flip_oracle.py > tests/oracles/flip_expected.json

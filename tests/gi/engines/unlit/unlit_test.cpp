@@ -7,9 +7,9 @@
 
 #include "gi/registry.h"
 #include "gi/scene/clip.h"
-#include "tests/gi/lit_scene.h"
+#include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {

@@ -10,7 +10,7 @@
 #include "octree/tree/attributes.h"
 #include "octree/tree/footprint.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/engines/surfel_cloud.h"
 
 namespace lucarne::gi {
 namespace {

@@ -12,7 +12,7 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/vpl_light.h"
-#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/engines/surfel_cloud.h"
 
 namespace lucarne::gi::vpl::testing {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engine.h"
-#include "tests/gi/surfel_cloud.h"
+#include "tests/gi/engines/surfel_cloud.h"
 
 namespace lucarne::gi {
 

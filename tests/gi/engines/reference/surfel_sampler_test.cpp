@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gi/reference/reference_scene.h"
+#include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_cloud.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {

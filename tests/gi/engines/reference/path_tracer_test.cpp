@@ -7,7 +7,7 @@
 
 #include "gi/engines/reference/scatter.h"
 #include "io/core/parallel.h"
-#include "tests/gi/reference/reference_scene.h"
+#include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
 namespace {

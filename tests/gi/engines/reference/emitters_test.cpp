@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/shared/brdf.h"
-#include "tests/gi/reference/reference_scene.h"
+#include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/light.h"
-#include "tests/gi/lit_scene.h"
+#include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {

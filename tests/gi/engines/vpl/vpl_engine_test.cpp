@@ -1,12 +1,12 @@
-// What the vpl engine claims beyond the table of tests/gi/engines_test.cpp.
+// What the vpl engine claims beyond the table of tests/gi/engines/engines_test.cpp.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "gi/compare/metrics.h"
-#include "tests/gi/analytic_frame.h"
+#include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi::vpl {
 namespace {

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "gi/compare/metrics.h"
-#include "tests/gi/analytic_frame.h"
+#include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/soft_light_scenes.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/soft_light_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {

@@ -10,7 +10,7 @@
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
-#include "tests/gi/even_order.h"
+#include "tests/gi/engines/even_order.h"
 
 namespace lucarne::gi {
 

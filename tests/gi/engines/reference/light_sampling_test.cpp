@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/reference/scatter.h"
-#include "tests/gi/reference/reference_scene.h"
+#include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
 namespace {

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/gi/analytic_frame.h"
+#include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {

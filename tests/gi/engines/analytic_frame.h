@@ -14,7 +14,7 @@
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
-#include "tests/gi/even_order.h"
+#include "tests/gi/engines/even_order.h"
 
 namespace lucarne::gi::scenes {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/vpl/seeding/halton.h"
-#include "tests/gi/vpl/light_view.h"
+#include "tests/gi/engines/vpl/light_view.h"
 
 namespace lucarne::gi::vpl {
 namespace {

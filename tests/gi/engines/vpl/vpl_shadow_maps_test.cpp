@@ -6,8 +6,8 @@
 
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_cloud.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi::vpl {
 namespace {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/reference/path_tracer.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi::reference {
 

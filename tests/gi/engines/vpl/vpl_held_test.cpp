@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "gi/registry.h"
-#include "tests/gi/lit_scene.h"
+#include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
-#include "tests/gi/surfel_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
 
 namespace lucarne::gi {
 namespace {
