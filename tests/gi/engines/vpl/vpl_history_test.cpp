@@ -1,5 +1,5 @@
 // What frames of a motion take over from each other; that they are steadier for it is
-// tests/viewer/fly_test.cpp's.
+// tests/viewer/commands/fly_test.cpp's.
 #include <cmath>
 
 #include "gi/compare/metrics.h"

@@ -1,5 +1,5 @@
 // Lost contexts and damaged caches in a real window, see window_fixture.h.
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "tests/viewer/measured_scan.h"
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/measure/measured_scan.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne::test {
 

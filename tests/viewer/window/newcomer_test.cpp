@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

@@ -1,7 +1,7 @@
 // Windows that are closed with work in them that is in no file, see window_fixture.h.
 #include <fstream>
 
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

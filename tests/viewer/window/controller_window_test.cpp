@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/io/input/replayed_controller.h"
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

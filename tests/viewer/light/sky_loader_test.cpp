@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "io/image/image.h"
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne::viewer {
 namespace {

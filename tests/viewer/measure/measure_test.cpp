@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
-#include "tests/viewer/measured_scan.h"
+#include "tests/viewer/measure/measured_scan.h"
 #include "tests/viewer/program.h"
 #include "viewer/overlay/axis_marks.h"
 #include "viewer/measure/file.h"

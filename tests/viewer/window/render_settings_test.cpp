@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/scene/render_settings_file.h"
-#include "tests/viewer/measuring_window.h"
+#include "tests/viewer/window/measuring_window.h"
 #include "viewer/light/edits.h"
 
 namespace lucarne::viewer {

@@ -1,10 +1,10 @@
-// The window as it is kept in tests/viewer/golden, whose README says how it is renewed.
+// The window as it is kept in tests/viewer/window/golden, whose README says how it is renewed.
 #include <fstream>
 
 #include <fmt/format.h>
 
-#include "tests/viewer/golden.h"
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/golden.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using namespace test;
 
 std::string golden(const std::string& name) {
-    return LUCARNE_SOURCE_DIR "/tests/viewer/golden/" + name + ".png";
+    return LUCARNE_SOURCE_DIR "/tests/viewer/window/golden/" + name + ".png";
 }
 
 class GoldenWindow : public ViewerWindow {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gi/scene/scene.h"
-#include "tests/viewer/measuring_window.h"
+#include "tests/viewer/window/measuring_window.h"
 
 #ifndef LUCARNE_SET_DPI
 #define LUCARNE_SET_DPI ""  // X11's headers are missing

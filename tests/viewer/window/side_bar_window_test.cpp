@@ -1,7 +1,7 @@
 // The side bar in a real window, see window_fixture.h.
 #include <nlohmann/json.hpp>
 
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

@@ -1,4 +1,4 @@
-// Pictures of the whole window against those that are kept: tests/viewer/golden/README.md.
+// Pictures of the whole window against those that are kept: tests/viewer/window/golden/README.md.
 #pragma once
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 #ifndef LUCARNE_DROP_FILES
 #define LUCARNE_DROP_FILES ""  // X11's headers are missing

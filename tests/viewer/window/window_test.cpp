@@ -1,9 +1,9 @@
 // The viewer in a real window, see window_fixture.h.
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 #include <fstream>
 
-#include "tests/viewer/measuring_window.h"
+#include "tests/viewer/window/measuring_window.h"
 
 namespace lucarne {
 namespace {

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/viewer/measured_scan.h"
+#include "tests/viewer/measure/measured_scan.h"
 #include "viewer/measure/marks.h"
 
 namespace lucarne::viewer {

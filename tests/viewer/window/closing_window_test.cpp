@@ -1,5 +1,5 @@
 // Windows that are closed in the middle of a conversion, see window_fixture.h.
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {

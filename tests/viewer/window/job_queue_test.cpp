@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/octree/plane_source.h"
-#include "tests/viewer/window_fixture.h"
+#include "tests/viewer/window/window_fixture.h"
 #include "viewer/camera/floor_finder.h"
 
 namespace lucarne::viewer {
