@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -13,29 +12,25 @@ int main(int argc, char** argv) {
     // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     handle_interrupts();
-    CLI::App app{"Lucarne: point clouds of any size in the light of their own surfaces."};
-    app.name("lucarne");
-    app.require_subcommand(1);
-    viewer::Command chosen;
-    for (const auto add : viewer::commands()) add(app, chosen);
     const auto complain = [](const std::string& line) { std::fprintf(stderr, "lucarne: %s\n", line.c_str()); };
+    const auto fail = [&](const Error& error) {
+        complain(error.line());
+        return static_cast<int>(error.kind);
+    };
     try {
-        app.parse(argc, argv);
+        viewer::CommandLine line("lucarne", "Lucarne: point clouds of any size in the light of their own surfaces.");
+        for (const auto add : viewer::commands()) add(line);
+        const auto action = line.parse(argc, argv);
+        if (!action) return fail(action.error());
+        if (!*action) return 0;  // the help was printed
         const log::Operation command;
         const log::Operation::Scope scope(command);
-        if (auto done = chosen(); !done) {
-            complain(done.error().line());
-            return static_cast<int>(done.error().kind);
-        }
+        if (const auto done = (*action)(); !done) return fail(done.error());
         if (std::fflush(stdout) != 0) {  // what was printed is the result
             complain("output: cannot be written; look at where it is sent");
             return static_cast<int>(ErrorKind::failed);
         }
         return 0;
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help
-        complain(Error{ErrorKind::arguments, "arguments", error.what(), "see lucarne --help"}.line());
-        return static_cast<int>(ErrorKind::arguments);
     } catch (const std::bad_alloc&) {
         complain("memory: there is not enough; lower --memory or --points");
     } catch (const std::exception& error) {

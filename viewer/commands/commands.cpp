@@ -4,18 +4,18 @@
 
 namespace lucarne::viewer {
 
-void add_compact(CLI::App& app, Command& chosen);
-void add_compare(CLI::App& app, Command& chosen);
-void add_convert(CLI::App& app, Command& chosen);
-void add_delete(CLI::App& app, Command& chosen);
-void add_export(CLI::App& app, Command& chosen);
-void add_fly(CLI::App& app, Command& chosen);
-void add_generate(CLI::App& app, Command& chosen);
-void add_info(CLI::App& app, Command& chosen);
-void add_measure(CLI::App& app, Command& chosen);
-void add_render(CLI::App& app, Command& chosen);
-void add_verify(CLI::App& app, Command& chosen);
-void add_view(CLI::App& app, Command& chosen);
+void add_compact(CommandLine& line);
+void add_compare(CommandLine& line);
+void add_convert(CommandLine& line);
+void add_delete(CommandLine& line);
+void add_export(CommandLine& line);
+void add_fly(CommandLine& line);
+void add_generate(CommandLine& line);
+void add_info(CommandLine& line);
+void add_measure(CommandLine& line);
+void add_render(CommandLine& line);
+void add_verify(CommandLine& line);
+void add_view(CommandLine& line);
 
 std::span<const AddCommand> commands() {
     static constexpr std::array<AddCommand, 12> kAll = {add_view,     add_convert, add_render,  add_fly,

@@ -1,22 +1,15 @@
 #pragma once
 
-#include <functional>
 #include <span>
 
-#include "io/core/error.h"
-
-namespace CLI {
-class App;
-}
+#include "viewer/commands/arguments.h"
 
 namespace lucarne::viewer {
 
-/// What the chosen command does; main runs it after the arguments are parsed.
-using Command = std::function<Result<void>()>;
-/// Declares one subcommand and its options; its callback sets `chosen`.
-using AddCommand = void (*)(CLI::App& app, Command& chosen);
+/// Declares one command, its options and what it does.
+using AddCommand = void (*)(CommandLine& line);
 
-/// One function a command, each in a file of its own.
+/// One function a command, each in a file of its own, in the order of the help.
 std::span<const AddCommand> commands();
 
 }  // namespace lucarne::viewer

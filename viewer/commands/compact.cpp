@@ -1,6 +1,5 @@
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/core/log.h"
@@ -10,24 +9,22 @@
 
 namespace lucarne::viewer {
 
-void add_compact(CLI::App& app, Command& chosen) {
+void add_compact(CommandLine& line) {
     struct Options {
         std::filesystem::path cache, temp_folder;
     };
     auto options = std::make_shared<Options>();
-    auto* command =
-        app.add_subcommand("compact", "Give back the space of what was deleted or replaced in a cache");
-    command->add_option("cache", options->cache, "The cache to write anew")->required()->type_name("CACHE");
-    command->add_option("--temp", options->temp_folder, "Folder for temporary files (default: the cache's)")
-        ->type_name("DIR");
+    Arguments command = line.add("compact", "Give back the space of what was deleted or replaced in a cache");
+    command.add("cache", options->cache, "The cache to write anew").required().type_name("CACHE");
+    command.add("--temp", options->temp_folder, "Folder for temporary files (default: the cache's)")
+        .type_name("DIR");
     const auto compact = [](const Options& given) -> Result<void> {
         LUCARNE_ASSIGN(const auto report, octree::compact_cache(given.cache, given.temp_folder));
         log::info("{}: {} before, {} now", given.cache.string(), bytes_text(report.bytes_before),
                   bytes_text(report.bytes));
         return {};
     };
-    command->callback(
-        [options, compact, &chosen] { chosen = [options, compact] { return compact(*options); }; });
+    command.run([options, compact] { return compact(*options); });
 }
 
 }  // namespace lucarne::viewer

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -180,36 +179,32 @@ Result<void> compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Command& chosen) {
+void add_compare(CommandLine& line) {
     auto options = std::make_shared<CompareOptions>();
-    auto* command = app.add_subcommand("compare", "Hold a picture of linear radiance against a reference");
-    command->add_option("picture", options->picture, "EXR")->required()->type_name("A.exr");
-    command->add_option("reference", options->reference, "EXR: the truth; the mean of --halves if not given")
-        ->type_name("B.exr");
-    command
-        ->add_option("--halves", options->halves,
+    Arguments command = line.add("compare", "Hold a picture of linear radiance against a reference");
+    command.add("picture", options->picture, "EXR").required().type_name("A.exr");
+    command.add("reference", options->reference, "EXR: the truth; the mean of --halves if not given")
+        .type_name("B.exr");
+    command.add("--halves", options->halves,
                      "Two independent halves of the reference, for an error free of its noise")
-        ->expected(2)
-        ->type_name("R1.exr R2.exr");
-    command
-        ->add_option("--gbuffer", options->gbuffer,
+        .values(2)
+        .type_name("R1.exr R2.exr");
+    command.add("--gbuffer", options->gbuffer,
                      "What render --gbuffer wrote: edges are those of depth and normal, not of luminance")
-        ->type_name("G.exr");
-    command
-        ->add_option("--exposure", options->exposure,
+        .type_name("G.exr");
+    command.add("--exposure", options->exposure,
                      "Stops by which FLIP sees both pictures; measured from the reference if not given")
-        ->check(CLI::Range(-64.0, 64.0))
-        ->type_name("EV");
-    command->add_option("--error-picture", options->error_picture, "Where the error lies")
-        ->type_name("FILE.png");
-    command
-        ->add_option("--error-kind", options->error_kind,
+        .range(-64.0, 64.0)
+        .type_name("EV");
+    command.add("--error-picture", options->error_picture, "Where the error lies")
+        .type_name("FILE.png");
+    command.add("--error-kind", options->error_kind,
                      "FLIP, or luminance too dark (blue) or bright (red)")
-        ->check(CLI::IsMember({"flip", "signed"}))
-        ->capture_default_str();
-    command->add_option("--json", options->json, "The figures, machine-readable")->type_name("FILE");
-    command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
-    command->callback([options, &chosen] { chosen = [options] { return compare(*options); }; });
+        .one_of({"flip", "signed"})
+        .show_default();
+    command.add("--json", options->json, "The figures, machine-readable").type_name("FILE");
+    command.flag("--overwrite", options->overwrite, "Replace files that exist");
+    command.run([options] { return compare(*options); });
 }
 
 }  // namespace lucarne::viewer

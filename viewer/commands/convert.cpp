@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +19,7 @@
 #include "octree/normals/normals.h"
 #include "viewer/commands/build_memory.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/edit_report.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/describe.h"
@@ -198,70 +198,61 @@ Result<void> convert(ConvertOptions options) {
 
 }  // namespace
 
-void add_convert(CLI::App& app, Command& chosen) {
-    using octree::NormalsMode;
-    static const std::map<std::string, NormalsMode> kModes = {{"auto", NormalsMode::automatic},
-                                                              {"keep", NormalsMode::keep},
-                                                              {"estimate", NormalsMode::estimate},
-                                                              {"none", NormalsMode::none}};
+void add_convert(CommandLine& line) {
     using octree::NeighbourSearch;
-    static const std::map<std::string, NeighbourSearch> kSearches = {{"leaf", NeighbourSearch::leaf},
-                                                                     {"flann", NeighbourSearch::flann}};
+    using octree::NormalsMode;
     auto options = std::make_shared<ConvertOptions>();
     options->build.resume = octree::Resume::later;
-    auto* command = app.add_subcommand("convert", "Build an octree cache from scans");
-    command
-        ->add_option(
+    Arguments command = line.add("convert", "Build an octree cache from scans");
+    command.add(
             "inputs", options->inputs,
             "Scan files, or folders of them; several become one cache. A broken one of several is left out")
-        ->required()
-        ->type_name("INPUT");
-    add_read_options(*command, options->read);
-    command->add_option("-o,--output", options->build.output, "The cache to write")
-        ->required()
-        ->type_name("CACHE.luc");
+        .required()
+        .type_name("INPUT");
+    add_read_options(command, options->read);
+    command.add("-o,--output", options->build.output, "The cache to write")
+        .required()
+        .type_name("CACHE.luc");
     command
-        ->add_option("--normals", options->build.normals,
-                     "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
+        .choice<NormalsMode>("--normals", options->build.normals,
+                             {{"auto", NormalsMode::automatic},
+                              {"keep", NormalsMode::keep},
+                              {"estimate", NormalsMode::estimate},
+                              {"none", NormalsMode::none}},
+                             "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
                      "them; estimate puts estimated ones in place of the inputs' own, which stay as normal_in_file")
-        ->transform(CLI::CheckedTransformer(kModes))
-        ->type_name("auto|keep|estimate|none")
-        ->default_str("auto");
-    command
-        ->add_option("--memory", options->memory,
+        .show_default("auto");
+    command.add("--memory", options->memory,
                      "Cap on the memory of the process, however large the input is (32M or more)")
-        ->capture_default_str()
-        ->type_name("BYTES");
-    command->add_option("--threads", options->build.threads, "0: all cores")
-        ->capture_default_str()
-        ->type_name("N");
-    command
-        ->add_option("--temp", options->build.temp_folder,
+        .show_default()
+        .type_name("BYTES");
+    command.add("--threads", options->build.threads, "0: all cores")
+        .show_default()
+        .type_name("N");
+    command.add("--temp", options->build.temp_folder,
                      "Folder for temporary files (default: the cache's)")
-        ->type_name("DIR");
-    command->add_option("--neighbours", options->build.neighbours, "Nearest points that make a normal")
-        ->capture_default_str()
-        ->check(CLI::Range(3u, octree::kMostNormalNeighbours))
-        ->type_name("K");
+        .type_name("DIR");
+    command.add("--neighbours", options->build.neighbours, "Nearest points that make a normal")
+        .show_default()
+        .range(3u, octree::kMostNormalNeighbours)
+        .type_name("K");
     command
-        ->add_option("--neighbours-search", options->build.neighbour_search,
-                     "How these are found: leaf is fast, flann is PCL over FLANN, to compare with")
-        ->transform(CLI::CheckedTransformer(kSearches))
-        ->type_name("leaf|flann")
-        ->default_str("leaf");
-    command->add_flag_callback(
+        .choice<NeighbourSearch>("--neighbours-search", options->build.neighbour_search,
+                                 {{"leaf", NeighbourSearch::leaf}, {"flann", NeighbourSearch::flann}},
+                                 "How these are found: leaf is fast, flann is PCL over FLANN, to compare with")
+        .show_default("leaf");
+    command.flag(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
         "Go on from the last stage that an interrupted conversion finished; if this one fails, keep its stages");
-    command->add_flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
-    auto* append_flag =
-        command->add_flag("--append", options->append,
+    command.flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
+    Argument append_flag = command.flag("--append", options->append,
                           "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
                           "normals. Files that it holds already are left out");
     for (const char* other : {"--resume", "--overwrite", "--normals"})
-        append_flag->excludes(command->get_option(other));
-    command->add_option("--json", options->json, "Write what was done and how long it took")
-        ->type_name("FILE");
-    command->callback([options, &chosen] { chosen = [options] { return convert(*options); }; });
+        append_flag.excludes(command.find(other));
+    command.add("--json", options->json, "Write what was done and how long it took")
+        .type_name("FILE");
+    command.run([options] { return convert(*options); });
 }
 
 }  // namespace lucarne::viewer

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/files/file.h"
@@ -53,28 +52,27 @@ Result<void> erase(const DeleteOptions& given) {
 
 }  // namespace
 
-void add_delete(CLI::App& app, Command& chosen) {
+void add_delete(CommandLine& line) {
     auto options = std::make_shared<DeleteOptions>();
-    auto* command = app.add_subcommand("delete", "Delete points from a cache");
-    command->add_option("cache", options->edit.cache, "The cache to change")->required()->type_name("CACHE");
-    command->add_option("--box", options->box, "Those in a box, in the file's unit; its faces belong to it")
-        ->delimiter(',')
-        ->expected(6)
-        ->type_name("x0,y0,z0,x1,y1,z1");
-    command->add_option("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
-        ->expected(1)
-        ->type_name("N");
-    command->add_option("--memory", options->memory, "Cap on the memory of the process, besides the cache's directory (32M or more)")
-        ->capture_default_str()
-        ->type_name("BYTES");
-    command->add_option("--threads", options->edit.threads, "0: all cores")
-        ->capture_default_str()
-        ->type_name("N");
-    command
-        ->add_option("--temp", options->edit.temp_folder, "Folder for temporary files (default: the cache's)")
-        ->type_name("DIR");
-    command->add_option("--json", options->json, "Write what was done")->type_name("FILE");
-    command->callback([options, &chosen] { chosen = [options] { return erase(*options); }; });
+    Arguments command = line.add("delete", "Delete points from a cache");
+    command.add("cache", options->edit.cache, "The cache to change").required().type_name("CACHE");
+    command.add("--box", options->box, "Those in a box, in the file's unit; its faces belong to it")
+        .separator(',')
+        .values(6)
+        .type_name("x0,y0,z0,x1,y1,z1");
+    command.add("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
+        .values(1)
+        .type_name("N");
+    command.add("--memory", options->memory, "Cap on the memory of the process, besides the cache's directory (32M or more)")
+        .show_default()
+        .type_name("BYTES");
+    command.add("--threads", options->edit.threads, "0: all cores")
+        .show_default()
+        .type_name("N");
+    command.add("--temp", options->edit.temp_folder, "Folder for temporary files (default: the cache's)")
+        .type_name("DIR");
+    command.add("--json", options->json, "Write what was done").type_name("FILE");
+    command.run([options] { return erase(*options); });
 }
 
 }  // namespace lucarne::viewer

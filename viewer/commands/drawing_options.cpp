@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "gi/registry.h"
@@ -61,60 +60,58 @@ void warn_of_extent(const octree::SourceHeader& header) {
 
 }  // namespace
 
-void add_drawing_options(CLI::App& command, DrawingOptions& options) {
-    command.add_option("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
-        ->type_name("FILE");
-    command.add_option("--engine", options.render.engine, "How light is computed, see below")
-        ->default_str(std::string(kDefaultEngine))
-        ->type_name("NAME");
-    command.add_option("--preset", options.render.preset, "Effort, see below")
-        ->default_str(std::string(kDefaultPreset))
-        ->type_name("NAME");
-    command.add_option("--size", options.size, "Of the picture in pixels")
-        ->capture_default_str()
-        ->type_name("WxH");
-    command.add_option("--bounces", options.render.bounces, "Indirect bounces; 0: direct light alone")
-        ->check(CLI::Range(0, 64))
-        ->type_name("N");
-    command.add_option("--only-bounce", options.render.only_bounce, "Just this bounce; 0: direct light")
-        ->check(CLI::Range(0, 64))
-        ->type_name("K");
-    command.add_option("--vpls", options.render.vpls, "Virtual point lights")
-        ->check(CLI::Range(1, 65536))
-        ->type_name("N");
-    command.add_flag(
+void add_drawing_options(Arguments& command, DrawingOptions& options) {
+    command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
+        .type_name("FILE");
+    command.add("--engine", options.render.engine, "How light is computed, see below")
+        .show_default(std::string(kDefaultEngine))
+        .type_name("NAME");
+    command.add("--preset", options.render.preset, "Effort, see below")
+        .show_default(std::string(kDefaultPreset))
+        .type_name("NAME");
+    command.add("--size", options.size, "Of the picture in pixels")
+        .show_default()
+        .type_name("WxH");
+    command.add("--bounces", options.render.bounces, "Indirect bounces; 0: direct light alone")
+        .range(0, 64)
+        .type_name("N");
+    command.add("--only-bounce", options.render.only_bounce, "Just this bounce; 0: direct light")
+        .range(0, 64)
+        .type_name("K");
+    command.add("--vpls", options.render.vpls, "Virtual point lights")
+        .range(1, 65536)
+        .type_name("N");
+    command.flag(
         "--best-candidate", options.best_candidate,
         "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
-    command.add_flag("--no-reuse", options.no_reuse,
+    command.flag("--no-reuse", options.no_reuse,
                      "vpl: light every frame of a motion by itself, without what the frames before knew");
-    command.add_option("--interleave", options.render.interleave, "Pixels along a side that share out the lights")
-        ->check(CLI::IsMember({1, 2, 4}))
-        ->type_name("N");
-    command.add_option("--atlas", options.render.atlas, "Texels along a side of the shadow maps' atlas")
-        ->check(CLI::IsMember({256, 512, 1024, 2048, 4096, 8192}))
-        ->type_name("N");
-    command.add_option("--light-resolution", options.render.light_resolution,
+    command.add("--interleave", options.render.interleave, "Pixels along a side that share out the lights")
+        .one_of({1, 2, 4})
+        .type_name("N");
+    command.add("--atlas", options.render.atlas, "Texels along a side of the shadow maps' atlas")
+        .one_of({256, 512, 1024, 2048, 4096, 8192})
+        .type_name("N");
+    command.add("--light-resolution", options.render.light_resolution,
                        "Texels along a side of what each light sees: the sharpness of shadows' edges")
-        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048, 4096}))
-        ->type_name("N");
-    command.add_option("--points", options.points, "Most points that a cut takes: 200000, 2M")
-        ->type_name("N");
-    command.add_option("--samples", options.render.samples, "Paths a pixel and frame (reference)")
-        ->check(CLI::Range(1, 1 << 20))
-        ->type_name("N");
-    command.add_option("--seed", options.seed, "Of all random numbers")->type_name("N");
-    command.add_option("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
-        ->check(CLI::Range(-100.0, 100.0))
-        ->type_name("EV");
-    command
-        .add_option("--memory", options.memory,
+        .one_of({64, 128, 256, 512, 1024, 2048, 4096})
+        .type_name("N");
+    command.add("--points", options.points, "Most points that a cut takes: 200000, 2M")
+        .type_name("N");
+    command.add("--samples", options.render.samples, "Paths a pixel and frame (reference)")
+        .range(1, 1 << 20)
+        .type_name("N");
+    command.add("--seed", options.seed, "Of all random numbers").type_name("N");
+    command.add("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
+        .range(-100.0, 100.0)
+        .type_name("EV");
+    command.add("--memory", options.memory,
                     "Most that the cloud takes of the memory on its way to the device (512M)")
-        ->type_name("SIZE");
-    command
-        .add_option("--device-memory", options.device_memory,
+        .type_name("SIZE");
+    command.add("--device-memory", options.device_memory,
                     "Most of the device's memory, for surfels, pictures and maps together (2G)")
-        ->type_name("SIZE");
-    command.add_flag("--no-prefetch", options.no_prefetch,
+        .type_name("SIZE");
+    command.flag("--no-prefetch", options.no_prefetch,
                      "Load nothing ahead of a camera that moves (for measuring)");
     add_look_options(command, options.look);
     add_light_options(command, options.light);

@@ -8,13 +8,10 @@
 #include "gi/scene/scene.h"
 #include "io/core/options.h"
 #include "octree/tree/source.h"
+#include "viewer/commands/arguments.h"
 #include "viewer/commands/light_options.h"
 #include "viewer/commands/look_options.h"
 #include "viewer/frame/pipeline.h"
-
-namespace CLI {
-class App;
-}
 
 namespace lucarne::viewer {
 
@@ -37,7 +34,7 @@ struct DrawingOptions {
 /// --light-resolution
 /// --points --samples --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch,
 /// and those of add_look_options() and add_light_options(). `options` outlives the command.
-void add_drawing_options(CLI::App& command, DrawingOptions& options);
+void add_drawing_options(Arguments& command, DrawingOptions& options);
 
 /// What the command line leaves open of `render`, as the scene file says it, else the defaults; engine and
 /// preset are there from then on. Errors: the file's.

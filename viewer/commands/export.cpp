@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -44,17 +43,16 @@ Result<void> export_cache(const Options& options) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Command& chosen) {
+void add_export(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    auto* command =
-        app.add_subcommand("export", "Write a cache back to a scan file, with every point and attribute");
-    command->add_option("cache", options->cache, "The cache (or COPC file) to read")->required()->type_name("CACHE");
-    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
-        ->required()
-        ->type_name("FILE");
-    command->add_flag("--normals", options->content.normals, "Write estimated normals, too, as normal (always where convert was told to estimate them)");
-    command->add_flag("--overwrite", options->overwrite, "Replace the output if it exists");
-    command->callback([options, &chosen] { chosen = [options] { return export_cache(*options); }; });
+    Arguments command = line.add("export", "Write a cache back to a scan file, with every point and attribute");
+    command.add("cache", options->cache, "The cache (or COPC file) to read").required().type_name("CACHE");
+    command.add("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
+        .required()
+        .type_name("FILE");
+    command.flag("--normals", options->content.normals, "Write estimated normals, too, as normal (always where convert was told to estimate them)");
+    command.flag("--overwrite", options->overwrite, "Replace the output if it exists");
+    command.run([options] { return export_cache(*options); });
 }
 
 }  // namespace lucarne::viewer

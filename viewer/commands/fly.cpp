@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "gi/registry.h"
@@ -15,6 +14,7 @@
 #include "io/core/log.h"
 #include "io/files/page_cache.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/compare_flights.h"
@@ -39,7 +39,10 @@ struct FlyOptions {
 };
 
 std::vector<std::string> engines_of(const FlyOptions& options) {
-    return CLI::detail::split(options.drawing.render.engine, ',');
+    std::vector<std::string> names;
+    std::istringstream list(options.drawing.render.engine);
+    for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+    return names;
 }
 
 /// One of the flights of a call.
@@ -211,56 +214,49 @@ Result<void> compare(const FlyOptions& options) {
 
 }  // namespace
 
-void add_fly(CLI::App& app, Command& chosen) {
+void add_fly(CommandLine& line) {
     auto options = std::make_shared<FlyOptions>();
-    auto* command =
-        app.add_subcommand("fly", "Fly along a camera path and measure it, or compare two reports");
-    add_input_options(*command, options->input);
-    command->add_option("--path", options->path, "The camera path (data/README.md, Flythroughs)");
-    command->add_option("-o,--output", options->report, "The report, JSON");
-    command->add_option("--html", options->html, "The report as a page with plots, too")->type_name("FILE");
-    add_drawing_options(*command, options->drawing);
-    command->get_option("--engine")->description("Or several, one flight each: vpl,direct");
-    auto* wait = command->add_flag("--wait", options->wait,
+    Arguments command = line.add("fly", "Fly along a camera path and measure it, or compare two reports");
+    add_input_options(command, options->input);
+    command.add("--path", options->path, "The camera path (data/README.md, Flythroughs)");
+    command.add("-o,--output", options->report, "The report, JSON");
+    command.add("--html", options->html, "The report as a page with plots, too").type_name("FILE");
+    add_drawing_options(command, options->drawing);
+    command.find("--engine").description("Or several, one flight each: vpl,direct");
+    const Argument wait = command.flag("--wait", options->wait,
                                    "Every frame, every cut whole: the same pixels on every run (default)");
-    command->add_flag("--realtime", options->realtime, "By the clock, never waiting: what a user sees")
-        ->excludes(wait);
-    command
-        ->add_option("--frame-time", options->frame_time_ms,
+    command.flag("--realtime", options->realtime, "By the clock, never waiting: what a user sees")
+        .excludes(wait);
+    command.add("--frame-time", options->frame_time_ms,
                      "With --realtime: cuts take as many points as keep frames to this time")
-        ->check(CLI::Range(1.0, 1e5))
-        ->type_name("MS");
-    command->add_flag("--cold", options->cold,
+        .range(1.0, 1e5)
+        .type_name("MS");
+    command.flag("--cold", options->cold,
                       "Before each flight another, from files that the system was made to forget");
-    command
-        ->add_option("--soak", options->soak,
+    command.add("--soak", options->soak,
                      "Fly the path again and again for so long, and compare the memory")
-        ->check(CLI::Range(0.0, 1e6))
-        ->type_name("SECONDS");
-    command->add_option("--frames-dir", options->frames_folder,
+        .range(0.0, 1e6)
+        .type_name("SECONDS");
+    command.add("--frames-dir", options->frames_folder,
                         "Write every frame there, frame_00001.png and so on (for a video: README.md)");
-    command
-        ->add_option("--video", options->video,
+    command.add("--video", options->video,
                      "Make a video of all frames by ffmpeg, where that is installed: FILE.mp4, .mkv, .webm")
-        ->type_name("FILE");
-    command->add_flag("--flicker", options->flicker,
+        .type_name("FILE");
+    command.flag("--flicker", options->flicker,
                       "Also report every frame's mean luminance and how much surfaces' light changes");
-    command->add_flag("--popping", options->popping,
+    command.flag("--popping", options->popping,
                       "Also report how much pictures change from frame to frame, and in the same flight with "
                       "every point");
-    command
-        ->add_option("--compare", options->compare,
+    command.add("--compare", options->compare,
                      "Two reports: says whether the second is slower (exit code 1), faster, or neither")
-        ->expected(2)
-        ->type_name("A.json B.json");
-    command->add_option("--margin", options->margin, "Differences up to this are none, per cent")
-        ->check(CLI::Range(0.0, 1000.0))
-        ->capture_default_str()
-        ->type_name("PERCENT");
-    command->add_flag("--overwrite", options->overwrite, "Replace what exists");
-    command->callback([options, &chosen] {
-        chosen = [options] { return options->compare.empty() ? fly_all(*options) : compare(*options); };
-    });
+        .values(2)
+        .type_name("A.json B.json");
+    command.add("--margin", options->margin, "Differences up to this are none, per cent")
+        .range(0.0, 1000.0)
+        .show_default()
+        .type_name("PERCENT");
+    command.flag("--overwrite", options->overwrite, "Replace what exists");
+    command.run([options] { return options->compare.empty() ? fly_all(*options) : compare(*options); });
 }
 
 }  // namespace lucarne::viewer

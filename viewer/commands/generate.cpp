@@ -1,7 +1,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
@@ -57,40 +56,38 @@ Result<void> generate(GenerateOptions options) {
 
 }  // namespace
 
-void add_generate(CLI::App& app, Command& chosen) {
+void add_generate(CommandLine& line) {
     auto options = std::make_shared<GenerateOptions>();
-    auto* command = app.add_subcommand("generate", "Make a virtual scan with known truth");
+    Arguments command = line.add("generate", "Make a virtual scan with known truth");
     std::string scenes = "Scenes:";
     for (const auto& scene : io::synthetic_scenes())
         scenes += fmt::format("\n  {:<11}{}", scene.name, scene.summary);
     scenes += fmt::format("\n  {:<11}{}", io::synthetic_survey().name, io::synthetic_survey().summary);
-    command->footer(scenes);
-    command->add_option("scene", options->scan.scene, "Which scene, see below")
-        ->required()
-        ->type_name("SCENE");
-    command->add_option("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
-        ->required()
-        ->type_name("FILE");
-    command->add_option("--points", options->points, "How many points: about, or exactly with --even")
-        ->capture_default_str()
-        ->type_name("N[k|M|G]");
-    auto* stations = command
-                         ->add_option("--stations", options->scan.stations,
+    command.footer(scenes);
+    command.add("scene", options->scan.scene, "Which scene, see below")
+        .required()
+        .type_name("SCENE");
+    command.add("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
+        .required()
+        .type_name("FILE");
+    command.add("--points", options->points, "How many points: about, or exactly with --even")
+        .show_default()
+        .type_name("N[k|M|G]");
+    const Argument stations = command.add("--stations", options->scan.stations,
                                       "How many scanner stations (default: the scene's own)")
-                         ->type_name("N");
-    command
-        ->add_flag("--even", options->scan.even,
+                         .type_name("N");
+    command.flag("--even", options->scan.even,
                    "Sample all surfaces evenly instead of scanning, without noise")
-        ->excludes(stations);
-    command->add_option("--noise", options->scan.noise, "Standard deviation of the range, metres")
-        ->capture_default_str()
-        ->type_name("M");
-    command->add_flag("--normals", options->scan.normals, "Keep the true normals");
-    command->add_option("--seed", options->scan.seed, "The same seed gives the same file")
-        ->capture_default_str()
-        ->type_name("S");
-    command->add_flag("--overwrite", options->overwrite, "Replace the output if it exists");
-    command->callback([options, &chosen] { chosen = [options] { return generate(*options); }; });
+        .excludes(stations);
+    command.add("--noise", options->scan.noise, "Standard deviation of the range, metres")
+        .show_default()
+        .type_name("M");
+    command.flag("--normals", options->scan.normals, "Keep the true normals");
+    command.add("--seed", options->scan.seed, "The same seed gives the same file")
+        .show_default()
+        .type_name("S");
+    command.flag("--overwrite", options->overwrite, "Replace the output if it exists");
+    command.run([options] { return generate(*options); });
 }
 
 }  // namespace lucarne::viewer

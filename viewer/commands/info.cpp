@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +16,7 @@
 #include "octree/cache/cache.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/describe.h"
 #include "viewer/inputs/input.h"
@@ -154,22 +154,21 @@ Result<void> info(const Options& options) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Command& chosen) {
+void add_info(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    auto* command = app.add_subcommand("info", "Say what a cache or a scan holds");
-    command
-        ->add_option("inputs", options->inputs,
+    Arguments command = line.add("info", "Say what a cache or a scan holds");
+    command.add("inputs", options->inputs,
                      "Caches, scan files, folders of scan files. A broken one of several is left out")
-        ->required()
-        ->type_name("INPUT");
-    command->add_flag("--quick", options->quick,
+        .required()
+        .type_name("INPUT");
+    command.flag("--quick", options->quick,
                       "Do not read the points of scans: no bounds but those that headers state, and what was left out as far as it "
                       "is known");
-    add_read_options(*command, options->read);
-    command->add_option("--json", options->json_file, "Write it there as well, for machines: an object, of several inputs a list")
-        ->type_name("FILE");
-    command->add_flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
-    command->callback([options, &chosen] { chosen = [options] { return info(*options); }; });
+    add_read_options(command, options->read);
+    command.add("--json", options->json_file, "Write it there as well, for machines: an object, of several inputs a list")
+        .type_name("FILE");
+    command.flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
+    command.run([options] { return info(*options); });
 }
 
 }  // namespace lucarne::viewer

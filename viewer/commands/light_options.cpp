@@ -2,7 +2,6 @@
 
 #include <charconv>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -28,37 +27,32 @@ Result<gi::ValueRange> parse_luminance(const std::string& text) {
 
 }  // namespace
 
-void add_light_options(CLI::App& command, LightOptions& options) {
-    command
-        .add_option("--tone-map", options.tone_map,
+void add_light_options(Arguments& command, LightOptions& options) {
+    command.add("--tone-map", options.tone_map,
                     fmt::format("How radiance is shown: {}", fmt::join(gi::tone_map_names(), ", ")))
-        ->type_name("NAME");
-    command
-        .add_option("--luminance", options.luminance,
+        .type_name("NAME");
+    command.add("--luminance", options.luminance,
                     "What false colours span, cd/m2; about the exposure when not given")
-        ->type_name("LOW:HIGH");
-    command.add_option("--albedo", options.albedo, "Scale of what the points' colours reflect")
-        ->check(CLI::Range(0.0, 10.0))
-        ->type_name("X");
-    command
-        .add_option("--flatten", options.flatten,
+        .type_name("LOW:HIGH");
+    command.add("--albedo", options.albedo, "Scale of what the points' colours reflect")
+        .range(0.0, 10.0)
+        .type_name("X");
+    command.add("--flatten", options.flatten,
                     "Share of the light in the points' colours that is divided out")
-        ->check(CLI::Range(0.0, 1.0))
-        ->type_name("X");
-    command.add_option("--beside", options.compare, "Show this engine beside the picture's own (.png)")
-        ->type_name("ENGINE");
-    command
-        .add_option("--beside-show", options.compare_show,
+        .range(0.0, 1.0)
+        .type_name("X");
+    command.add("--beside", options.compare, "Show this engine beside the picture's own (.png)")
+        .type_name("ENGINE");
+    command.add("--beside-show", options.compare_show,
                     fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
-        ->type_name("HOW");
-    command.add_option("--border", options.border, "Of a split comparison: share of the width left of it")
-        ->check(CLI::Range(0.0, 1.0))
-        ->type_name("X");
-    command
-        .add_option("--difference-range", options.difference_range,
+        .type_name("HOW");
+    command.add("--border", options.border, "Of a split comparison: share of the width left of it")
+        .range(0.0, 1.0)
+        .type_name("X");
+    command.add("--difference-range", options.difference_range,
                     "Difference of exposed luminance that has the last colour")
-        ->check(CLI::Range(1e-6, 1e6))
-        ->type_name("X");
+        .range(1e-6, 1e6)
+        .type_name("X");
 }
 
 Result<void> apply(const LightOptions& options, gi::Scene& scene) {

@@ -4,10 +4,7 @@
 #include <string>
 
 #include "gi/scene/scene.h"
-
-namespace CLI {
-class App;
-}
+#include "viewer/commands/arguments.h"
 
 namespace lucarne::viewer {
 
@@ -19,7 +16,7 @@ struct LightOptions {
 
 /// Declares --tone-map --luminance --albedo --flatten --compare --compare-show --border --difference-range.
 /// `options` outlives the command.
-void add_light_options(CLI::App& command, LightOptions& options);
+void add_light_options(Arguments& command, LightOptions& options);
 
 /// Errors (ErrorKind::arguments): a text that is none of what its option takes.
 Result<void> apply(const LightOptions& options, gi::Scene& scene);

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
@@ -111,61 +110,53 @@ Result<void> apply_clip(const LookOptions& options, gi::Clip& clip) {
 
 }  // namespace
 
-void add_look_options(CLI::App& command, LookOptions& options) {
+void add_look_options(Arguments& command, LookOptions& options) {
     const auto names = [](std::span<const std::string_view> all) {
         return fmt::format("{}", fmt::join(all, ", "));
     };
-    command
-        .add_option("--colour,--color", options.colour,
+    command.add("--colour,--color", options.colour,
                     "What the points' colours say: " + names(gi::colour_names()) + ":NAME")
-        ->type_name("WHAT");
-    command.add_option("--colour-map,--color-map", options.map, names(gi::colour_map_names()))
-        ->type_name("NAME");
-    command.add_flag("--reverse-map", options.reversed, "The colour map from its other end");
-    command
-        .add_option("--range", options.range,
+        .type_name("WHAT");
+    command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names()))
+        .type_name("NAME");
+    command.flag("--reverse-map", options.reversed, "The colour map from its other end");
+    command.add("--range", options.range,
                     "Values that the colour map's ends stand for; where most points lie when not given")
-        ->type_name("LOW:HIGH");
-    command.add_option("--shading", options.shading, "Of the engine unlit: " + names(gi::shading_names()))
-        ->type_name("NAME");
-    command.add_option("--shading-strength", options.shading_strength, "0: none, 1: usual")
-        ->check(CLI::Range(0.0, 10.0))
-        ->type_name("X");
-    command.add_option("--point-size", options.point_size, "Scale of the points' own size")
-        ->check(CLI::Range(0.05, 20.0))
-        ->type_name("X");
-    command.add_option("--point-pixels", options.point_pixels, "The same size for all points, in pixels")
-        ->check(CLI::Range(0.0, 64.0))
-        ->type_name("N");
-    command
-        .add_option("--background", options.background,
+        .type_name("LOW:HIGH");
+    command.add("--shading", options.shading, "Of the engine unlit: " + names(gi::shading_names()))
+        .type_name("NAME");
+    command.add("--shading-strength", options.shading_strength, "0: none, 1: usual")
+        .range(0.0, 10.0)
+        .type_name("X");
+    command.add("--point-size", options.point_size, "Scale of the points' own size")
+        .range(0.05, 20.0)
+        .type_name("X");
+    command.add("--point-pixels", options.point_pixels, "The same size for all points, in pixels")
+        .range(0.0, 64.0)
+        .type_name("N");
+    command.add("--background", options.background,
                     "Behind the points: scene, one colour, or one from top to bottom (sRGB, 0 to 1)")
-        ->type_name("R,G,B[:R,G,B]");
-    command.add_option("--hide-class", options.hidden_classes, "Points of these classes are not there")
-        ->check(CLI::Range(0, 255))
-        ->delimiter(',')
-        ->type_name("N,...");
-    command
-        .add_option("--clip-box", options.clip_boxes,
+        .type_name("R,G,B[:R,G,B]");
+    command.add("--hide-class", options.hidden_classes, "Points of these classes are not there")
+        .range(0, 255)
+        .separator(',')
+        .type_name("N,...");
+    command.add("--clip-box", options.clip_boxes,
                     "Only points inside are there (several: inside any); DEGREES turns it about the vertical")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command.add_option("--clip-outside", options.clip_outside, "Only points outside are there")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command
-        .add_option("--clip-plane", options.clip_planes,
+        .repeatable()
+        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
+    command.add("--clip-outside", options.clip_outside, "Only points outside are there")
+        .repeatable()
+        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
+    command.add("--clip-plane", options.clip_planes,
                     "Only points on the side that the normal points to are there")
-        ->take_all()
-        ->allow_extra_args(false)
-        ->type_name("PX,PY,PZ,NX,NY,NZ");
-    command.add_flag("--clip-casts", options.clip_casts,
+        .repeatable()
+        .type_name("PX,PY,PZ,NX,NY,NZ");
+    command.flag("--clip-casts", options.clip_casts,
                      "What is clipped is out of sight, but still blocks and bounces light");
-    command.add_flag("--legend", options.legend, "Over the picture (.png): what the colours stand for");
-    command.add_flag("--axes", options.axes, "Over the picture (.png): where x, y and z point to");
-    command.add_flag("--scale-bar", options.scale_bar,
+    command.flag("--legend", options.legend, "Over the picture (.png): what the colours stand for");
+    command.flag("--axes", options.axes, "Over the picture (.png): where x, y and z point to");
+    command.flag("--scale-bar", options.scale_bar,
                      "Over the picture (.png): a length at the distance of the camera's target");
 }
 

@@ -6,10 +6,7 @@
 
 #include "gi/scene/look.h"
 #include "io/core/error.h"
-
-namespace CLI {
-class App;
-}
+#include "viewer/commands/arguments.h"
 
 namespace lucarne::viewer {
 
@@ -27,7 +24,7 @@ struct LookOptions {
 /// --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts
 /// --legend --axes --scale-bar. `options` outlives the
 /// command.
-void add_look_options(CLI::App& command, LookOptions& options);
+void add_look_options(Arguments& command, LookOptions& options);
 
 /// Errors (ErrorKind::arguments): a text that is none of what its option takes.
 Result<void> apply(const LookOptions& options, gi::Look& look);

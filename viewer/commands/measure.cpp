@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/terminal.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
@@ -104,40 +104,35 @@ Result<void> measure(const Options& options) {
 
 }  // namespace
 
-void add_measure(CLI::App& app, Command& chosen) {
+void add_measure(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    auto* command =
-        app.add_subcommand("measure", "Measure as the window does: points, distances, areas, sections");
-    add_input_options(*command, options->input);
-    command
-        ->add_option("--measurements", options->measurements,
+    Arguments command = line.add("measure", "Measure as the window does: points, distances, areas, sections");
+    add_input_options(command, options->input);
+    command.add("--measurements", options->measurements,
                      "What to measure, as the window saves it (data/README.md)")
-        ->type_name("FILE.json");
-    command
-        ->add_option("--at", options->at,
+        .type_name("FILE.json");
+    command.add("--at", options->at,
                      "Say all of the scan's point nearest to this place; may be repeated")
-        ->delimiter(',')
-        ->type_name("X,Y,Z");
-    command->add_flag("--snap", options->snap,
+        .separator(',')
+        .type_name("X,Y,Z");
+    command.flag("--snap", options->snap,
                       "Move the measurements' points to the nearest ones of the scan first");
-    command
-        ->add_option("-o,--output", options->output,
+    command.add("-o,--output", options->output,
                      "Write a table (.csv) or the measurements again (.json); else they are printed")
-        ->type_name("FILE");
-    command->add_option("--json", options->json_file, "Write the results there as well, for machines")
-        ->type_name("FILE");
-    command->add_option("--results", options->results, "In metres or in the scan file's own unit")
-        ->check(CLI::IsMember({"m", "file"}))
-        ->capture_default_str();
-    command
-        ->add_option("--sections", options->sections,
+        .type_name("FILE");
+    command.add("--json", options->json_file, "Write the results there as well, for machines")
+        .type_name("FILE");
+    command.add("--results", options->results, "In metres or in the scan file's own unit")
+        .one_of({"m", "file"})
+        .show_default();
+    command.add("--sections", options->sections,
                      "Write every section into this folder, as points and as a drawing")
-        ->type_name("FOLDER");
-    command->add_option("--section-points", options->section_points, "The most points of a section")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
-        ->capture_default_str();
-    command->add_flag("--overwrite", options->overwrite, "Replace outputs that exist");
-    command->callback([options, &chosen] { chosen = [options] { return measure(*options); }; });
+        .type_name("FOLDER");
+    command.add("--section-points", options->section_points, "The most points of a section")
+        .range(uint64_t{1}, uint64_t{100'000'000})
+        .show_default();
+    command.flag("--overwrite", options->overwrite, "Replace outputs that exist");
+    command.run([options] { return measure(*options); });
 }
 
 }  // namespace lucarne::viewer

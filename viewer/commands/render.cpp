@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +20,7 @@
 #include "io/core/progress.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
@@ -210,43 +210,42 @@ Result<void> render(RenderOptions options) {
 
 }  // namespace
 
-void add_render(CLI::App& app, Command& chosen) {
+void add_render(CommandLine& line) {
     auto options = std::make_shared<RenderOptions>();
-    auto* command = app.add_subcommand("render", "Render one picture without a window");
-    add_input_options(*command, options->input);
-    command->add_flag("--first", options->first,
+    Arguments command = line.add("render", "Render one picture without a window");
+    add_input_options(command, options->input);
+    command.flag("--first", options->first,
                       "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
                       "nothing is converted or kept");
-    command->add_option("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
-        ->required()
-        ->type_name("FILE");
-    command->add_option("--camera", options->camera, "One of the scene's; the first when not given")
-        ->type_name("NAME");
-    add_drawing_options(*command, options->drawing);
-    command->add_option("--frames", options->frames, "How many to average")
-        ->check(CLI::Range(1, 1'000'000))
-        ->type_name("N");
-    command->add_option("--seconds", options->seconds, "How long to go on averaging")
-        ->check(CLI::Range(0.0, 1e6))
-        ->type_name("S");
-    command->add_option("--json", options->json, "Figures of the picture, machine-readable")
-        ->type_name("FILE");
-    command
-        ->add_option("--gbuffer", options->gbuffer,
+    command.add("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
+        .required()
+        .type_name("FILE");
+    command.add("--camera", options->camera, "One of the scene's; the first when not given")
+        .type_name("NAME");
+    add_drawing_options(command, options->drawing);
+    command.add("--frames", options->frames, "How many to average")
+        .range(1, 1'000'000)
+        .type_name("N");
+    command.add("--seconds", options->seconds, "How long to go on averaging")
+        .range(0.0, 1e6)
+        .type_name("S");
+    command.add("--json", options->json, "Figures of the picture, machine-readable")
+        .type_name("FILE");
+    command.add("--gbuffer", options->gbuffer,
                      "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
-        ->type_name("FILE.exr");
-    command->add_flag("--layers", options->layers,
+        .type_name("FILE.exr");
+    command.flag("--layers", options->layers,
                       "Also write what else the engine knows, beside the picture (reference: "
                       "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
                       "OUT.b.exr by half the paths each)");
-    command->add_flag("--transparent", options->finish.transparent,
+    command.flag("--transparent", options->finish.transparent,
                       "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
-    command->add_flag("--no-overlay", options->no_overlay,
+    command.flag("--no-overlay", options->no_overlay,
                       "Without the legend, axes and scale bar that the scene asks for");
-    command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
-    command->callback([options, &chosen] {
+    command.flag("--overwrite", options->overwrite, "Replace files that exist");
+    command.run([options] {
         options->finish.overlays = !options->no_overlay;
-        chosen = [options] { return render(*options); };
+        return render(*options);
     });
 }
 

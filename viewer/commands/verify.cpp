@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -31,11 +30,11 @@ Result<void> verify(const std::filesystem::path& path) {
 
 }  // namespace
 
-void add_verify(CLI::App& app, Command& chosen) {
+void add_verify(CommandLine& line) {
     auto path = std::make_shared<std::filesystem::path>();
-    auto* command = app.add_subcommand("verify", "Check every checksum and invariant of a cache");
-    command->add_option("cache", *path, "The cache to read")->required()->type_name("CACHE");
-    command->callback([path, &chosen] { chosen = [path] { return verify(*path); }; });
+    Arguments command = line.add("verify", "Check every checksum and invariant of a cache");
+    command.add("cache", *path, "The cache to read").required().type_name("CACHE");
+    command.run([path] { return verify(*path); });
 }
 
 }  // namespace lucarne::viewer

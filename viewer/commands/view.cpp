@@ -6,12 +6,12 @@
 #include <system_error>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
 
 #include "io/core/log.h"
 #include "octree/tree/bulk.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/path.h"
@@ -124,37 +124,35 @@ Result<void> view(ViewOptions options) {
 
 }  // namespace
 
-void add_view(CLI::App& app, Command& chosen) {
+void add_view(CommandLine& line) {
     auto options = std::make_shared<ViewOptions>();
-    auto* command = app.add_subcommand("view", "Look around in caches and scans, lit by their own surfaces");
+    Arguments command = line.add("view", "Look around in caches and scans, lit by their own surfaces");
     options->input.required = false;
-    add_input_options(*command, options->input);
-    add_drawing_options(*command, options->drawing);
-    command->add_option("--camera", options->camera, "Start with this camera of the scene");
-    command
-        ->add_option("--scale", options->drawing.render.scale,
+    add_input_options(command, options->input);
+    add_drawing_options(command, options->drawing);
+    command.add("--camera", options->camera, "Start with this camera of the scene");
+    command.add("--scale", options->drawing.render.scale,
                      "Share of the window's sides that pictures are made at, and scaled up from: half takes a quarter of "
                      "the pixels' time")
-        ->check(CLI::Range(gi::kLeastPictureScale, 1.0))
-        ->type_name("X");
-    command
-        ->add_option("--frame-time", options->frame_time_ms,
+        .range(gi::kLeastPictureScale, 1.0)
+        .type_name("X");
+    command.add("--frame-time", options->frame_time_ms,
                      "What a picture should take while something moves; cuts and size follow it")
-        ->check(CLI::Range(1.0, 1e5))
-        ->capture_default_str()
-        ->type_name("MS");
-    command->add_option("--measurements", options->measurements, "Show these measurements, as the window saves them")
-        ->type_name("FILE.json");
-    command->add_option("--path", options->path, "Show and edit this flythrough")->type_name("P.json");
-    command->add_option("--screenshot", options->screenshot,
+        .range(1.0, 1e5)
+        .show_default()
+        .type_name("MS");
+    command.add("--measurements", options->measurements, "Show these measurements, as the window saves them")
+        .type_name("FILE.json");
+    command.add("--path", options->path, "Show and edit this flythrough").type_name("P.json");
+    command.add("--screenshot", options->screenshot,
                         "Save the window as this PNG once its picture is whole, and close");
-    command->add_option("--frames", options->frames, "Whole pictures to average with --screenshot")
-        ->check(CLI::Range(1u, 256u))
-        ->capture_default_str();
-    command->add_flag("--overwrite", options->overwrite, "Replace the screenshot's file");
-    command->callback([options, command, &chosen] {
-        options->size_given = command->count("--size") > 0;
-        chosen = [options] { return view(*options); };
+    command.add("--frames", options->frames, "Whole pictures to average with --screenshot")
+        .range(1u, 256u)
+        .show_default();
+    command.flag("--overwrite", options->overwrite, "Replace the screenshot's file");
+    command.run([options, command] {
+        options->size_given = command.given("--size");
+        return view(*options);
     });
 }
 

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <system_error>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "io/core/interrupt.h"
@@ -134,55 +133,6 @@ TemporaryFolder::~TemporaryFolder() {
     if (path_.empty()) return;
     std::filesystem::remove_all(path_, code);
     forget_interrupt(path_);
-}
-
-void add_read_options(CLI::App& command, io::ReadOptions& options) {
-    command
-        .add_option("--columns", options.columns,
-                    "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
-                    "else they are guessed, and the guess is printed")
-        ->type_name("NAMES");
-    command
-        .add_option_function<std::string>(
-            "--unit",
-            [&options](const std::string& text) {
-                options.metres_per_unit = metres_of(text);
-                if (!options.metres_per_unit)
-                    throw CLI::ValidationError("--unit", "is none of m, cm, mm, km, ft, us-ft, in, nor a number of metres");
-            },
-            "The unit of the scans' coordinates, where a file does not say it or is wrong: m, cm, mm, km, ft, us-ft, "
-            "in, or how many metres it has")
-        ->type_name("UNIT");
-    command
-        .add_option("--spacing", options.mesh.spacing,
-                    "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "
-                    "its diagonal, or as dense as its vertices)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("METRES");
-    command
-        .add_option_function<std::string>(
-            "--mesh-points",
-            [&options](const std::string& text) {
-                const auto count = parse_count("--mesh-points", text);
-                if (!count || *count == 0) throw CLI::ValidationError("--mesh-points", "is no number of points");
-                options.mesh.samples = *count;
-            },
-            "About so many points of a mesh, instead of --spacing")
-        ->type_name("N")
-        ->excludes("--spacing");
-    command.add_flag("--vertices", options.mesh.vertices,
-                     "The vertices of a mesh are the points; its faces are passed over");
-    command.add_flag("--salvage", options.salvage,
-                     "Read what can be read of damaged and truncated scan files, and say what cannot");
-}
-
-void add_input_options(CLI::App& command, InputOptions& options) {
-    command.add_option("INPUT", options.paths, "Caches or scan files, taken together")->required(options.required);
-    command.add_flag(
-        "--no-cache", options.no_cache,
-        "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
-        "the user's cache folder, and found the next time)");
-    add_read_options(command, options.read);
 }
 
 Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening) {

@@ -11,10 +11,6 @@
 #include "octree/growing/growing_build.h"
 #include "octree/tree/source.h"
 
-namespace CLI {
-class App;
-}
-
 namespace lucarne::viewer {
 
 /// Caches, COPC files and scans, drawn together. Where all are scans they become one cache.
@@ -24,11 +20,6 @@ struct InputOptions {
     io::ReadOptions read;
     bool required = true;  ///< at least one path
 };
-
-/// Declares what a user may know better than a scan file. `options` outlives the command.
-void add_read_options(CLI::App& command, io::ReadOptions& options);
-/// Declares INPUT..., --no-cache and the above. `options` outlives the command.
-void add_input_options(CLI::App& command, InputOptions& options);
 
 /// A folder of our own that is removed with all that is in it.
 class TemporaryFolder {
