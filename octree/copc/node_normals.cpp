@@ -27,8 +27,7 @@ Result<std::vector<glm::vec3>> unsigned_normals(std::vector<glm::dvec3> points) 
     const OneChunk chunk(std::move(points));
     ChunkCache cache(chunk, 0);
     LUCARNE_ASSIGN(auto neighbours, ChunkNeighbours::load(cache, 0, NeighbourSearch::leaf, 0));
-    tbb::enumerable_thread_specific<SurfaceFitter> fitters(
-        [] { return SurfaceFitter(NeighbourSearch::leaf); });
+    tbb::enumerable_thread_specific<SurfaceFitter> fitters;
     LUCARNE_TRY(neighbours.search(
         kNeighbours + 1, [&](uint32_t site, const Patch& nearest, bool, ChunkNeighbours::Surroundings&) {
             if (nearest.count < kFewest) return 0.0;

@@ -77,7 +77,7 @@ std::vector<int8_t> toward_stations(const ChunkSurface& surface, std::span<const
 Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const NormalOptions& options) {
     LUCARNE_ASSIGN(auto neighbours,
                    ChunkNeighbours::load(cache, chunk, options.search, options.memory / kHaloMemory));
-    LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.search, options.neighbours));
+    LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) drop_curtains(surface, rays);

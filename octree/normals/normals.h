@@ -35,10 +35,10 @@ inline constexpr uint64_t kNormalBytesPerPoint = 220;
 inline constexpr uint32_t kMostNormalNeighbours = 127;
 
 /// How neighbours are found. Both find the same ones; where several are at one distance, which of them may
-/// differ.
+/// differ. Either way the plane through them is PCL's.
 enum class NeighbourSearch {
-    leaf,   ///< leaves of points along a Morton curve, planes in closed form (leaf_index.h)
-    flann,  ///< PCL's planes over FLANN's kd-tree: the usual way, to compare with
+    leaf,   ///< leaves of points along a Morton curve (leaf_index.h)
+    flann,  ///< FLANN's kd-tree, which PCL takes by default: to compare with
 };
 
 struct NormalOptions {

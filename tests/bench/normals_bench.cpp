@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "octree/normals/pcl_normals.h"
+#include "tests/octree/normals/pcl_normals.h"
 #include "tests/bench/bench_run.h"
 #include "tests/octree/normals/virtual_scans.h"
 

@@ -29,8 +29,8 @@ constexpr float kLine = 0.05f;
 /// The surface at one site after another; one a thread.
 class SiteEstimator {
  public:
-    SiteEstimator(ChunkNeighbours& neighbours, NeighbourSearch search, size_t usual, ChunkSurface& surface)
-        : neighbours_(neighbours), usual_(usual), surface_(surface), fitter_(search) {}
+    SiteEstimator(ChunkNeighbours& neighbours, size_t usual, ChunkSurface& surface)
+        : neighbours_(neighbours), usual_(usual), surface_(surface) {}
 
     /// 0, or the radius that must be known around the site first.
     double visit(uint32_t site, const Patch& nearest, ChunkNeighbours::Surroundings& around) {
@@ -197,7 +197,7 @@ void collect(ChunkSurface& surface) {
 
 }  // namespace
 
-Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, NeighbourSearch search, size_t k) {
+Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
     ChunkSurface surface;
     const size_t sites = neighbours.site_count();
     surface.normals.assign(sites, glm::vec3(0.0f));
@@ -206,7 +206,7 @@ Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, NeighbourSear
     none.fill(kNoSite);
     surface.edges.assign(sites, none);
     tbb::enumerable_thread_specific<SiteEstimator> estimators(
-        [&] { return SiteEstimator(neighbours, search, k + 1, surface); });
+        [&] { return SiteEstimator(neighbours, k + 1, surface); });
     LUCARNE_TRY(neighbours.search(
         k + 1, [&](uint32_t site, const Patch& nearest, bool exact, ChunkNeighbours::Surroundings& around) {
             return exact ? estimators.local().visit(site, nearest, around) : 0.0;

@@ -33,6 +33,6 @@ struct ChunkSurface {
 
 /// Normals and areas of all sites from `k` neighbours, and from four times as many where those leave the
 /// normal uncertain.
-Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, NeighbourSearch search, size_t k);
+Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k);
 
 }  // namespace lucarne::octree

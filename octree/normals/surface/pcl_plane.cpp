@@ -1,37 +1,36 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include <pcl/common/centroid.h>
 #include <pcl/common/eigen.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 
 #include "octree/normals/surface/plane.h"
 
 namespace lucarne::octree {
 
-Plane pcl_plane(const Patch& patch) {
-    pcl::PointCloud<pcl::PointXYZ> cloud;
-    cloud.resize(patch.count);
-    for (size_t i = 0; i < patch.count; ++i) cloud[i] = pcl::PointXYZ(patch.x[i], patch.y[i], patch.z[i]);
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    Eigen::Vector4d centroid = Eigen::Vector4d::Zero();
-    pcl::computeMeanAndCovarianceMatrix(cloud, covariance, centroid);
+Plane plane_of(const Moments& moments) {
+    const double n = static_cast<double>(moments.count);
+    const double x = moments.sum[0] / n, y = moments.sum[1] / n, z = moments.sum[2] / n;
+    const auto product = [&](size_t i) { return static_cast<double>(moments.products[i]) / n; };
+    const double xx = product(0) - x * x, yy = product(1) - y * y, zz = product(2) - z * z,
+                 xy = product(3) - x * y, xz = product(4) - x * z, yz = product(5) - y * z;
+    const double trace = xx + yy + zz;
+    if (!(trace > std::numeric_limits<double>::min())) return {{0, 0, 1}, {0, 0, 0}};
 
-    // PCL's solver gives the least eigenvalue and its vector; the other two follow from the trace and the sum
-    // of the principal minors, which spares a second solution of the cubic.
+    Eigen::Matrix3d covariance;
+    covariance << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    covariance /= trace;
     double least = 0;
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d axis;
     pcl::eigen33(covariance, least, axis);
+    // PCL gives the least eigenvalue and its vector; the other two follow from the trace, which is 1, and the sum of
+    // the principal minors, which spares a second solution of the cubic equation.
     least = std::max(least, 0.0);
-    const double sum = std::max(0.0, covariance.trace() - least);
-    const double minors = covariance(0, 0) * covariance(1, 1) + covariance(0, 0) * covariance(2, 2) +
-                          covariance(1, 1) * covariance(2, 2) - covariance(0, 1) * covariance(0, 1) -
-                          covariance(0, 2) * covariance(0, 2) - covariance(1, 2) * covariance(1, 2);
-    const double product = minors - least * sum;
-    const double largest = sum / 2 + std::sqrt(std::max(0.0, sum * sum / 4 - product));
+    const double minors = (xx * yy + xx * zz + yy * zz - xy * xy - xz * xz - yz * yz) / (trace * trace);
+    const double sum = std::max(0.0, 1 - least), rest = minors - least * sum;
+    const double largest = sum / 2 + std::sqrt(std::max(0.0, sum * sum / 4 - rest));
     const double middle = std::clamp(sum - largest, least, std::max(least, largest));
-    return {{axis.x(), axis.y(), axis.z()}, {least, middle, largest}};
+    return {{axis.x(), axis.y(), axis.z()}, {least * trace, middle * trace, largest * trace}};
 }
 
 }  // namespace lucarne::octree

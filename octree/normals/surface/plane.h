@@ -16,13 +16,8 @@ struct Plane {
         variances{};  ///< eigenvalues of the covariance, rising; variances[0] along the normal
 };
 
-/// What PCL's estimator gives for the points of which these are the sums (pcl_plane), without trigonometry.
+/// The plane of the points of which these are the sums, by PCL: pcl::eigen33, which pcl::solvePlaneParameters and so
+/// pcl::NormalEstimation call, in double precision. No point at all has the plane z = 0.
 Plane plane_of(const Moments& moments);
-
-/// PCL's plane estimator: the mean and covariance, the closed-form eigenvectors, in double precision.
-Plane pcl_plane(const Patch& patch);
-
-/// By whichever goes with the search. At least three points.
-Plane fit_plane(NeighbourSearch search, const Patch& patch);
 
 }  // namespace lucarne::octree

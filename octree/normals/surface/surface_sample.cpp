@@ -108,7 +108,7 @@ Range own_layer(const std::vector<float>& heights, size_t count, const Range& ra
 }  // namespace
 
 SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
-    Plane plane = fit_plane(search_, patch);
+    Plane plane = plane_of(moments_of(patch));
     Range range = heights_over(patch, glm::vec3(plane.normal), heights_);
     const Range layer = own_layer(heights_, patch.count, range, spacing);
     size_t used = patch.count;
@@ -120,7 +120,7 @@ SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
                 layer_.push_back(patch.offset(i), patch.index[i]);
         layer_.pad();
         used = layer_.count;
-        plane = fit_plane(search_, layer_);
+        plane = plane_of(moments_of(layer_));
     }
     const auto& v = plane.variances;
     return {glm::vec3(plane.normal), deviation_of(plane, used), layer,
@@ -132,7 +132,7 @@ bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch) {
     layer_.make_room(patch.count);
     for (size_t i = 1; i < patch.count; ++i) layer_.push_back(patch.offset(i), patch.index[i]);
     layer_.pad();
-    const Plane plane = fit_plane(search_, layer_);
+    const Plane plane = plane_of(moments_of(layer_));
     if (deviation_of(plane, layer_.count) > kGoodDeviation) return false;
     double height = 0;
     for (size_t i = 0; i < layer_.count; ++i) height += glm::dot(glm::dvec3(layer_.offset(i)), plane.normal);

@@ -30,8 +30,6 @@ struct SurfaceFit {
 /// scratch: one a thread.
 class SurfaceFitter {
  public:
-    explicit SurfaceFitter(NeighbourSearch search) : search_(search) {}
-
     /// At least four points.
     ///  - The plane is PCL's. Where the neighbourhood falls apart into layers along the normal (both faces of
     ///  a thin wall) by `spacing`, only the point's own layer is used.
@@ -45,7 +43,6 @@ class SurfaceFitter {
     bool lies_in_plane_of_others(const Patch& patch);
 
  private:
-    NeighbourSearch search_;
     std::vector<float> heights_;
     Patch layer_;
 };

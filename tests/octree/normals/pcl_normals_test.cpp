@@ -1,8 +1,10 @@
 // PCL's own estimator over its own search and over ours.
-#include "octree/normals/pcl_normals.h"
+#include "tests/octree/normals/pcl_normals.h"
 
 #include <cmath>
 
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
 #include "octree/normals/neighbours/leaf_index.h"
@@ -35,7 +37,7 @@ TEST(PclNormals, AreTheSameOverOurSearch) {
     }
 }
 
-TEST(PclNormals, PlanesInClosedFormAreThoseOfPcl) {
+TEST(PclNormals, PlanesAreThePrincipalAxesOfTheirPoints) {
     Random random(9);
     for (const double thickness : {0.0, 1e-3, 0.1, 1.0}) {
         for (int round = 0; round < 200; ++round) {
@@ -48,12 +50,21 @@ TEST(PclNormals, PlanesInClosedFormAreThoseOfPcl) {
                 patch.push_back(glm::vec3(p - (1 - thickness) * glm::dot(p, n) * n), 0);
             }
             patch.pad();
-            const Plane a = plane_of(moments_of(patch)), b = pcl_plane(patch);
-            const double widest = b.variances[2];
-            for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a.variances[i], b.variances[i], 1e-5 * widest);
-            if (b.variances[1] > 2 * b.variances[0] + 1e-3 * widest) {
-                EXPECT_GT(std::abs(glm::dot(a.normal, b.normal)), std::cos(1e-3)) << thickness;
+            const Plane plane = plane_of(moments_of(patch));
+            glm::dmat3 covariance(0.0);
+            glm::dvec3 mean(0.0);
+            for (size_t i = 0; i < patch.count; ++i) mean += glm::dvec3(patch.offset(i)) / 17.0;
+            for (size_t i = 0; i < patch.count; ++i) {
+                const glm::dvec3 d = glm::dvec3(patch.offset(i)) - mean;
+                covariance += glm::outerProduct(d, d) / 17.0;
             }
+            const auto [least, middle, widest] = plane.variances;
+            EXPECT_NEAR(glm::length(plane.normal), 1, 1e-12);
+            EXPECT_LT(glm::length(covariance * plane.normal - least * plane.normal), 1e-5 * widest) << thickness;
+            EXPECT_LE(least, middle);
+            EXPECT_LE(middle, widest);
+            EXPECT_NEAR(least + middle + widest, covariance[0][0] + covariance[1][1] + covariance[2][2], 1e-5 * widest);
+            EXPECT_NEAR(least * middle * widest, glm::determinant(covariance), 1e-5 * widest * widest * widest);
         }
     }
 }

@@ -1,4 +1,4 @@
-#include "octree/normals/pcl_normals.h"
+#include "tests/octree/normals/pcl_normals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/search/impl/kdtree.hpp>
+#include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
 
 #include "octree/normals/neighbours/leaf_index.h"
