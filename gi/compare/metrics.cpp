@@ -14,9 +14,9 @@ namespace lucarne::gi {
 namespace {
 
 using Pixels = std::span<const glm::vec4>;
-using Mask = std::span<const uint8_t>;
+using Selection = std::span<const uint8_t>;
 
-Result<void> check_pair(Pixels picture, Pixels reference, Mask mask) {
+Result<void> check_pair(Pixels picture, Pixels reference, Selection mask) {
     if (picture.size() != reference.size() || picture.empty())
         return rejected("pictures",
                         fmt::format("{} pixels cannot be compared with {}", picture.size(), reference.size()),
@@ -32,7 +32,7 @@ Result<void> check_pair(Pixels picture, Pixels reference, Mask mask) {
 
 /// use(i) for every pixel of the mask, in order.
 template <class Use>
-void for_each(size_t pixels, Mask mask, const Use& use) {
+void for_each(size_t pixels, Selection mask, const Use& use) {
     for (size_t i = 0; i < pixels; ++i)
         if (mask.empty() || mask[i]) use(i);
 }
@@ -70,10 +70,6 @@ Result<void> check_radiance(Pixels pixels, uint32_t width, const std::string& na
                                 pixels.size(), first % width, first / width));
 }
 
-double luminance(const glm::vec4& colour) {
-    return glm::dot(glm::dvec3(colour), glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
 double mean_luminance(Pixels picture) {
     double sum = 0;
     for (const glm::vec4& pixel : picture) sum += luminance(pixel);
@@ -88,7 +84,7 @@ double relative_epsilon(Pixels reference) {
     return 0.01 * mean * mean + std::numeric_limits<double>::min();
 }
 
-Result<ImageMetrics> compare_images(Pixels picture, Pixels reference, Mask mask) {
+Result<ImageMetrics> compare_images(Pixels picture, Pixels reference, Selection mask) {
     LUCARNE_TRY(check_pair(picture, reference, mask));
     const double epsilon = relative_epsilon(reference);
     ImageMetrics metrics;
@@ -115,7 +111,7 @@ Result<ImageMetrics> compare_images(Pixels picture, Pixels reference, Mask mask)
     return metrics;
 }
 
-Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels second, Mask mask) {
+Result<HalvesError> compare_with_halves(Pixels picture, Pixels first, Pixels second, Selection mask) {
     LUCARNE_TRY(check_pair(picture, first, mask));
     LUCARNE_TRY(check_pair(picture, second, mask));
     std::vector<glm::vec4> mean(first.size());

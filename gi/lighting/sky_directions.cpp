@@ -4,14 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "gi/shared/luminance.h"
+
 namespace lucarne::gi {
 namespace {
 
 constexpr uint32_t kMostColumns = 512;
-
-double luminance(const glm::vec3& c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;  // Rec. 709
-}
 
 /// The first of the running sums that is beyond `at`, a share in [0, 1) of the last one; `at` becomes the
 /// share within that step.
@@ -52,7 +50,7 @@ SkyDirections::SkyDirections(std::shared_ptr<const Environment> environment)
 double SkyDirections::weight(uint32_t x, uint32_t y) const {
     const double step = M_PI / environment_->height;
     const double heights = std::cos(y * step) - std::cos((y + 1.0) * step);
-    return luminance(environment_->texels[size_t{y} * environment_->width + x]) * heights * 2 * M_PI /
+    return luminance(glm::dvec3(environment_->texels[size_t{y} * environment_->width + x])) * heights * 2 * M_PI /
            environment_->width;
 }
 
@@ -84,7 +82,7 @@ SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
     const glm::vec3& radiance = sky.texels[size_t{y} * sky.width + x];
     // The density is luminance over total.
     return {glm::vec3(sine * std::sin(turns), sine * std::cos(turns), z),
-            radiance * static_cast<float>(total_ / luminance(radiance))};
+            radiance * static_cast<float>(total_ / luminance(glm::dvec3(radiance)))};
 }
 
 }  // namespace lucarne::gi

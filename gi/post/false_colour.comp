@@ -1,6 +1,7 @@
 // Luminances, or how two pictures' luminances differ, as places along a ramp of colours.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
+#include "gi/shared/luminance.h"
 
 layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
 layout(std430, binding = 1) writeonly buffer Picture { uint picture[]; };
@@ -10,10 +11,6 @@ uniform uint mode;  // 0: logarithm of the luminance, 1: signed difference, 2: a
 uniform float gain;
 uniform float offset;
 uniform vec4 ramp[RAMP];  // sRGB
-
-float luminance(vec3 rgb) {
-    return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
-}
 
 void main() {
     uint at = thread_number();

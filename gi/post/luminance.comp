@@ -1,5 +1,6 @@
 // Sums over one run of pixels an invocation, in order, so that the result is the same every time.
 layout(local_size_x = 64) in;
+#include "gi/shared/luminance.h"
 
 layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
 layout(std430, binding = 1) writeonly buffer Sums { vec2 sums[]; };
@@ -13,9 +14,9 @@ void main() {
     if (part * run >= pixels) return;
     uint last = min((part + 1u) * run, pixels);
     for (uint at = part * run; at < last; ++at) {
-        float luminance = dot(radiance[at].rgb, vec3(0.2126, 0.7152, 0.0722));
-        if (!(luminance > 0.0) || isinf(luminance)) continue;
-        sum += vec2(floor_luminance > 0.0 ? log2(max(luminance, floor_luminance)) : luminance, 1.0);
+        float value = luminance(radiance[at].rgb);
+        if (!(value > 0.0) || isinf(value)) continue;
+        sum += vec2(floor_luminance > 0.0 ? log2(max(value, floor_luminance)) : value, 1.0);
     }
     sums[part] = sum;
 }

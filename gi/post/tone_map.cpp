@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "gi/shared/luminance.h"
 #include "gi/shared/tone_curve.h"
 
 namespace lucarne::gi {
@@ -37,9 +38,9 @@ Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, 
 double mean_of(std::span<const glm::vec4> radiance, double floor) {
     double sum = 0, count = 0;
     for (const glm::vec4& pixel : radiance) {
-        const double luminance = glm::dot(glm::dvec3(pixel), glm::dvec3(0.2126, 0.7152, 0.0722));
-        if (!(luminance > 0) || std::isinf(luminance)) continue;
-        sum += floor > 0 ? std::log2(std::max(luminance, floor)) : luminance;
+        const double value = luminance(glm::dvec3(pixel));
+        if (!(value > 0) || std::isinf(value)) continue;
+        sum += floor > 0 ? std::log2(std::max(value, floor)) : value;
         ++count;
     }
     return count > 0 ? sum / count : 0;

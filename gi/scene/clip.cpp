@@ -12,12 +12,12 @@ namespace {
 
 using glm::dvec3;
 
-struct Frame {
+struct BoxFrame {
     dvec3 centre;
     std::array<dvec3, 3> axes;  ///< one over half the box's length, along it
 };
 
-Frame frame_of(const ClipBox& box) {
+BoxFrame frame_of(const ClipBox& box) {
     constexpr double kThinnest = 1e-12;  // world units: a box of no thickness keeps what lies on it
     const dvec3 half = glm::max((box.max - box.min) / 2.0, dvec3(kThinnest));
     const double c = std::cos(box.rotation), s = std::sin(box.rotation);
@@ -31,7 +31,7 @@ dvec3 kept_side(const ClipPlane& plane) {
 
 /// What of a cube lies in a box; `some` may be said of cubes that only come close.
 Kept inside(const ClipBox& box, const octree::Cube& cube) {
-    const Frame frame = frame_of(box);
+    const BoxFrame frame = frame_of(box);
     const double half = cube.size / 2;
     const dvec3 centre = cube.min + half - frame.centre;
     Kept found = Kept::all;
@@ -62,7 +62,7 @@ DeviceClip device_clip(const Clip& clip, const dvec3& local_origin, double metre
                          static_cast<float>(glm::dot(axis, local_origin - centre)));
     };
     for (const ClipBox& box : clip.boxes) {
-        const Frame frame = frame_of(box);
+        const BoxFrame frame = frame_of(box);
         ClipShape shape{};
         for (size_t i = 0; i < 3; ++i) shape.axis[i] = row(frame.axes[i], frame.centre);
         shape.kind.x = box.inverted ? kClipOutside : kClipInside;

@@ -35,10 +35,6 @@ double watts(const SceneLight& light, double metres_per_unit) {
 
 }  // namespace
 
-double luminance(const glm::dvec3& rgb) {
-    return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
 double luminous_flux(const SceneLight& light, double metres_per_unit) {
     return kLumensPerWatt * luminance(light.strength) * watts(light, metres_per_unit);
 }

@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/scene/scene.h"
+#include "gi/shared/luminance.h"
 
 namespace lucarne::gi {
 
@@ -10,9 +11,6 @@ namespace lucarne::gi {
 /// & Shakespeare 1998, "Rendering with Radiance", WHTEFFICACY). A colour in watts is weighted by Rec. 709's
 /// luminance, so that [1, 1, 1] W are 179 lm.
 inline constexpr double kLumensPerWatt = 179;
-
-/// Rec. 709, linear.
-double luminance(const glm::dvec3& rgb);
 
 /// What a spot, point, rectangle or disc sends out, lm; of a directional light the illuminance of a surface
 /// that faces it, lx. `metres_per_unit` is the scan's.

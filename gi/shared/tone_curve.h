@@ -3,6 +3,7 @@
 #define LUCARNE_GI_SHARED_TONE_CURVE_H
 
 #include "gi/shared/language.h"
+#include "gi/shared/luminance.h"
 
 #ifdef __cplusplus
 namespace lucarne::gi {
@@ -15,7 +16,7 @@ LUCARNE_FN vec3 filmic_curve(vec3 x) {
 
 // Reinhard et al. 2002, "Photographic tone reproduction for digital images", eq. 3, on luminance (Rec. 709).
 LUCARNE_FN vec3 reinhard_curve(vec3 x) {
-    return x / (1.0f + dot(x, vec3(0.2126f, 0.7152f, 0.0722f)));
+    return x / (1.0f + luminance(x));
 }
 
 // Exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none). What is no

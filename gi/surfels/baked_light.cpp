@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/surfels/surfel_pool.h"
+#include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/bulk.h"
 
@@ -64,7 +65,7 @@ void add_node(const octree::NodeSource& source, uint32_t node, const octree::Nod
             glm::clamp((position - min) / cell, glm::dvec3(0), glm::dvec3(sums.size) - 1.0);
         const size_t at =
             sums.at(static_cast<int>(place.x), static_cast<int>(place.y), static_cast<int>(place.z));
-        sums.values[at] += glm::dot(glm::dvec3(colour), glm::dvec3(0.2126, 0.7152, 0.0722));
+        sums.values[at] += luminance(glm::dvec3(colour));
         sums.counts[at] += 1;
     }
 }

@@ -9,17 +9,17 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kTurn = std::numbers::pi / 2;  ///< radians a second
+constexpr double kTurnRate = std::numbers::pi / 2;  ///< radians a second
 constexpr double kPan = 1;                      ///< heights of the picture a second
-constexpr double kZoom = 2;                     ///< times the distance a second
-constexpr double kLongestStep = 0.25;  ///< s: a slow frame does not throw the camera out of the house
+constexpr double kZoomRate = 2;                     ///< times the distance a second
+constexpr double kLongestReport = 0.25;  ///< s: a slow frame does not throw the camera out of the house
 
 }  // namespace
 
 bool drive(const io::SixDofState& cap, SixDofHold hold, double speed, double seconds, CameraRig& rig) {
-    const double step = std::clamp(seconds, 0.0, kLongestStep);
+    const double step = std::clamp(seconds, 0.0, kLongestReport);
     const glm::dvec3 push = cap.push * step;
-    const double pitch = cap.turn.x * kTurn * step, yaw = cap.turn.y * kTurn * step;
+    const double pitch = cap.turn.x * kTurnRate * step, yaw = cap.turn.y * kTurnRate * step;
     if (push == glm::dvec3(0.0) && pitch == 0 && yaw == 0) return false;
     if (hold == SixDofHold::camera) {
         rig.look(yaw, pitch);
@@ -27,7 +27,7 @@ bool drive(const io::SixDofState& cap, SixDofHold hold, double speed, double sec
     } else {
         rig.orbit(-yaw, -pitch);
         rig.pan(glm::dvec2(push.x, push.y) * kPan);
-        rig.zoom(std::pow(kZoom, push.z), rig.pivot());
+        rig.zoom(std::pow(kZoomRate, push.z), rig.pivot());
     }
     return true;
 }

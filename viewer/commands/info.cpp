@@ -28,7 +28,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-struct Options {
+struct InfoOptions {
     std::vector<std::string> inputs;
     io::ReadOptions read;
     bool quick = false;
@@ -72,7 +72,7 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
             {"scans", std::move(scans)}};
 }
 
-Result<json> describe_scan(const std::string& path, const Options& options) {
+Result<json> describe_scan(const std::string& path, const InfoOptions& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
     // A mesh of a few bytes may have millions of samples.
@@ -86,7 +86,7 @@ Result<json> describe_scan(const std::string& path, const Options& options) {
     return scan_json(scan->info(), scan->schema(), &contents);
 }
 
-Result<json> describe(const std::string& path, const Options& options) {
+Result<json> describe(const std::string& path, const InfoOptions& options) {
     if (!octree::is_octree(path)) return describe_scan(path, options);
     LUCARNE_ASSIGN(const auto source, octree::open_octree(path));
     if (octree::is_cache(path)) return describe_octree(*source, "cache");
@@ -128,7 +128,7 @@ void print(const json& described) {
     }
 }
 
-Result<void> info(const Options& options) {
+Result<void> info(const InfoOptions& options) {
     LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
     LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, list.files));
     const bool several = list.files.size() + list.problems.size() > 1;
@@ -155,7 +155,7 @@ Result<void> info(const Options& options) {
 }  // namespace
 
 void add_info(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InfoOptions>();
     Arguments command = line.add("info", "Say what a cache or a scan holds");
     command.add("inputs", options->inputs,
                      "Caches, scan files, folders of scan files. A broken one of several is left out")

@@ -21,7 +21,7 @@
 namespace lucarne::viewer {
 namespace {
 
-struct Options {
+struct MeasureOptions {
     InputOptions input;
     std::string measurements, output, sections, results = "m";
     std::vector<std::vector<double>> at;
@@ -31,7 +31,7 @@ struct Options {
 };
 
 /// The points of the scan nearest to the places asked for, as measurements of single points.
-Result<std::vector<Measurement>> points_at(const Options& options, NodeCache& cache) {
+Result<std::vector<Measurement>> points_at(const MeasureOptions& options, NodeCache& cache) {
     std::vector<Measurement> all;
     for (const std::vector<double>& place : options.at) {
         if (place.size() != 3) return bad_arguments("--at", "takes three numbers", "give X,Y,Z");
@@ -55,7 +55,7 @@ Result<void> snap(std::vector<Measurement>& all, NodeCache& cache) {
 }
 
 /// section-1.csv and section-1.svg, and so on, in the order of the measurements.
-Result<void> write_sections(const Options& options, const std::vector<Measurement>& all,
+Result<void> write_sections(const MeasureOptions& options, const std::vector<Measurement>& all,
                             const UnitChoice& units, NodeCache& cache) {
     size_t number = 0;
     for (const Measurement& measurement : all) {
@@ -74,7 +74,7 @@ Result<void> write_sections(const Options& options, const std::vector<Measuremen
     return {};
 }
 
-Result<void> measure(const Options& options) {
+Result<void> measure(const MeasureOptions& options) {
     if (options.measurements.empty() && options.at.empty())
         return bad_arguments("measure", "there is nothing to measure",
                              "give a file of measurements or --at X,Y,Z");
@@ -105,7 +105,7 @@ Result<void> measure(const Options& options) {
 }  // namespace
 
 void add_measure(CommandLine& line) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MeasureOptions>();
     Arguments command = line.add("measure", "Measure as the window does: points, distances, areas, sections");
     add_input_options(command, options->input);
     command.add("--measurements", options->measurements,

@@ -9,6 +9,7 @@
 #include "gi/engines/reference/alias_table.h"
 #include "gi/scene/environment.h"
 #include "gi/shared/light.h"
+#include "gi/shared/luminance.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::reference {
@@ -48,10 +49,5 @@ class EnvironmentSampler {
 
 /// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
 void frame_of(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent);
-
-/// Rec. 709.
-inline float luminance(const glm::vec3& c) {
-    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-}
 
 }  // namespace lucarne::gi::reference

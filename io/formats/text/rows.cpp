@@ -14,7 +14,7 @@
 namespace lucarne::io::text {
 namespace {
 
-constexpr size_t kPieces = 16, kPieceBytes = size_t{256} << 10;  ///< parsed side by side
+constexpr size_t kPieces = 16, kReadBytes = size_t{256} << 10;  ///< parsed side by side
 constexpr size_t kLongestLine = size_t{1} << 20;
 
 /// Whether `value` is a whole number of this type, stored at `at`. A signed byte takes 128 to 255 as well:
@@ -459,7 +459,7 @@ class RowReader final : public PointReader {
         const Section& section = sections_[section_];
         text_.erase(0, lines_bytes_);
         if (text_.size() != carried_) text_.resize(carried_);
-        const auto wanted = static_cast<size_t>(std::min<uint64_t>(kPieces * kPieceBytes, section.end - at_));
+        const auto wanted = static_cast<size_t>(std::min<uint64_t>(kPieces * kReadBytes, section.end - at_));
         text_.resize(carried_ + wanted);
         LUCARNE_ASSIGN(
             const size_t got,

@@ -14,7 +14,6 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint32_t kLeafPoints = 24;  ///< most; 16 is a usual number
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The Morton code of a place within bounds, 21 bits an axis.
 struct MortonGrid {

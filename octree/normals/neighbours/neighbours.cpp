@@ -22,7 +22,6 @@ namespace {
 constexpr size_t kGroups = 96;                        ///< of sites a piece of parallel work
 constexpr size_t kMostNeighbours = 128;               ///< per site, on the stack
 constexpr size_t kMostChunkPoints = size_t{1} << 29;  ///< sites times edges must fit 32 bits
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A halo is widened to this many chunk sizes and no further: an isolated point must not load the world.
 constexpr double kWidestHalo = 4.0;
 /// A halo holds at most this many points per own site, but kLeastHalo anyway.

@@ -13,6 +13,8 @@
 
 namespace lucarne::octree {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 struct Neighbour {
     double distance2 = 0;  ///< squared distance to the query
     uint32_t index = 0;

@@ -18,7 +18,6 @@ constexpr double kSlack = 1.1;
 /// Floats tell apart neighbours at this share of a tile's size well enough, but not much nearer ones.
 constexpr double kFinest = 1.0 / 4096;
 constexpr double kMoreThanRounding = 1 + 1e-5;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 float square(double v) {
     return static_cast<float>(v * v);

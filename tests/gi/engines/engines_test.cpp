@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/compare/metrics.h"
+#include "gi/shared/brdf.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 
@@ -15,8 +16,6 @@ namespace {
 
 using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
 
-constexpr float kPi = 3.14159265f;
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 
 /// What an engine claims to compute, beyond direct light: the tests that apply to it.
 struct Claims {

@@ -10,7 +10,11 @@
 
 #include "gi/shared/surfel.h"
 
-namespace lucarne::gi::scenes {
+namespace lucarne::gi {
+
+inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
+
+namespace scenes {
 
 /// A square lattice needs a coverage (disc area over surface area) of pi/2 to close; 1.7 leaves a margin.
 inline constexpr float kLatticeCoverage = 1.7f;
@@ -42,4 +46,5 @@ inline std::vector<Surfel> closed_box(float size, int n, const glm::vec3& albedo
     return surfels;
 }
 
-}  // namespace lucarne::gi::scenes
+}  // namespace scenes
+}  // namespace lucarne::gi

@@ -18,7 +18,7 @@ constexpr uint64_t kLittle = uint64_t{32} << 20;
 /// Records of 24 bytes: no node of these clouds has to be larger than the largest sample of eight leaves.
 constexpr uint32_t kMostOfANode = 20'000;
 
-ComputedSource at_places(uint64_t points, std::function<glm::dvec3(uint64_t)> place) {
+ComputedSource points_at(uint64_t points, std::function<glm::dvec3(uint64_t)> place) {
     return {io::Schema{}, points,
             [place](uint64_t index, std::byte* record) { io::store(record, place(index)); }};
 }
@@ -77,7 +77,7 @@ class ExtremeBuild : public ::testing::TestWithParam<std::tuple<Extreme, Normals
 TEST_P(ExtremeBuild, EndsWithEveryPointInNodesOfAnOrdinarySize) {
     const TempFolder folder;
     const auto& [extreme, normals] = GetParam();
-    const auto source = at_places(extreme.points, extreme.place);
+    const auto source = points_at(extreme.points, extreme.place);
     BuildOptions options;
     options.inputs = {&source};
     options.output = folder / "extreme.luc";
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Clouds, ExtremeBuild,
 
 TEST(ExtremeBuild, PlacesThatAreDividedComeOutTheSameForAnyMemory) {
     const TempFolder folder;
-    const auto source = at_places(500'000, kExtremes[1].place);
+    const auto source = points_at(500'000, kExtremes[1].place);
     std::string first;
     for (const uint64_t memory : {uint64_t{16} << 20, uint64_t{1} << 30}) {
         BuildOptions options;

@@ -68,7 +68,7 @@ Rows rows_of(const io::PointSource& scan, const io::Schema& like) {
     return rows;
 }
 
-Result<void> export_to(const fs::path& cache, const fs::path& to) {
+Result<void> export_as(const fs::path& cache, const fs::path& to) {
     LUCARNE_ASSIGN(const auto source, open_cache(cache));
     const Exporter exporter(*source, {});
     if (io::copc::is_name(to)) return exporter.write_copc(to, false, [](uint64_t) {});
@@ -89,7 +89,7 @@ void expect_round_trips(const fs::path& file, const std::vector<std::string>& ex
     const Rows before = rows_of(**scan, (*scan)->schema());
     ASSERT_EQ(before.size(), built->points);
     for (const std::string& extension : extensions) {
-        const auto written = export_to(options.output, folder / ("b" + extension));
+        const auto written = export_as(options.output, folder / ("b" + extension));
         ASSERT_TRUE(written) << extension << ": " << written.error().line();
         const auto copy = io::open_scan(folder / ("b" + extension), {"", true, {0, 0, true}});
         ASSERT_TRUE(copy) << extension << ": " << copy.error().line();
@@ -103,18 +103,18 @@ void expect_round_trips(const fs::path& file, const std::vector<std::string>& ex
 const std::vector<std::string> kAll = {".las", ".laz", ".copc.laz", ".ply", ".pcd", ".csv", ".txt"},
                                kFloating = {".ply", ".pcd", ".csv", ".txt"};
 
-struct Place {
+struct Coordinates {
     const char* name;
     double scale, x, y, z;
     uint16_t unit;  ///< EPSG code of its unit of length
 };
-const Place kPlaces[] = {{"UTM", 0.001, 500'000, 4'649'776, 0, 9001},
+const Coordinates kPlaces[] = {{"UTM", 0.001, 500'000, 4'649'776, 0, 9001},
                          {"LV95", 0.0001, 2'600'000, 1'200'000, 400, 9001},
                          {"Oregon, US survey feet", 0.01, 636'000, 848'000, 0, 9003},
                          {"feet from nowhere", 0.00025, 0, 0, 0, 9002}};
 
 /// Points of a place at the ends of what 32 bits hold and near its middle, with every field in use.
-io::testing::LasFile scan_of(const Place& place, uint8_t format) {
+io::testing::LasFile scan_of(const Coordinates& place, uint8_t format) {
     io::testing::LasFile las;
     las.minor = 4;
     las.format = format;
@@ -146,7 +146,7 @@ io::testing::LasFile scan_of(const Place& place, uint8_t format) {
 
 TEST(RoundTrip, ThroughACacheAndEveryFormatKeepsEveryDigitAndEveryAttribute) {
     const TemporaryFolder folder;
-    for (const Place& place : kPlaces)
+    for (const Coordinates& place : kPlaces)
         for (const uint8_t format : {uint8_t{0}, uint8_t{7}}) {
             SCOPED_TRACE(fmt::format("{}, point format {}", place.name, format));
             const auto file = folder / fmt::format("{}.las", format);

@@ -141,7 +141,7 @@ Measured measure(const NodeSource& source, const Surface& surface, uint32_t shar
     return result;
 }
 
-class Prefix : public testing::TestWithParam<const Surface*> {};
+class Prefix : public ::testing::TestWithParam<const Surface*> {};
 
 TEST_P(Prefix, LeavesLittleMoreUncoveredThanBlueNoise) {
     const Surface& surface = *GetParam();
@@ -178,7 +178,7 @@ TEST_P(Prefix, LeavesLittleMoreUncoveredThanBlueNoise) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Surfaces, Prefix, testing::Values(&kPlane, &kCylinder),
+INSTANTIATE_TEST_SUITE_P(Surfaces, Prefix, ::testing::Values(&kPlane, &kCylinder),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 }  // namespace

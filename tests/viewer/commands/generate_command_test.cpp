@@ -1,53 +1,27 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "io/formats/scan.h"
 #include "io/synthetic/synthetic.h"
+#include "tests/viewer/program.h"
 
 namespace lucarne {
 namespace {
 
 using testing::HasSubstr;
 
-struct Outcome {
-    int code;
-    std::string text;  ///< stdout and stderr
-};
-
-Outcome lucarne(const std::string& arguments) {
-    FILE* pipe = ::popen((std::string(LUCARNE_BINARY) + " " + arguments + " 2>&1").c_str(), "r");
-    std::string text;
-    std::array<char, 4096> block;
-    for (size_t count; (count = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
-        text.append(block.data(), count);
-    const int status = ::pclose(pipe);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text};
-}
+using test::lucarne;
 
 class GenerateCommand : public testing::Test {
  protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() / ("lucarne-generate-" + std::to_string(::getpid()));
-        std::filesystem::create_directory(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    static std::string bytes(const std::string& file) {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    std::filesystem::path folder_;
+    std::string path(const std::string& name) const { return folder_ / name; }
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(GenerateCommand, WritesTheScanWithItsStations) {
@@ -94,27 +68,27 @@ TEST_F(GenerateCommand, TheSameSeedGivesTheSameFile) {
     for (const std::string name : {"a.las", "b.las"})
         ASSERT_EQ(lucarne("generate two-rooms -o " + path(name) + " --points 30k --seed 7").code, 0);
     ASSERT_EQ(lucarne("generate two-rooms -o " + path("c.las") + " --points 30k --seed 8").code, 0);
-    EXPECT_EQ(bytes(path("a.las")), bytes(path("b.las")));
-    EXPECT_NE(bytes(path("a.las")), bytes(path("c.las")));
+    EXPECT_EQ(test::bytes_of(path("a.las")), test::bytes_of(path("b.las")));
+    EXPECT_NE(test::bytes_of(path("a.las")), test::bytes_of(path("c.las")));
 }
 
 TEST_F(GenerateCommand, AnUnknownSceneIsAnsweredWithThoseThereAre) {
     const auto outcome = lucarne("generate moon -o " + path("a.las"));
     EXPECT_EQ(outcome.code, 2);
-    for (const auto& scene : io::synthetic_scenes()) EXPECT_THAT(outcome.text, HasSubstr(scene.name));
+    for (const auto& scene : io::synthetic_scenes()) EXPECT_THAT(outcome.output, HasSubstr(scene.name));
     EXPECT_FALSE(std::filesystem::exists(path("a.las")));
     const auto help = lucarne("generate --help");
     EXPECT_EQ(help.code, 0);
-    for (const auto& scene : io::synthetic_scenes()) EXPECT_THAT(help.text, HasSubstr(scene.summary));
+    for (const auto& scene : io::synthetic_scenes()) EXPECT_THAT(help.output, HasSubstr(scene.summary));
 }
 
 TEST_F(GenerateCommand, BadArgumentsLeaveNothingBehind) {
     for (const std::string bad : {"--points 5Q", "--points -3", "--points 0", "--noise -1", "--noise nan",
                                    "--stations 2000", "--stations x", "--even --stations 2", "--seed x"}) {
         const auto outcome = lucarne("generate cornell -o " + path("a.las") + " " + bad);
-        EXPECT_EQ(outcome.code, 2) << bad << ": " << outcome.text;
-        EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
-        EXPECT_TRUE(std::filesystem::is_empty(folder_)) << bad;
+        EXPECT_EQ(outcome.code, 2) << bad << ": " << outcome.output;
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+        EXPECT_TRUE(std::filesystem::is_empty(folder_.path())) << bad;
     }
     EXPECT_EQ(lucarne("generate cornell -o " + path("a.zyx")).code, 2);
     EXPECT_EQ(lucarne("generate cornell").code, 2);
@@ -125,8 +99,8 @@ TEST_F(GenerateCommand, AFileThatExistsIsKeptUnlessOverwritten) {
     std::ofstream(path("a.las")) << "precious";
     const auto refused = lucarne("generate furnace --points 1000 -o " + path("a.las"));
     EXPECT_EQ(refused.code, 1);
-    EXPECT_THAT(refused.text, HasSubstr("--overwrite"));
-    EXPECT_EQ(bytes(path("a.las")), "precious");
+    EXPECT_THAT(refused.output, HasSubstr("--overwrite"));
+    EXPECT_EQ(test::bytes_of(path("a.las")), "precious");
     EXPECT_EQ(lucarne("generate furnace --points 1000 --overwrite -o " + path("a.las")).code, 0);
     EXPECT_TRUE(io::open_scan(path("a.las")));
 }

@@ -1,7 +1,6 @@
 // What the race (redistribute.comp) and the estimates of all races together (combine.comp) share.
 #include "gi/engines/vpl/shading/gather.glsl"
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
+#include "gi/shared/luminance.h"
 
 // How likely light that arrives at a surface is to be worth following: its reflectance, with a floor so that nothing
 // lit has zero probability.

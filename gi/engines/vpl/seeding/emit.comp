@@ -4,6 +4,7 @@ layout(local_size_x = 64) in;
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
+#include "gi/shared/luminance.h"
 #include "gi/engines/vpl/vpl_light.h"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
@@ -23,7 +24,7 @@ void main() {
     vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : vec3(0.0, 0.0, 1.0);
     if ((chosen[index] & 1u) != 0u) normal = -normal;
     // The footprint is 1 / (VPLs * density), the surface counted on both sides; intensity = radiance * footprint.
-    float footprint = 2.0 * weight_sum / (float(light_count) * dot(emission, vec3(0.2126, 0.7152, 0.0722)));
+    float footprint = 2.0 * weight_sum / (float(light_count) * luminance(emission));
     vec3 intensity = emission * footprint;
     lights[first_light + index] =
         VplLight(vec4(surfel_position(item, surfel), footprint), vec4(normal, cut_surfel_radius(item, surfel)),

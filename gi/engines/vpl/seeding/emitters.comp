@@ -3,6 +3,7 @@ layout(local_size_x = 256) in;
 
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
+#include "gi/shared/luminance.h"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 5) writeonly buffer Weights { float weights[]; };
@@ -14,7 +15,7 @@ void main() {
     float weight = 0.0;
     if (cut_surfel(id, item, surfel)) {
         vec3 emission = materials[surfel_material(surfel.b)].emission.xyz;
-        weight = dot(emission, vec3(0.2126, 0.7152, 0.0722)) * cut_surfel_area(item, surfel);
+        weight = luminance(emission) * cut_surfel_area(item, surfel);
     }
     weights[id] = weight;
 }

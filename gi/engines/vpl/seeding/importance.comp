@@ -7,11 +7,10 @@
 layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/shared/brdf.h"
+#include "gi/shared/luminance.h"
 #include "gi/engines/vpl/seeding/importance.glsl"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }  // Rec. 709
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;

@@ -8,21 +8,18 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/shared/luminance.h"
 
 namespace lucarne::gi::vpl {
 namespace {
-
-float luminance(const glm::vec4& rgb) {
-    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
-}
 
 /// VPLs that do not stand clear in the light (seed.comp) give their flux to the others: the sum stays what
 /// lands.
 void clear_rims(std::span<VplLight> lights) {
     double all = 0, clear = 0;
     for (const VplLight& l : lights) {
-        all += luminance(l.flux);
-        if (l.flux.w >= 1) clear += luminance(l.flux);
+        all += luminance(glm::vec3(l.flux));
+        if (l.flux.w >= 1) clear += luminance(glm::vec3(l.flux));
     }
     const float scale = clear > 0 ? static_cast<float>(all / clear) : 0.0f;
     for (VplLight& l : lights) {

@@ -18,7 +18,6 @@ namespace {
 using scenes::AnalyticScene;
 using SoftLights = OnDevice;
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 
 /// A floor with a block that hovers over it, seen from above.
 AnalyticScene floor_and_block() {

@@ -26,7 +26,7 @@ struct Strip {
     std::string bytes;
     std::vector<size_t> vertex_ends, face_ends;
 };
-constexpr size_t kVertices = 14, kFaces = 12;
+constexpr size_t kVertexCount = 14, kFaceCount = 12;
 
 Strip strip(const std::string& encoding, bool faces_first = false) {
     const bool text = encoding == "ascii", big = encoding == "binary_big_endian";
@@ -45,18 +45,18 @@ Strip strip(const std::string& encoding, bool faces_first = false) {
         ends.push_back(made.bytes.size());
     };
     const std::string vertex =
-        fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", kVertices);
-    const std::string face = fmt::format("element face {}\nproperty list uchar int vertex_indices\n", kFaces);
+        fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", kVertexCount);
+    const std::string face = fmt::format("element face {}\nproperty list uchar int vertex_indices\n", kFaceCount);
     made.bytes =
         "ply\nformat " + encoding + " 1.0\n" + (faces_first ? face + vertex : vertex + face) + "end_header\n";
     const auto put_vertices = [&] {
-        for (int i = 0; i < int{kVertices}; ++i) {
+        for (int i = 0; i < int{kVertexCount}; ++i) {
             put(static_cast<float>(i / 2)), put(static_cast<float>(i % 2)), put(0.25f);
             end(made.vertex_ends);
         }
     };
     if (!faces_first) put_vertices();
-    for (int i = 0; i < int{kFaces}; ++i) {
+    for (int i = 0; i < int{kFaceCount}; ++i) {
         put(uint8_t{3});
         for (int corner = 0; corner < 3; ++corner) put(int32_t{i + corner});
         end(made.face_ends);
@@ -103,13 +103,13 @@ TEST_F(MeshSalvage, OfATruncatedPlyEveryWholeFaceOrElseEveryWholeVertex) {
             if (faces > 0) {
                 ASSERT_TRUE(is_mesh()) << encoding << cut;
                 ASSERT_EQ(triangles(), faces);
-                ASSERT_EQ(lost(mesh::kCutFaces), kFaces - faces);
+                ASSERT_EQ(lost(mesh::kCutFaces), kFaceCount - faces);
                 ASSERT_THAT(line, HasSubstr(fmt::format("; {} whole triangle", faces)));
             } else {
                 ASSERT_FALSE(is_mesh());
                 ASSERT_EQ(points(), vertices) << encoding << cut;
-                ASSERT_EQ(lost(lost::cut_off), kVertices - vertices);
-                ASSERT_EQ(lost(mesh::kCutFaces), kFaces) << encoding << cut;
+                ASSERT_EQ(lost(lost::cut_off), kVertexCount - vertices);
+                ASSERT_EQ(lost(mesh::kCutFaces), kFaceCount) << encoding << cut;
                 if (vertices > 1) {
                     ASSERT_THAT(line, HasSubstr(fmt::format("; {} points can be saved", vertices)));
                 }
@@ -123,8 +123,8 @@ TEST_F(MeshSalvage, OfATruncatedPlyWithItsFacesFirstThoseWhoseVerticesAreThere) 
         const Strip whole = strip(encoding, true);
         read(whole.bytes.substr(0, whole.vertex_ends[7]), kSalvage);  // 8 vertices
         EXPECT_EQ(triangles(), 6u) << encoding;
-        EXPECT_EQ(lost(mesh::kDamagedFaces), kFaces - 6);
-        EXPECT_EQ(lost(lost::cut_off), kVertices - 8);
+        EXPECT_EQ(lost(mesh::kDamagedFaces), kFaceCount - 6);
+        EXPECT_EQ(lost(lost::cut_off), kVertexCount - 8);
         EXPECT_THAT(refusal(whole.bytes.substr(0, whole.vertex_ends[7])), HasSubstr("6 whole triangles"));
     }
 }
@@ -136,7 +136,7 @@ TEST_F(MeshSalvage, OfADamagedPlyTheFacesWhoseNumbersAndVerticesMakeSense) {
     bytes[whole.vertex_ends[12]] = 'y';  // the last vertex, which the last face alone needs
     EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("vertex 14 has 'y"), HasSubstr("10 whole triangles")));
     read(bytes, kSalvage);
-    EXPECT_EQ(triangles(), kFaces - 2);
+    EXPECT_EQ(triangles(), kFaceCount - 2);
     EXPECT_EQ(lost(mesh::kDamagedFaces), 1u);
     EXPECT_EQ(lost(lost::damaged), 1u);
 
@@ -145,7 +145,7 @@ TEST_F(MeshSalvage, OfADamagedPlyTheFacesWhoseNumbersAndVerticesMakeSense) {
     EXPECT_THAT(refusal(binary.bytes),
                 AllOf(HasSubstr("face 6 names vertex"), HasSubstr("11 whole triangles")));
     read(binary.bytes, kSalvage);
-    EXPECT_EQ(triangles(), kFaces - 1);
+    EXPECT_EQ(triangles(), kFaceCount - 1);
 }
 
 TEST_F(MeshSalvage, OfASoundMeshIsTheMesh) {

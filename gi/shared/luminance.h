@@ -1,0 +1,17 @@
+// The relative luminance of linear Rec. 709 light (ITU-R BT.709-6, section 3.2), for C++ and GLSL alike.
+#ifndef LUCARNE_GI_SHARED_LUMINANCE_H
+#define LUCARNE_GI_SHARED_LUMINANCE_H
+
+#include "gi/shared/language.h"
+
+#ifdef __cplusplus
+namespace lucarne::gi {
+#endif
+
+LUCARNE_FN float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
+
+#ifdef __cplusplus
+inline double luminance(const glm::dvec3& rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+}  // namespace lucarne::gi
+#endif
+#endif
