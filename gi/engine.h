@@ -10,33 +10,17 @@
 #include <glm/vec3.hpp>
 
 #include "gi/device/gl/device.h"
+#include "gi/options.h"
 #include "gi/raster/gbuffer.h"
 #include "gi/scene/environment.h"
 #include "gi/scene/look.h"
-#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
+#include "gi/surfels/surfel_pool.h"
 #include "io/core/progress.h"
 
 namespace lucarne::gi {
-
-/// Everything an engine can be told; presets (viewer/frame/presets.h) fill it. Engines ignore what they do not use.
-struct EngineSettings {
-    uint32_t bounces = 1;      ///< indirect bounces; 0: direct light alone
-    int32_t only_bounce = -1;  ///< >= 0: just that bounce (0: direct light)
-    uint32_t vpls = 256;
-    uint32_t interleave = 4;          ///< 1, 2 or 4
-    uint32_t atlas = 2048;            ///< texels along a side of the ISM atlas
-    uint32_t light_resolution = 512;  ///< light G-buffer and shadow map, texels along a side
-    uint32_t light_samples = 8;       ///< views a frame of lights that have a size and of the sky (light_samples.h)
-    uint32_t samples = 64;            ///< reference: paths a pixel
-    bool best_candidate = false;      ///< vpl: redistribute as the paper does, biased (gi/engines/vpl/README.md)
-    bool reuse = true;  ///< vpl: moving frames are averaged with those before (gi/engines/vpl/shading/history.h)
-    uint64_t seed = 1;
-
-    bool operator==(const EngineSettings&) const = default;
-};
 
 /// The cuts of a frame. They may be the same object's content or differ: the view cut is what the camera
 /// sees, the light-view cut what lights[i] sees, the light cut covers everything that may bounce or block
@@ -74,16 +58,20 @@ struct Frame {
     Unlit unlit{};                                   ///< of the engine without light
 };
 
+/// What others need to know of an engine, without building it. One constant, in the engine's folder.
 struct EngineInfo {
     std::string_view name;         ///< as --engine takes it
     std::string_view description;  ///< one line
+    std::span<const OptionInfo* const> options = {};
     /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
     std::span<const std::string_view> layers = {};
     bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
     bool unlit = false;  ///< knows no light: its colours are shown as they are, without exposure or tone curve
+    bool direct_only = false;   ///< no light from surface to surface: what the others add shows beside it
+    bool is_reference = false;  ///< converges to the truth: what the others are compared with
 };
 
-/// A way to light a G-buffer. `info / prepare / render / stats`; one folder an engine.
+/// A way to light a G-buffer; one folder an engine, which exports one EngineEntry.
 class Engine {
  public:
     virtual ~Engine() = default;
@@ -95,6 +83,12 @@ class Engine {
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
     /// Of info().layers, in their order: vec4 a pixel, of all frames that were accumulated so far.
     virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }
+};
+
+/// An engine, and how it is made.
+struct EngineEntry {
+    const EngineInfo& info;
+    std::unique_ptr<Engine> (*make)();
 };
 
 }  // namespace lucarne::gi

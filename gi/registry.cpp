@@ -1,35 +1,47 @@
 #include "gi/registry.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
-
-#include "gi/engines/direct/direct.h"
-#include "gi/engines/reference/reference.h"
-#include "gi/engines/unlit/unlit.h"
-#include "gi/engines/vpl/vpl.h"
+#include <vector>
 
 namespace lucarne::gi {
 
-std::span<const EngineEntry> engines() {
-    static const std::array<EngineEntry, 4> all = {{
-        {{"direct", "direct light with shadow maps"}, make_direct_engine},
-        {{"vpl", "virtual point lights with imperfect shadow maps"}, make_vpl_engine},
-        {{"reference", "path tracing over the same surfels: slow, and the truth"}, make_reference_engine},
-        {{"unlit", "the points' colours without light: flat, eye-dome lighting or ambient occlusion"},
-         make_unlit_engine},
-    }};
-    return all;
-}
-
-Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {
+Result<const EngineEntry*> find_engine(std::string_view name) {
     std::string known;
     for (const EngineEntry& entry : engines()) {
-        if (entry.info.name == name) return entry.make();
+        if (entry.info.name == name) return &entry;
         known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
     }
     return bad_arguments("engine " + std::string(name), "there is none of this name",
                          "the engines are " + known);
+}
+
+Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {
+    LUCARNE_ASSIGN(const EngineEntry* entry, find_engine(name));
+    return entry->make();
+}
+
+const EngineInfo& engine_with(bool EngineInfo::*property) {
+    for (const EngineEntry& entry : engines())
+        if (entry.info.*property) return entry.info;
+    return default_engine();
+}
+
+bool engine_is(std::string_view name, bool EngineInfo::*property) {
+    return std::ranges::any_of(
+        engines(), [&](const EngineEntry& entry) { return entry.info.name == name && entry.info.*property; });
+}
+
+std::span<const OptionInfo* const> engine_options() {
+    static const std::vector<const OptionInfo*> all = [] {
+        std::vector<const OptionInfo*> options;
+        for (const EngineEntry& entry : engines())
+            for (const OptionInfo* option : entry.info.options)
+                if (std::ranges::find(options, option->key, &OptionInfo::key) == options.end())
+                    options.push_back(option);
+        return options;
+    }();
+    return all;
 }
 
 }  // namespace lucarne::gi

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "gi/shared/brdf.h"
+#include "gi/bounce_options.h"
+#include "gi/lighting/light_options.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
@@ -21,7 +23,7 @@ class Strata {
  public:
     Strata(uint32_t count, const Frame& frame, uint64_t light)
         : count_(count), frame_(static_cast<double>(frame.index)) {
-        Random random(frame.settings.seed, light);
+        Random random(frame.settings[kSeed], light);
         shift_ = {random.uniform(), random.uniform()};
     }
     uint32_t count() const { return count_; }
@@ -161,7 +163,7 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
             (light.kind == kDirectionalLight ? suns : areas).push_back(i);
     }
     // An even share each; what narrow suns leave goes to the others.
-    uint32_t views = frame.settings.light_samples;
+    uint32_t views = frame.settings[kLightSamples];
     auto takers = static_cast<uint32_t>(suns.size() + areas.size() + (sky.dark() ? 0 : 1));
     const auto share = [&](uint32_t most, uint32_t faces) {
         const uint32_t samples = std::clamp(views / takers-- / faces, 1u, most);
@@ -170,7 +172,7 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
     };
     const auto strata = [&](size_t i, uint32_t count) { return Strata(count, frame, i); };
     for (const size_t i : suns) {
-        const uint32_t count = share(most_samples(frame.lights[i], frame.settings.light_resolution), 1);
+        const uint32_t count = share(most_samples(frame.lights[i], frame.settings[kLightResolution]), 1);
         add_sun(frame.lights[i], strata(i, count), frame.cuts.light_views[i], result);
     }
     for (const size_t i : areas)

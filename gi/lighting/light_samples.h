@@ -16,7 +16,7 @@ struct SharpLight {
 /// The frame's lights, those that have a size in the form of sharp ones that stand for them this frame: of
 /// the sun directions within its cap, of rectangles and discs points that shine as the cosine, of the sky
 /// (`sky`, of the frame's environment) directions by its luminance. They are stratified, and others for each
-/// Frame::index: the average over frames goes to the light with its size. settings.light_samples views are
+/// Frame::index: the average over frames goes to the light with its size. kLightSamples views are
 /// shared out among those lights, at least one sample each; black ones have none.
 std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky);
 

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/raster/gbuffer.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -123,7 +124,7 @@ CameraView view_of(const Light& light, uint32_t face, const Frame& frame, uint32
 
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky) {
     std::vector<LightView> views;
-    const uint32_t side = frame.settings.light_resolution;
+    const uint32_t side = frame.settings[kLightResolution];
     for (const auto& [light, cut] : sharp_lights(frame, sky)) {
         // Many samples make a light with a size, whose shadows are soft: half as fine.
         const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;

@@ -17,7 +17,7 @@ struct LightView {
     CameraView view;
 };
 
-/// Of all lights of the frame (`sky` of its environment), settings.light_resolution texels along a side, of
+/// Of all lights of the frame (`sky` of its environment), kLightResolution texels along a side, of
 /// points of areas half as many. That of a directional light takes in the frame's bounds, a rectangle of as
 /// many texels: a pinhole so far away that its rays part by less than a texel over the scene's height.
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky);

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
+
+#include "gi/options.h"
 
 namespace lucarne::gi {
 
@@ -10,8 +11,7 @@ namespace lucarne::gi {
 /// the defaults.
 struct RenderSettings {
     std::string engine, preset;
-    // Of EngineSettings, over the preset's:
-    std::optional<uint32_t> bounces, only_bounce, vpls, interleave, atlas, light_resolution, samples;
+    EngineSettings options;  ///< those that are said, over the preset's
     /// Of the window's sides, which its pictures are made at and scaled up from; kLeastPictureScale to 1.
     std::optional<double> scale;
 

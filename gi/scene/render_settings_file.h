@@ -15,6 +15,9 @@ Result<RenderSettings> read_render_settings(JsonObject object);
 /// What read_render_settings() reads back to the same.
 nlohmann::ordered_json write_render_settings(const RenderSettings& settings);
 
+/// A value as scene files and reports have it.
+nlohmann::ordered_json option_json(const OptionInfo& option, const OptionValue& value);
+
 /// Of a scene file, whose other keys are not looked at; empty ones where it has none. Errors: those of the
 /// file, its syntax and this object.
 Result<RenderSettings> load_render_settings(const std::filesystem::path& path);

@@ -81,7 +81,7 @@ enum class ToneMap { filmic, reinhard, none, false_colour };
 struct Comparison {
     enum class Show : uint8_t { split, signed_difference, absolute_difference };
     Show show = Show::split;
-    std::string engine = "reference";  ///< the other one
+    std::string engine;  ///< the other one; empty: the reference
     double border = 0.5;               ///< share of the width that is left of it: the picture's own engine
     double range = 1;  ///< differences of the exposed luminance that have the last colours
 

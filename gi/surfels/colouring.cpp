@@ -12,7 +12,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr uint64_t kSampled = 20'000;  // points that a range is measured on, at least: whole levels
+constexpr uint64_t kColoursSampled = 20'000;  // points that a range is measured on, at least: whole levels
 constexpr size_t kSampledRoots = 16;
 constexpr double kTail = 0.01;  // of the points on either side that a range leaves out
 
@@ -163,7 +163,7 @@ ShownValues measured_values(const octree::NodeSource& source, const Look& look) 
     for (size_t i = 0; i < used; ++i) level.push_back(roots[i * roots.size() / used]);
     Sampled sampled;
     const auto nodes = source.nodes();
-    for (uint64_t points = 0; !level.empty() && points < kSampled; level.swap(below)) {
+    for (uint64_t points = 0; !level.empty() && points < kColoursSampled; level.swap(below)) {
         below.clear();
         for (const uint32_t node : level) {
             const Result<octree::NodeData> data = source.load(node);

@@ -21,6 +21,7 @@
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "viewer/frame/presets.h"
+#include "gi/bounce_options.h"
 
 namespace lucarne {
 namespace {
@@ -58,7 +59,7 @@ Result<void> furnace(gi::Device& device) {
     scene.camera = gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 128);
     scene.settings = high();
     for (uint32_t bounces = 1; bounces <= 4; ++bounces) {
-        scene.settings.bounces = bounces;
+        scene.settings.set(gi::kBounces, bounces);
         const double truth = 1 - std::pow(0.5, bounces + 1);
         double sum = 0;
         constexpr int kFrames = 4;
@@ -90,7 +91,7 @@ Result<void> form_factor(gi::Device& device, const std::string& name, const glm:
     // way.
     scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, 256);
     scene.settings = high();
-    scene.settings.only_bounce = 1;
+    scene.settings.set(gi::kOnlyBounce, 1);
     double sum = 0;
     constexpr int kFrames = 4;
     for (int i = 0; i < kFrames; ++i) {

@@ -20,6 +20,8 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/inputs/input.h"
 #include "viewer/frame/rgba.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne {
 namespace {
@@ -66,7 +68,7 @@ class Stage {
         Measured measured;
         std::vector<double> times, processor;
         for (int i = 0; i < count; ++i) {
-            settings.seed = 1 + static_cast<uint64_t>(i);
+            settings.set(gi::kSeed, 1 + static_cast<uint64_t>(i));
             pipeline_->set_settings(settings);
             const std::clock_t start = std::clock();
             LUCARNE_ASSIGN(const viewer::FrameStats stats, pipeline_->render(request_));
@@ -100,8 +102,8 @@ class Stage {
 
 /// Maps of about 64 x 64 texels whatever their number, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
-    settings.vpls = vpls;
-    settings.atlas = static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls))));
+    settings.set(gi::vpl::kVpls, vpls);
+    settings.set(gi::vpl::kAtlas, static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls)))));
 }
 
 Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesystem::path& folder) {
@@ -114,7 +116,7 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesyste
     LUCARNE_TRY(stage.frames(settings, 1));  // shaders, first loads
     double before = 0;
     for (uint32_t bounces = 0; bounces <= 4; ++bounces) {
-        settings.bounces = bounces;
+        settings.set(gi::kBounces, bounces);
         LUCARNE_ASSIGN(const auto measured, stage.frames(settings, 3));
         fmt::print("{:>8} {:>12.0f} {:>14.0f} {:>16.4f} {:>16}\n", bounces, measured.milliseconds,
                    measured.processor, measured.luminance,
@@ -133,7 +135,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
     LUCARNE_TRY(stage.open(scene, {256, 256}));
     gi::EngineSettings settings = stage.settings();
     LUCARNE_TRY(stage.frames(settings, 1));
-    settings.bounces = 0;
+    settings.set(gi::kBounces, 0);
     LUCARNE_ASSIGN(const auto direct, stage.frames(settings, 1));
     heading(
         fmt::format("{}: {}, 256 x 256, all VPLs anew: ms a frame / of all cores (indirect "
@@ -146,10 +148,10 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
         double whole[4] = {};
         for (const uint32_t interleave : {1u, 2u, 4u}) {
             set_vpls(settings, vpls);
-            settings.interleave = interleave;
+            settings.set(gi::vpl::kInterleave, interleave);
             fmt::print("{:>6} {:>12}", vpls, fmt::format("{0} x {0}", interleave));
             for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
-                settings.bounces = bounces;
+                settings.set(gi::kBounces, bounces);
                 // A thousand VPLs take seconds, which vary less.
                 LUCARNE_ASSIGN(const auto measured, stage.frames(settings, vpls < 1024 ? static_cast<int>(run.count(3)) : 1));
                 const double indirect = measured.luminance - direct.luminance;

@@ -16,6 +16,8 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/inputs/input.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne {
 namespace {
@@ -86,7 +88,7 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
     LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
     drawing.caps = caps;
-    drawing.preset.engine.bounces = 3;
+    drawing.preset.engine.set(gi::kBounces, 3);
     change(drawing.preset);
     LUCARNE_ASSIGN(const auto pipeline,
                    viewer::open_pipeline(*device, source, options, drawing, std::move(scene)));
@@ -138,8 +140,8 @@ Result<void> flicker(const std::string& cache, double seconds) {
             for (const int32_t only : {-1, 1}) {
                 const Way slowly{.frames_per_second = 12, .seconds = seconds, .wait = wait};
                 LUCARNE_ASSIGN(const Flown flown, fly(cache, slowly, caps, [&](viewer::Preset& preset) {
-                                   preset.engine.reuse = reuse;
-                                   preset.engine.only_bounce = only;
+                                   preset.engine.set(gi::vpl::kReuse, reuse);
+                                   preset.engine.set(gi::kOnlyBounce, only);
                                }));
                 figure(fmt::format("flicker, {}, {}, {} ({} frames)",
                                    wait ? "every cut whole" : "nodes arriving",

@@ -17,6 +17,7 @@
 #include "viewer/commands/drawing_options.h"
 #include "viewer/inputs/input.h"
 #include "viewer/frame/views.h"
+#include "gi/bounce_options.h"
 
 namespace lucarne {
 namespace {
@@ -55,7 +56,7 @@ Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameReques
         request.camera.position.x += 0.01;
         if (anew) {
             gi::EngineSettings settings = pipeline.settings();
-            ++settings.seed;
+            settings.set(gi::kSeed, settings[gi::kSeed] + 1);
             pipeline.set_settings(settings);
         }
         const std::clock_t start = std::clock();
@@ -94,7 +95,7 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     const auto frames = [&](const std::string& what, uint32_t bounces, bool anew,
                             double target) -> Result<void> {
         gi::EngineSettings settings = pipeline->settings();
-        settings.bounces = bounces;
+        settings.set(gi::kBounces, bounces);
         pipeline->set_settings(settings);
         LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
         LUCARNE_ASSIGN(const FrameTimes times, moving_frames(*pipeline, request, 9, "", anew));

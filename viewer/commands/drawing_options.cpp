@@ -13,15 +13,47 @@
 namespace lucarne::viewer {
 namespace {
 
-/// What is not said, as `otherwise` says it.
+/// Takes from `otherwise` what `settings` leaves open.
 void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (settings.engine.empty()) settings.engine = otherwise.engine;
     if (settings.preset.empty()) settings.preset = otherwise.preset;
-    for (const auto member : {&gi::RenderSettings::bounces, &gi::RenderSettings::only_bounce, &gi::RenderSettings::vpls,
-                              &gi::RenderSettings::interleave, &gi::RenderSettings::atlas,
-                              &gi::RenderSettings::light_resolution, &gi::RenderSettings::samples})
-        if (!(settings.*member)) settings.*member = otherwise.*member;
+    settings.options.fill_from(otherwise.options);
     if (!settings.scale) settings.scale = otherwise.scale;
+}
+
+/// "vpl, direct: " before the help of an option that not every engine has.
+std::string owners(const gi::OptionInfo& option) {
+    std::string names;
+    size_t owners = 0, takers = 0;
+    for (const auto& engine : gi::engines()) {
+        takers += !engine.info.options.empty();
+        if (std::ranges::find(engine.info.options, &option) == engine.info.options.end()) continue;
+        ++owners;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", engine.info.name);
+    }
+    return owners == takers ? "" : names + ": ";
+}
+
+/// Declares --KEY for each option of each engine.
+void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
+    for (const gi::OptionInfo* option : gi::engine_options()) {
+        const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
+        if (option->kind == gi::OptionKind::flag) {
+            const bool usual = std::get<bool>(option->defaults[size_t(gi::Effort::interactive)]);
+            command.flag(name, [&settings, option, usual] { settings.set(*option, !usual); }, help);
+            continue;
+        }
+        const auto take = [&settings, option](const std::string& text) -> std::optional<std::string> {
+            auto value = gi::parse_option(*option, text);
+            if (!value) return value.error().why;
+            settings.set(*option, *value);
+            return std::nullopt;
+        };
+        command.parsed(name, take, fmt::format("{} ({})", help, gi::range_text(*option)))
+            .type_name(std::string(option->kind == gi::OptionKind::choice   ? "NAME"
+                                   : option->kind == gi::OptionKind::colour ? "R,G,B"
+                                                                            : option->placeholder));
+    }
 }
 
 std::string engine_names() {
@@ -64,7 +96,7 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
         .type_name("FILE");
     command.add("--engine", options.render.engine, "How light is computed, see below")
-        .show_default(std::string(kDefaultEngine))
+        .show_default(std::string(gi::default_engine().name))
         .type_name("NAME");
     command.add("--preset", options.render.preset, "Effort, see below")
         .show_default(std::string(kDefaultPreset))
@@ -72,36 +104,9 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--size", options.size, "Of the picture in pixels")
         .show_default()
         .type_name("WxH");
-    command.add("--bounces", options.render.bounces, "Indirect bounces; 0: direct light alone")
-        .range(0, 64)
-        .type_name("N");
-    command.add("--only-bounce", options.render.only_bounce, "Just this bounce; 0: direct light")
-        .range(0, 64)
-        .type_name("K");
-    command.add("--vpls", options.render.vpls, "Virtual point lights")
-        .range(1, 65536)
-        .type_name("N");
-    command.flag(
-        "--best-candidate", options.best_candidate,
-        "vpl: redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)");
-    command.flag("--no-reuse", options.no_reuse,
-                     "vpl: light every frame of a motion by itself, without what the frames before knew");
-    command.add("--interleave", options.render.interleave, "Pixels along a side that share out the lights")
-        .one_of({1, 2, 4})
-        .type_name("N");
-    command.add("--atlas", options.render.atlas, "Texels along a side of the shadow maps' atlas")
-        .one_of({256, 512, 1024, 2048, 4096, 8192})
-        .type_name("N");
-    command.add("--light-resolution", options.render.light_resolution,
-                       "Texels along a side of what each light sees: the sharpness of shadows' edges")
-        .one_of({64, 128, 256, 512, 1024, 2048, 4096})
-        .type_name("N");
+    add_engine_options(command, options.render.options);
     command.add("--points", options.points, "Most points that a cut takes: 200000, 2M")
         .type_name("N");
-    command.add("--samples", options.render.samples, "Paths a pixel and frame (reference)")
-        .range(1, 1 << 20)
-        .type_name("N");
-    command.add("--seed", options.seed, "Of all random numbers").type_name("N");
     command.add("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
         .range(-100.0, 100.0)
         .type_name("EV");
@@ -121,14 +126,14 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
 Result<void> take_render_settings(DrawingOptions& options) {
     if (!options.scene.empty()) {
         LUCARNE_ASSIGN(const gi::RenderSettings said, gi::load_render_settings(options.scene));
-        if (!said.engine.empty() && !gi::make_engine(said.engine))
+        if (!said.engine.empty() && !gi::find_engine(said.engine))
             return rejected(options.scene, fmt::format("/render/engine: there is no engine '{}'", said.engine));
         if (!said.preset.empty() && !find_preset(said.preset))
             return rejected(options.scene, fmt::format("/render/preset: there is no preset '{}'", said.preset));
         fill(options.render, said);
     }
     gi::RenderSettings usual;
-    usual.engine = kDefaultEngine;
+    usual.engine = gi::default_engine().name;
     usual.preset = kDefaultPreset;
     fill(options.render, usual);
     return {};
@@ -145,12 +150,8 @@ Result<Drawing> resolve(const DrawingOptions& options) {
         LUCARNE_ASSIGN(drawing.caps.device_memory, parse_bytes("--device-memory", options.device_memory));
     }
     drawing.caps.prefetch = !options.no_prefetch;
-    LUCARNE_TRY(gi::make_engine(options.render.engine));
-    gi::EngineSettings& engine = drawing.preset.engine;
-    apply(options.render, engine);
-    engine.best_candidate = options.best_candidate;
-    engine.reuse = !options.no_reuse;
-    engine.seed = options.seed.value_or(engine.seed);
+    LUCARNE_TRY(gi::find_engine(options.render.engine));
+    apply(options.render, drawing.preset.engine);
     if (!options.points.empty()) {
         LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
         if (points == 0) return bad_arguments("--points", "a cut of none shows nothing", "allow 1 or more");

@@ -22,18 +22,15 @@ struct DrawingOptions {
     gi::RenderSettings render;  ///< engine, preset and single settings over the preset's
     std::string size = "1280x720";
     std::string points;
-    std::optional<uint64_t> seed;
     std::optional<double> exposure;
     std::string memory, device_memory;  ///< caps; empty: PipelineOptions' own
     LookOptions look;
     LightOptions light;
-    bool best_candidate = false, no_reuse = false, no_prefetch = false;
+    bool no_prefetch = false;
 };
 
-/// Declares --scene --engine --preset --size --bounces --only-bounce --vpls --interleave --atlas
-/// --light-resolution
-/// --points --samples --seed --exposure --best-candidate --no-reuse --memory --device-memory --no-prefetch,
-/// and those of add_look_options() and add_light_options(). `options` outlives the command.
+/// Declares --scene --engine --preset --size --points --exposure --memory --device-memory --no-prefetch, the options of
+/// every engine, and those of add_look_options() and add_light_options(). `options` outlives the command.
 void add_drawing_options(Arguments& command, DrawingOptions& options);
 
 /// What the command line leaves open of `render`, as the scene file says it, else the defaults; engine and

@@ -85,7 +85,7 @@ Result<void> check(const FlyOptions& options) {
         LUCARNE_TRY(VideoWriter::check(options.video, options.overwrite));
     }
     for (const Plan& plan : plans_of(options)) {
-        LUCARNE_TRY(gi::make_engine(plan.engine));
+        LUCARNE_TRY(gi::find_engine(plan.engine));
         if (plan.frames_folder.empty()) continue;
         LUCARNE_TRY(prepare_frames_folder(plan.frames_folder, options.overwrite));
     }

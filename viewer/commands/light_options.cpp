@@ -66,7 +66,7 @@ Result<void> apply(const LightOptions& options, gi::Scene& scene) {
     scene.albedo.scale = options.albedo.value_or(scene.albedo.scale);
     scene.albedo.flatten = options.flatten.value_or(scene.albedo.flatten);
     if (!options.compare.empty()) {
-        LUCARNE_TRY(gi::make_engine(options.compare));
+        LUCARNE_TRY(gi::find_engine(options.compare));
         if (!scene.comparison) scene.comparison.emplace();
         scene.comparison->engine = options.compare;
     }

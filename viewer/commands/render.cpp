@@ -141,10 +141,10 @@ std::vector<std::string> inputs_of(const RenderOptions& options) {
 
 /// Before any long work: whether the layers can be written.
 Result<void> check_layers(const RenderOptions& options) {
-    LUCARNE_ASSIGN(const auto engine, gi::make_engine(options.drawing.render.engine));
-    if (engine->info().layers.empty())
+    LUCARNE_ASSIGN(const auto engine, gi::find_engine(options.drawing.render.engine));
+    if (engine->info.layers.empty())
         return bad_arguments("--layers", fmt::format("engine {} has none", options.drawing.render.engine));
-    return check_outputs(layer_paths(options.output, engine->info()), options.overwrite, inputs_of(options));
+    return check_outputs(layer_paths(options.output, engine->info), options.overwrite, inputs_of(options));
 }
 
 Result<void> write_layers(const RenderOptions& options, const Pipeline& pipeline, ImageSize size) {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "gi/registry.h"
+#include "gi/scene/render_settings_file.h"
+
 namespace lucarne::viewer {
 namespace {
 
@@ -206,6 +209,18 @@ void surroundings(const FlightConditions& conditions, Json& report) {
                        {"flags", conditions.build.flags}};
 }
 
+/// The engine's options, and the budgets.
+Json settings(const FlightConditions& conditions) {
+    Json result = Json::object();
+    if (const auto engine = gi::find_engine(conditions.engine))
+        for (const gi::OptionInfo* option : (*engine)->info.options)
+            result[std::string(option->key)] = gi::option_json(*option, conditions.settings.get(*option));
+    result["view_budget"] = conditions.budgets.view;
+    result["light_view_budget"] = conditions.budgets.light_view;
+    result["light_budget"] = conditions.budgets.light;
+    return result;
+}
+
 }  // namespace
 
 double quantile(std::vector<double> values, double q) {
@@ -224,14 +239,7 @@ Json flight_report(const FlightConditions& conditions, std::span<const FlownFram
     report["mode"] = conditions.mode;
     report["engine"] = conditions.engine;
     report["preset"] = conditions.preset;
-    report["settings"] = {{"bounces", conditions.settings.bounces},
-                          {"vpls", conditions.settings.vpls},
-                          {"interleave", conditions.settings.interleave},
-                          {"atlas", conditions.settings.atlas},
-                          {"seed", conditions.settings.seed},
-                          {"view_budget", conditions.budgets.view},
-                          {"light_view_budget", conditions.budgets.light_view},
-                          {"light_budget", conditions.budgets.light}};
+    report["settings"] = settings(conditions);
     report["size"] = {conditions.size.width, conditions.size.height};
     if (conditions.frame_time > 0) report["frame_time_ms"] = conditions.frame_time * 1e3;
     surroundings(conditions, report);

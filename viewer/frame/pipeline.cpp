@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "gi/lighting/light_options.h"
 #include "gi/post/accumulate.h"
 #include "gi/post/backdrop.h"
 #include "gi/post/false_colour.h"
@@ -231,7 +232,7 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              request.camera,
                              request.size,
                              scene.lights,
-                             settings.light_resolution,
+                             settings[gi::kLightResolution],
                              budgets,
                              glm::distance(bulk[0], bulk[1]),
                              &scene.look.clip};
@@ -556,6 +557,8 @@ void Pipeline::set_budgets(const CutBudgets& budgets) {
 Result<void> Pipeline::set_scene(gi::Scene scene) {
     std::erase_if(scene.lights, [](const gi::SceneLight& light) { return !gi::shines(light); });
     if (!scene.environment_on) scene.environment.reset();
+    if (scene.comparison && scene.comparison->engine.empty())
+        scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     if (!scene.comparison) {
         state_->other.reset();
         state_->other_sample = {}, state_->other_mean = {}, state_->other_picture = {};
@@ -576,7 +579,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     State& state = *state_;
     const auto start = std::chrono::steady_clock::now();
     state.times.clear();
-    if (!state.engine) LUCARNE_TRY(set_engine(kDefaultEngine));
+    if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
     if (state.repack) LUCARNE_TRY(state.colour_anew());
     state.times.begin("cuts");
     if (state.changed || !same_view(request, state.last)) {

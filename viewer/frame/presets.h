@@ -36,7 +36,6 @@ void apply(const gi::RenderSettings& settings, gi::EngineSettings& engine);
 gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings& engine);
 
 inline constexpr std::string_view kDefaultPreset = "interactive";
-inline constexpr std::string_view kDefaultEngine = "vpl";
 
 /// All presets, cheapest first.
 std::span<const Preset> presets();

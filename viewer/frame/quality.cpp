@@ -32,12 +32,11 @@ ImageSize scaled_size(ImageSize full, double scale) {
 void MovingQuality::reduce(gi::EngineSettings& settings, CutBudgets& budgets) const {
     if (!reduced_) return;
     const Preset& cheap = presets().front();
-    settings.vpls = std::min(settings.vpls, cheap.engine.vpls);
-    settings.interleave = std::max(settings.interleave, cheap.engine.interleave);
-    settings.atlas = std::min(settings.atlas, cheap.engine.atlas);
-    settings.light_resolution = std::min(settings.light_resolution, cheap.engine.light_resolution);
-    settings.light_samples = std::min(settings.light_samples, cheap.engine.light_samples);
-    settings.samples = std::min(settings.samples, cheap.engine.samples);
+    for (const gi::OptionInfo* option : gi::engine_options()) {
+        const gi::OptionValue& cheap_value = cheap.engine.get(*option);
+        const double more = gi::number_of(cheap_value) - gi::number_of(settings.get(*option));
+        if (option->cheaper * more > 0) settings.set(*option, cheap_value);
+    }
     budgets.view = std::min(budgets.view, cheap.budgets.view);
     budgets.light_view = std::min(budgets.light_view, cheap.budgets.light_view);
     budgets.light = std::min(budgets.light, cheap.budgets.light);

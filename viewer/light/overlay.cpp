@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "gi/registry.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/handles.h"
 #include "viewer/window/panels/on_screen.h"
@@ -117,7 +118,7 @@ bool take_light_handles(ViewModel& model) {
     if (!model.picture) return false;
     LightTools& tools = model.light_tools;
     if (take_border(model)) return true;
-    if (!tools.show_handles || !model.side_bar().shown || model.engine == "unlit") {
+    if (!tools.show_handles || !model.side_bar().shown || gi::engine_is(model.engine, &gi::EngineInfo::unlit)) {
         tools.held.reset();
         return false;
     }

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "gi/bounce_options.h"
 #include "gi/registry.h"
 #include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
@@ -33,10 +34,10 @@ void next_preset(ViewModel& model) {
 }
 
 void change_bounces(ViewModel& model, int by) {
-    model.settings.bounces =
-        static_cast<uint32_t>(std::clamp<int64_t>(int64_t{model.settings.bounces} + by, 0, kMostBounces));
-    model.message =
-        fmt::format("{} indirect bounce{}", model.settings.bounces, model.settings.bounces == 1 ? "" : "s");
+    const auto bounces =
+        static_cast<uint32_t>(std::clamp<int64_t>(int64_t{model.settings[gi::kBounces]} + by, 0, kMostBounces));
+    model.settings.set(gi::kBounces, bounces);
+    model.message = fmt::format("{} indirect bounce{}", bounces, bounces == 1 ? "" : "s");
 }
 void more_bounces(ViewModel& model) {
     change_bounces(model, 1);
@@ -78,7 +79,10 @@ bool compares(const ViewModel& model) {
     return model.scene.comparison.has_value();
 }
 void toggle_comparison(ViewModel& model) {
-    compare_with(model, compares(model) ? "" : model.engine == "direct" ? "vpl" : "direct");
+    // What light from surface to surface adds is seen beside direct light alone.
+    const auto& direct = gi::engine_with(&gi::EngineInfo::direct_only);
+    const auto& other = model.engine == direct.name ? gi::default_engine() : direct;
+    compare_with(model, compares(model) ? "" : std::string(other.name));
 }
 void next_comparison(ViewModel& model) {
     const auto names = gi::comparison_names();
@@ -96,10 +100,8 @@ Result<void> ViewModel::choose_preset(std::string_view name) {
     preset = chosen.name;
     settings = chosen.engine;
     budgets = chosen.budgets;
-    // What is seen is the user's choice, not the preset's.
-    settings.bounces = before.bounces;
-    settings.only_bounce = before.only_bounce;
-    settings.seed = before.seed;
+    for (const gi::OptionInfo* option : gi::engine_options())
+        if (option->keeps) settings.set(*option, before.get(*option));
     return {};
 }
 

@@ -33,9 +33,6 @@ void next_colour_map(ViewModel& model) {
     model.message = fmt::format("colour map {}", gi::colour_map_names()[static_cast<size_t>(look.map)]);
 }
 
-bool is_lit(const ViewModel& model) {
-    return model.engine != "unlit";
-}
 bool is_unlit(const ViewModel& model) {
     return !is_lit(model);
 }

@@ -4,14 +4,19 @@
 
 #include <fmt/format.h>
 
+#include "gi/registry.h"
+
 namespace lucarne::viewer {
 
+bool is_lit(const ViewModel& model) { return !gi::engine_is(model.engine, &gi::EngineInfo::unlit); }
+
 void switch_light(ViewModel& model) {
-    if (model.engine == "unlit") {
-        model.engine = model.look_tools.lit_engine;
+    std::string& lit = model.look_tools.lit_engine;
+    if (is_lit(model)) {
+        lit = model.engine;
+        model.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
     } else {
-        model.look_tools.lit_engine = model.engine;
-        model.engine = "unlit";
+        model.engine = lit.empty() ? gi::default_engine().name : lit;
     }
 }
 

@@ -9,6 +9,8 @@ namespace lucarne::viewer {
 
 // What actions and the View panel do to the look of the points.
 
+/// Whether the engine knows light.
+bool is_lit(const ViewModel& model);
 /// Light off, or on again with the engine that there was.
 void switch_light(ViewModel& model);
 /// Around the point that the camera turns about, a quarter of the scans' size.

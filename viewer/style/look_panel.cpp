@@ -89,7 +89,7 @@ bool edit_points(gi::Look& look) {
 }
 
 bool edit_shading(ViewModel& model, gi::Look& look) {
-    bool lit = model.engine != "unlit";
+    bool lit = is_lit(model);
     if (ImGui::Checkbox("light", &lit)) switch_light(model);
     if (lit) return false;
     bool changed = choice("shading", look.unlit.shading, gi::shading_names());

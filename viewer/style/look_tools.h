@@ -26,7 +26,7 @@ struct HandlePlace {
 
 /// What the window keeps for the looks of points beside the scene's look itself.
 struct LookTools {
-    std::string lit_engine = "vpl";  ///< what switching light on again goes back to
+    std::string lit_engine;  ///< what switching light on again goes back to; empty: the default
     std::optional<ClipHandle> held;
     bool show_handles = true;
 };

@@ -1,16 +1,22 @@
 #include "gi/engines/direct/direct.h"
 
+#include "gi/bounce_options.h"
 #include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
 
+constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &kLightResolution.info,
+                                          &kLightSamples.info, &kSeed.info};
+constexpr EngineInfo kInfo{.name = "direct",
+                           .description = "direct light with shadow maps",
+                           .options = kOptions,
+                           .direct_only = true};
+
 class DirectEngine : public Engine {
  public:
-    const EngineInfo& info() const override {
-        static constexpr EngineInfo kInfo{"direct", "direct light with shadow maps"};
-        return kInfo;
-    }
+    const EngineInfo& info() const override { return kInfo; }
     Result<void> prepare(Frame& frame) override {
         if (frame.cuts.light_views.size() < frame.lights.size())
             return failed("direct", "there are fewer light views than lights");
@@ -27,7 +33,7 @@ class DirectEngine : public Engine {
 };
 
 Result<void> DirectEngine::render(Frame& frame) {
-    if (frame.settings.only_bounce > 0) {  // no bounce at all is drawn here
+    if (frame.settings[kOnlyBounce] > 0) {  // no bounce at all is drawn here
         frame.radiance.clear(0);
         return {};
     }
@@ -47,8 +53,8 @@ Result<void> DirectEngine::render(Frame& frame) {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_direct_engine() {
-    return std::make_unique<DirectEngine>();
+EngineEntry direct_engine() {
+    return {kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<DirectEngine>(); }};
 }
 
 }  // namespace lucarne::gi

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <memory>
-
 #include "gi/engine.h"
 
 namespace lucarne::gi {
 
 /// Light from the spots after one reflection, with shadow maps: bounce 0 of every other engine.
-std::unique_ptr<Engine> make_direct_engine();
+EngineEntry direct_engine();
 
 }  // namespace lucarne::gi

@@ -8,6 +8,8 @@
 #include <glm/packing.hpp>
 #include <xxhash.h>
 
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
 #include "gi/engines/reference/path_tracer.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/log.h"
@@ -71,14 +73,18 @@ struct Shining {
     }
 };
 
+constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &reference::kSamples.info, &kSeed.info};
+constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
+constexpr EngineInfo kInfo{.name = "reference",
+                           .description = "path tracing over the same surfels: slow, and the truth",
+                           .options = kOptions,
+                           .layers = kLayers,
+                           .reports_progress = true,
+                           .is_reference = true};
+
 class ReferenceEngine final : public Engine {
  public:
-    const EngineInfo& info() const override {
-        static constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
-        static constexpr EngineInfo kInfo{
-            "reference", "path tracing over the same surfels: slow, and the truth", kLayers, true};
-        return kInfo;
-    }
+    const EngineInfo& info() const override { return kInfo; }
     Result<void> prepare(Frame& frame) override;
     Result<void> render(Frame& frame) override;
     std::vector<std::pair<std::string, double>> stats() const override;
@@ -135,13 +141,13 @@ Result<void> ReferenceEngine::render(Frame& frame) {
     frame.times.begin("paths");
     const size_t pixels = size_t{frame.gbuffer.width} * frame.gbuffer.height;
     const auto starts = starts_of(frame.camera, frame.gbuffer.texels.download_all<GBufferTexel>(pixels));
-    const PathSettings settings{.bounces = frame.settings.bounces,
-                                .only_bounce = frame.settings.only_bounce,
-                                .samples = frame.settings.samples,
-                                .seed = frame.settings.seed,
+    const PathSettings settings{.bounces = frame.settings[kBounces],
+                                .only_bounce = frame.settings[kOnlyBounce],
+                                .samples = frame.settings[reference::kSamples],
+                                .seed = frame.settings[kSeed],
                                 .frame = frame.index};
     std::vector<PathSums> sums = PathTracer(*illumination_, settings).trace(starts, frame.progress);
-    const bool seen_directly = frame.settings.only_bounce <= 0;
+    const bool seen_directly = frame.settings[kOnlyBounce] <= 0;
     for (size_t i = 0; i < pixels; ++i)
         if (!(starts[i].radius > 0) && seen_directly)
             sums[i].exact = glm::dvec3(background(frame, starts[i]));
@@ -176,8 +182,8 @@ std::vector<std::vector<glm::vec4>> ReferenceEngine::layers() const {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_reference_engine() {
-    return std::make_unique<ReferenceEngine>();
+EngineEntry reference_engine() {
+    return {kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<ReferenceEngine>(); }};
 }
 
 }  // namespace lucarne::gi

@@ -11,15 +11,14 @@ namespace {
 enum Binding : uint32_t { kObscurance = 4, kRadiance = 6 };
 enum Unit : uint32_t { kTexels = 3 };
 
+constexpr EngineInfo kInfo{
+    .name = "unlit",
+    .description = "the points' colours without light: flat, eye-dome lighting or ambient occlusion",
+    .unlit = true};
+
 class UnlitEngine : public Engine {
  public:
-    const EngineInfo& info() const override {
-        static constexpr EngineInfo kInfo{
-            .name = "unlit",
-            .description = "the points' colours without light: flat, eye-dome lighting or ambient occlusion",
-            .unlit = true};
-        return kInfo;
-    }
+    const EngineInfo& info() const override { return kInfo; }
     Result<void> prepare(Frame& frame) override {
         LUCARNE_TRY(upload_sky(frame, sky_));
         return upload_materials(frame.device, {}, materials_);
@@ -77,8 +76,8 @@ Result<void> UnlitEngine::render(Frame& frame) {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_unlit_engine() {
-    return std::make_unique<UnlitEngine>();
+EngineEntry unlit_engine() {
+    return {kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<UnlitEngine>(); }};
 }
 
 }  // namespace lucarne::gi

@@ -5,10 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "gi/bounce_options.h"
 #include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
 #include "gi/engines/vpl/footprints.h"
 #include "gi/engines/vpl/seeding/light_sights.h"
 #include "gi/engines/vpl/lobes.h"
+#include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/redistribution/redistribution.h"
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
@@ -39,9 +42,16 @@ struct Bounce {
 // Bytes of maps that are held from frame to frame: sixteen bounces of `interactive`, one of `high`.
 constexpr size_t kMostKept = size_t{64} << 20;
 
+constexpr const OptionInfo* kOptions[] = {
+    &kBounces.info,       &kOnlyBounce.info, &kVpls.info,          &kInterleave.info, &kAtlas.info,
+    &kLightResolution.info, &kLightSamples.info, &kBestCandidate.info, &kReuse.info,      &kSeed.info};
+constexpr EngineInfo kInfo{.name = "vpl",
+                           .description = "virtual point lights with imperfect shadow maps",
+                           .options = kOptions};
+
 class VplEngine : public Engine {
  public:
-    const EngineInfo& info() const override;
+    const EngineInfo& info() const override { return kInfo; }
     Result<void> prepare(Frame& frame) override;
     Result<void> render(Frame& frame) override;
     std::vector<std::pair<std::string, double>> stats() const override;
@@ -63,10 +73,10 @@ class VplEngine : public Engine {
 };
 
 bool wants_direct(const EngineSettings& s) {
-    return s.only_bounce <= 0;
+    return s[kOnlyBounce] <= 0;
 }
 bool wants_indirect(const EngineSettings& s) {
-    return s.only_bounce < 0 ? s.bounces > 0 : s.only_bounce > 0;
+    return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
 }
 
 bool glossy(const Frame& frame) {
@@ -82,17 +92,12 @@ Result<void> pass(Frame& frame, const char* name, const Body& body) {
     return done;
 }
 
-const EngineInfo& VplEngine::info() const {
-    static constexpr EngineInfo kInfo{"vpl", "virtual point lights with imperfect shadow maps"};
-    return kInfo;
-}
-
 Result<void> VplEngine::prepare(Frame& frame) {
     const EngineSettings& s = frame.settings;
-    if (s.interleave != 1 && s.interleave != 2 && s.interleave != 4)
-        return bad_arguments("vpl", fmt::format("it cannot interleave {0} x {0} pixels", s.interleave),
+    if (s[kInterleave] != 1 && s[kInterleave] != 2 && s[kInterleave] != 4)
+        return bad_arguments("vpl", fmt::format("it cannot interleave {0} x {0} pixels", s[kInterleave]),
                              "choose 1, 2 or 4");
-    LUCARNE_TRY(atlas_layout(s.atlas, s.vpls));
+    LUCARNE_TRY(atlas_layout(s[kAtlas], s[kVpls]));
     if (frame.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
     LUCARNE_TRY(upload_sky(frame, sky_));
@@ -112,8 +117,8 @@ Basis basis_of(const Frame& frame) {
 /// moves.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
-    const uint32_t last = s.only_bounce < 0 ? s.bounces : static_cast<uint32_t>(s.only_bounce);
-    LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s.atlas, s.vpls));
+    const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
+    LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s[kAtlas], s[kVpls]));
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
     Basis basis = basis_of(frame);
     const bool held = keep && basis == basis_;
@@ -121,12 +126,12 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     // Frame by frame less is blurred, so that what is averaged converges.
     const float shrink = 1.0f / static_cast<float>(frame.index + 1);
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
-    redistribution_.best_candidate = s.best_candidate;
+    redistribution_.best_candidate = s[kBestCandidate];
     redistribution_.footprint_variance = footprint_variance(frame.index);
     LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_panes(frame, glossy(frame), panes_); }));
     if (!held) {
         LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
-            return sights_.seed(frame, materials_, s.vpls, mix64(s.seed, frame.index), bounces_[0].seeds);
+            return sights_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index), bounces_[0].seeds);
         }));
         LUCARNE_TRY(pass(frame, "ISM casters",
                          [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
@@ -141,12 +146,12 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         if (done && !held)
             done = pass(frame, "VPL footprints",
                         [&] { return trim_footprints(frame.device, maps_, shrink, seeds); });
-        if (done && (s.only_bounce < 0 || bounce == last))
+        if (done && (s[kOnlyBounce] < 0 || bounce == last))
             done = pass(frame, "VPL shading",
                         [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
         if (done && !held && bounce < last)
             done = pass(frame, "VPL redistribution", [&] {
-                const auto salt = static_cast<uint32_t>(mix64(mix64(s.seed, frame.index), bounce));
+                const auto salt = static_cast<uint32_t>(mix64(mix64(s[kSeed], frame.index), bounce));
                 return redistribute(frame.device, *frame.cuts.light, maps_, materials_, glossy(frame), salt,
                                     seeds, redistribution_, bounces_[bounce].seeds);
             });
@@ -154,7 +159,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
         LUCARNE_TRY(done);
     }
     basis_ = std::move(basis);
-    const bool reuse = frame.moving && s.reuse;
+    const bool reuse = frame.moving && s[kReuse];
     if (reuse) LUCARNE_TRY(history_.begin(frame));
     return pass(frame, "VPL merge",
                 [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
@@ -193,8 +198,8 @@ std::vector<std::pair<std::string, double>> VplEngine::stats() const {
 }  // namespace
 }  // namespace vpl
 
-std::unique_ptr<Engine> make_vpl_engine() {
-    return std::make_unique<vpl::VplEngine>();
+EngineEntry vpl_engine() {
+    return {vpl::kInfo, []() -> std::unique_ptr<Engine> { return std::make_unique<vpl::VplEngine>(); }};
 }
 
 }  // namespace lucarne::gi

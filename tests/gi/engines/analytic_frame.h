@@ -15,6 +15,7 @@
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
 #include "tests/gi/engines/even_order.h"
+#include "tests/gi/engines/test_settings.h"
 
 namespace lucarne::gi::scenes {
 
@@ -79,7 +80,7 @@ struct AnalyticScene {
     std::vector<Light> lights;
     std::vector<Material> materials;  ///< [0] is the default
     CameraView camera;
-    EngineSettings settings;
+    EngineSettings settings = test_settings();
     std::shared_ptr<const Environment> environment = nullptr;
     size_t packed_materials = 0;  ///< materials of the scene that the surfels were packed for, where it had more
 };

@@ -10,6 +10,9 @@
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -54,7 +57,7 @@ AnalyticScene floor_under_a_spot() {
     scenes::add_rectangle(scene.surfels, kO, 2.0f * kX, 2.0f * kY, 160, glm::vec3(0.5f));
     scene.lights = {spot(glm::vec3(0.7f, 0.9f, 2), glm::vec3(1, 1, 0), 0.6f, 0.5f, 10)};
     scene.camera = look(glm::vec3(1, 1, 3), glm::vec3(1, 1, 0), 0.25f, 96);
-    scene.settings.only_bounce = 0;
+    scene.settings.set(kOnlyBounce, 0);
     return scene;
 }
 
@@ -114,8 +117,8 @@ TEST_P(Engines, SealedDarkRoomStaysBlack) {
     for (const Light& light : {spot(glm::vec3(1, 1, 4), glm::vec3(1), 0.9f, 0.8f, 1e4f), sun, bulb}) {
         scene.lights = {light};
         scene.camera = look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 64);
-        scene.settings.samples = 16;
-        scene.settings.bounces = 3;
+        scene.settings.set(reference::kSamples, 16);
+        scene.settings.set(kBounces, 3);
         float brightest = 0;
         size_t lit = 0;
         for (const glm::vec4& pixel : render(scene).radiance) {
@@ -150,11 +153,11 @@ AnalyticScene lit_corner() {
     scenes::add_rectangle(scene.surfels, kO, kX, kY, 100, glm::vec3(0.5f));
     scene.lights = {spot(glm::vec3(1.5f, .5f, .9f), glm::vec3(0, .5f, .6f), 0.2f, 0.2f, 20)};
     scene.camera = look(glm::vec3(0.5f, 0.5f, 2), glm::vec3(0.5f, 0.5f, 0), 0.18f, 48);
-    scene.settings.only_bounce = 1;
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
-    scene.settings.atlas = 2048;
-    scene.settings.samples = 256;
+    scene.settings.set(kOnlyBounce, 1);
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
+    scene.settings.set(vpl::kAtlas, 2048);
+    scene.settings.set(reference::kSamples, 256);
     return scene;
 }
 
@@ -192,7 +195,7 @@ TEST_P(Engines, BouncesOneByOneAddUp) {
     AnalyticScene scene = lit_corner();
     scene.camera = look(glm::vec3(1.2f, 0.5f, 1.2f), glm::vec3(0, 0.5f, 0.2f), 0.6f, 48);
     const auto mean = [&](int32_t only) {
-        scene.settings.only_bounce = only;
+        scene.settings.set(kOnlyBounce, only);
         return mean_luminance(render(scene).radiance);
     };
     const double both = mean(-1), first = mean(0), second = mean(1);
@@ -206,11 +209,11 @@ TEST_P(Engines, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
     scene.surfels = scenes::closed_box(2, 60, glm::vec3(0.5f));
     scene.materials = {material(1, 0, 1, 0.5f)};
     scene.camera = look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 48);
-    scene.settings.samples = 64;
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(reference::kSamples, 64);
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     for (const uint32_t bounces : {0u, 1u, 2u, 3u}) {
-        scene.settings.bounces = bounces;
+        scene.settings.set(kBounces, bounces);
         EXPECT_NEAR(mean_luminance(render(scene).radiance), 1 - std::pow(0.5, bounces + 1),
                     GetParam().furnace_tolerance)
             << bounces;
@@ -220,11 +223,11 @@ TEST_P(Engines, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
 TEST_P(Engines, NothingToSeeAndNothingToLightWithIsBlack) {
     AnalyticScene dark = floor_under_a_spot();
     dark.lights.clear();
-    dark.settings.only_bounce = -1;
+    dark.settings.set(kOnlyBounce, -1);
     for (const glm::vec4& pixel : render(dark).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
     AnalyticScene empty = floor_under_a_spot();
     empty.surfels.clear();
-    empty.settings.only_bounce = -1;
+    empty.settings.set(kOnlyBounce, -1);
     for (const glm::vec4& pixel : render(empty).radiance) ASSERT_EQ(glm::vec3(pixel), kO);
 }
 
@@ -232,18 +235,18 @@ TEST_P(Engines, LightOnASurfaceOrInsideAWallGivesFinitePictures) {
     for (const glm::vec3& place : {glm::vec3(1, 1, 0), glm::vec3(1, 1, -1e-4f), glm::vec3(1, 1, 1e-4f)}) {
         AnalyticScene scene = floor_under_a_spot();
         scene.lights = {spot(place, place + kZ, 1.2f, 1.0f, 10), spot(place, place - kZ, 1.2f, 1.0f, 10)};
-        scene.settings.only_bounce = -1;
-        scene.settings.samples = 4;
+        scene.settings.set(kOnlyBounce, -1);
+        scene.settings.set(reference::kSamples, 4);
         render(scene);
     }
 }
 
 TEST_P(Engines, SamePicturesEveryRun) {
     AnalyticScene scene = lit_corner();
-    scene.settings.only_bounce = -1;
-    scene.settings.vpls = 64;
-    scene.settings.interleave = 2;
-    scene.settings.samples = 4;
+    scene.settings.set(kOnlyBounce, -1);
+    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(vpl::kInterleave, 2);
+    scene.settings.set(reference::kSamples, 4);
     const auto first = render(scene), second = render(scene);
     EXPECT_EQ(first.radiance, second.radiance);
 }

@@ -5,6 +5,7 @@
 
 #include "gi/engine.h"
 #include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/engines/test_settings.h"
 
 namespace lucarne::gi {
 
@@ -44,7 +45,7 @@ struct LitOptions {
     std::vector<Light> lights;
     std::vector<Material> materials = {make_material()};
     glm::vec3 background{0.0f};
-    EngineSettings settings;
+    EngineSettings settings = test_settings();
     bool moving = false;
     std::shared_ptr<const Environment> environment = nullptr;
     Unlit unlit{};

@@ -1,4 +1,6 @@
 #include "viewer/frame/quality.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 #include <gtest/gtest.h>
 
@@ -38,13 +40,13 @@ TEST(MovingQuality, NeverMovesDearerThanAtRest) {
     ASSERT_TRUE(quality.reduced_settings());
     for (const Preset& preset : presets()) {
         gi::EngineSettings settings = preset.engine;
-        settings.vpls = std::min(settings.vpls, 16u);
+        settings.set(gi::vpl::kVpls, std::min(settings[gi::vpl::kVpls], 16u));
         CutBudgets budgets = preset.budgets;
         budgets.cap(1000);
         quality.reduce(settings, budgets);
-        EXPECT_EQ(settings.vpls, 16u);
+        EXPECT_EQ(settings[gi::vpl::kVpls], 16u);
         EXPECT_EQ(budgets.view, 1000u);
-        EXPECT_EQ(settings.bounces, preset.engine.bounces) << "what is seen is the user's choice";
+        EXPECT_EQ(settings[gi::kBounces], preset.engine[gi::kBounces]) << "what is seen is the user's choice";
     }
 }
 

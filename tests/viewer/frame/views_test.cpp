@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "viewer/frame/presets.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -101,7 +102,7 @@ TEST(Presets, EachCostsMoreThanTheOneBefore) {
     for (size_t i = 0; i < presets().size(); ++i) {
         names.insert(presets()[i].name);
         if (i == 0) continue;
-        EXPECT_GT(presets()[i].engine.vpls, presets()[i - 1].engine.vpls);
+        EXPECT_GT(presets()[i].engine[gi::vpl::kVpls], presets()[i - 1].engine[gi::vpl::kVpls]);
         EXPECT_GT(presets()[i].budgets.light, presets()[i - 1].budgets.light);
     }
     EXPECT_EQ(names.size(), presets().size());

@@ -8,6 +8,10 @@
 #include "gi/scene/render_settings_file.h"
 #include "tests/viewer/window/measuring_window.h"
 #include "viewer/light/edits.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -19,13 +23,13 @@ ViewModel changed_model() {
     ViewModel model(10);
     model.engine = "reference";
     EXPECT_TRUE(model.choose_preset("high"));
-    model.settings.bounces = 3;
-    model.settings.only_bounce = 2;
-    model.settings.vpls = 64;
-    model.settings.interleave = 2;
-    model.settings.atlas = 512;
-    model.settings.light_resolution = 256;
-    model.settings.samples = 5;
+    model.settings.set(gi::kBounces, 3);
+    model.settings.set(gi::kOnlyBounce, 2);
+    model.settings.set(gi::vpl::kVpls, 64);
+    model.settings.set(gi::vpl::kInterleave, 2);
+    model.settings.set(gi::vpl::kAtlas, 512);
+    model.settings.set(gi::kLightResolution, 256);
+    model.settings.set(gi::reference::kSamples, 5);
     model.resolution_scale = 0.5;
     return model;
 }
@@ -136,7 +140,7 @@ TEST_F(MeasuringWindow, PicturesOfHalfTheSizeAreMeasuredInTheSamePlacesAndTheSav
     ASSERT_TRUE(saved) << saved.error().line();
     EXPECT_EQ(saved->engine, "direct");
     EXPECT_EQ(saved->scale, 0.5);
-    EXPECT_EQ(saved->light_resolution, 256u);
+    EXPECT_EQ(saved->options[gi::kLightResolution], 256u);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <imgui.h>
@@ -75,50 +76,84 @@ void tell_cost(const char* text) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
-/// One of the powers of two from 2^least to 2^most.
-bool choose_power(const char* label, uint32_t& value, int least, int most) {
+/// A slider over the powers of two within the option's slider; true where the user moved it.
+bool choose_power(const char* label, const gi::SliderRange& slider, int64_t& value) {
+    const int least = static_cast<int>(std::log2(slider.least)), most = static_cast<int>(std::log2(slider.most));
     int power = least;
-    while (power < most && (1u << power) < value) ++power;
-    if (!ImGui::SliderInt(label, &power, least, most, std::to_string(1u << power).c_str(),
+    while (power < most && (int64_t{1} << power) < value) ++power;
+    if (!ImGui::SliderInt(label, &power, least, most, std::to_string(int64_t{1} << power).c_str(),
                           ImGuiSliderFlags_AlwaysClamp))
         return false;
-    value = 1u << power;
+    value = int64_t{1} << power;
     return true;
 }
 
-/// How much is computed, each with what it costs.
+bool edit_integer(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto& whole = std::get<int64_t>(value);
+    if (option.slider.logarithmic) return choose_power(label, option.slider, whole);
+    int now = static_cast<int>(whole);
+    const bool unset = !option.unset.empty() && now < option.least;
+    if (!ImGui::SliderInt(label, &now, static_cast<int>(option.slider.least), static_cast<int>(option.slider.most),
+                          unset ? std::string(option.unset).c_str() : "%d", ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    whole = now;
+    return true;
+}
+
+bool edit_number(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto now = static_cast<float>(std::get<double>(value));
+    const auto least = static_cast<float>(option.slider.least), most = static_cast<float>(option.slider.most);
+    const ImGuiSliderFlags scale = option.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+    if (!ImGui::SliderFloat(label, &now, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp | scale)) return false;
+    value = static_cast<double>(now);
+    return true;
+}
+
+bool edit_choice(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto& chosen = std::get<int64_t>(value);
+    const std::string shown = gi::option_text(option, value);
+    if (!ImGui::BeginCombo(label, shown.c_str())) return false;
+    bool changed = false;
+    for (size_t i = 0; i < option.choices.size(); ++i) {
+        if (!ImGui::Selectable(std::string(option.choices[i]).c_str(), chosen == static_cast<int64_t>(i))) continue;
+        chosen = static_cast<int64_t>(i);
+        changed = true;
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool edit_colour(const char* label, gi::OptionValue& value) {
+    auto& colour = std::get<glm::dvec3>(value);
+    float shown[3] = {static_cast<float>(colour.x), static_cast<float>(colour.y), static_cast<float>(colour.z)};
+    if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return false;
+    colour = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
+    return true;
+}
+
+/// Draws the option's control; true where the user changed `value`.
+bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
+    const std::string label(option.label);
+    switch (option.kind) {
+        case gi::OptionKind::flag: return ImGui::Checkbox(label.c_str(), &std::get<bool>(value));
+        case gi::OptionKind::integer: return edit_integer(option, label.c_str(), value);
+        case gi::OptionKind::number: return edit_number(option, label.c_str(), value);
+        case gi::OptionKind::choice: return edit_choice(option, label.c_str(), value);
+        case gi::OptionKind::colour: return edit_colour(label.c_str(), value);
+    }
+    return false;
+}
+
+/// The engine's options, each with what it costs, and the pictures' size.
 void effort(ViewModel& model) {
     if (!fold("Effort")) return;
-    gi::EngineSettings& settings = model.settings;
-    int bounces = static_cast<int>(settings.bounces);
-    if (ImGui::SliderInt("bounces", &bounces, 0, 8, "%d", ImGuiSliderFlags_AlwaysClamp))
-        settings.bounces = static_cast<uint32_t>(bounces);
-    tell_cost(
-        "vpl: the lights are shared out among the bounces, so more cost little and are coarser;\n"
-        "reference: time grows with them");
-    int only = settings.only_bounce;
-    if (ImGui::SliderInt("only bounce", &only, -1, 8, only < 0 ? "all" : "%d", ImGuiSliderFlags_AlwaysClamp))
-        settings.only_bounce = only;
-    if (model.engine == "vpl") {
-        choose_power("VPLs", settings.vpls, 4, 12);
-        tell_cost("virtual point lights: time and the shadow maps' memory grow with them");
-        choose_power("interleaving", settings.interleave, 0, 2);
-        tell_cost(
-            "pixels along a side that share out the lights: 4 is up to 16 times faster than 1,\n"
-            "at the price of blurred detail in indirect light");
-        choose_power("shadow atlas", settings.atlas, 8, 13);
-        tell_cost("texels along a side: twice as many cost four times the memory, and make finer shadows");
-    }
-    if (model.engine == "vpl" || model.engine == "direct") {
-        choose_power("light resolution", settings.light_resolution, 6, 12);
-        tell_cost(
-            "texels along a side of each light's view: twice as many cost up to four times the time,\n"
-            "and make sharper shadow edges");
-    }
-    if (model.engine == "reference") {
-        choose_power("paths a pixel", settings.samples, 0, 10);
-        tell_cost("of a picture: four times as many take four times as long and halve the noise");
-    }
+    if (const auto engine = gi::find_engine(model.engine))
+        for (const gi::OptionInfo* option : (*engine)->info.options) {
+            if (!option->in_window()) continue;
+            gi::OptionValue value = model.settings.get(*option);
+            if (edit_option(*option, value)) model.settings.set(*option, value);
+            if (!option->cost.empty()) tell_cost(std::string(option->cost).c_str());
+        }
     float scale = static_cast<float>(100 * model.resolution_scale);
     if (ImGui::SliderFloat("resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
                            ImGuiSliderFlags_AlwaysClamp))

@@ -3,6 +3,7 @@
 #include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -13,7 +14,7 @@ Defines defines(const Panes& panes) {
 
 void bind_pixels(const Frame& frame, const Program& program) {
     frame.gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
-    program.set("interleave", frame.settings.interleave);
+    program.set("interleave", frame.settings[kInterleave]);
     set(program, "camera", frame.camera);
 }
 
@@ -54,7 +55,7 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
         program->set("light_count", maps.layout.maps);
         program->set("footprint_variance", footprint_variance(frame.index));
     }
-    const uint32_t n = frame.settings.interleave;
+    const uint32_t n = frame.settings[kInterleave];
     target.diffuse.bind(kBindDiffuse);
     target.specular.bind(kBindSpecular);
     shade->dispatch((frame.gbuffer.width + n - 1) / n, (frame.gbuffer.height + n - 1) / n, n * n);

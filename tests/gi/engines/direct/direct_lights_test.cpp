@@ -9,6 +9,9 @@
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -45,9 +48,9 @@ AnalyticScene corner_with_block() {
         scene.surfels.push_back(s);
     }
     scene.camera = scenes::look(glm::vec3(3.2f, 3.0f, 2.4f), glm::vec3(.7f, .7f, .5f), .45f, 96);
-    scene.settings.only_bounce = 0;
-    scene.settings.light_resolution = 1024;
-    scene.settings.samples = 1;
+    scene.settings.set(kOnlyBounce, 0);
+    scene.settings.set(kLightResolution, 1024);
+    scene.settings.set(reference::kSamples, 1);
     return scene;
 }
 
@@ -128,7 +131,7 @@ TEST_F(DirectLights, SealedRoomStaysBlackUnderAnyLightOutside) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(1, 60, glm::vec3(.9f));
     scene.camera = scenes::look(glm::vec3(.5f), glm::vec3(.9f, .8f, .4f), .8f, 64);
-    scene.settings.only_bounce = 0;
+    scene.settings.set(kOnlyBounce, 0);
     scene.lights = {point_light(glm::vec3(.5f, .5f, 1.3f), 1000),
                     point_light(glm::vec3(-.2f, .4f, .3f), 1000), sharp_sun(glm::vec3(-.3f, .2f, -1), 1000),
                     sharp_sun(glm::vec3(1, .3f, .1f), 1000)};

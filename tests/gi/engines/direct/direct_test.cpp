@@ -9,6 +9,8 @@
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 class DirectTest : public OnDevice {
  protected:
     Lit light(const std::vector<Surfel>& surfels, const CameraView& camera, const LitOptions& options) {
-        const auto engine = make_direct_engine();
+        const auto engine = direct_engine().make();
         return light_up(*device, *engine, SurfelCloud(surfels), camera, options);
     }
 };
@@ -91,7 +93,7 @@ TEST_F(DirectTest, SquareOccluderThrowsItsShadowWhereGeometrySays) {
     surfels.insert(surfels.end(), occluder.begin(), occluder.end());
     LitOptions options;
     options.lights = {make_spot({0, 0, kLight}, {0, 0, 0}, 0.5f, 30)};
-    options.settings.light_resolution = 512;
+    options.settings.set(kLightResolution, 512);
     // From aside, so that the occluder does not hide its shadow.
     const Lit lit = light(surfels, look({0, -4, 1.5f}, {0, 0, 0}, 320, 240, 0.5f), options);
     const float shadow = kHalf * kLight / (kLight - kAt);
@@ -204,7 +206,7 @@ TEST_F(DirectTest, WithoutLightsOnlyEmissionAndBackgroundAreSeen) {
         ASSERT_EQ(v, lit.texels[i].depth > 0 ? glm::vec3(2.5f) : options.background);
     }
     EXPECT_GT(surface, 100u);
-    options.settings.only_bounce = 1;
+    options.settings.set(kOnlyBounce, 1);
     const Lit none = light(plate(0.5f, 0, 30), look({0, -2, 2}, {0, 0, 0}, 80, 60, 1.0f), options);
     for (const glm::vec4& v : none.radiance) ASSERT_EQ(v.x, 0.0f) << "direct light has no first bounce";
 }

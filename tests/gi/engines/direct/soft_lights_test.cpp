@@ -11,6 +11,10 @@
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/soft_light_scenes.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -28,9 +32,9 @@ AnalyticScene floor_and_block() {
         scene.surfels.push_back(s);
     }
     scene.camera = scenes::look(glm::vec3(1.1f, .2f, 3), glm::vec3(1, 1, 0), .4f, 64);
-    scene.settings.only_bounce = 0;
-    scene.settings.light_samples = 16;
-    scene.settings.samples = 256;
+    scene.settings.set(kOnlyBounce, 0);
+    scene.settings.set(kLightSamples, 16);
+    scene.settings.set(reference::kSamples, 256);
     return scene;
 }
 
@@ -96,8 +100,8 @@ double form_factor(Device& device, const Light& light) {
     scenes::add_rectangle(scene.surfels, kO, kX, kY, 60, glm::vec3(.5f));
     // From far away, so that every part of the receiver counts alike.
     scene.camera = scenes::look(glm::vec3(.5f, .5f, 40), glm::vec3(.5f, .5f, 0), .02f, 96);
-    scene.settings.only_bounce = 0;
-    scene.settings.light_samples = 64;
+    scene.settings.set(kOnlyBounce, 0);
+    scene.settings.set(kLightSamples, 64);
     scene.lights = {light};
     const auto picture = average(device, scene, 4);
     const auto texels = scenes::render(device, "direct", scene)->texels;
@@ -127,8 +131,8 @@ TEST_F(SoftLights, DiscSendsItsFormFactorToAPointUnderIt) {
     AnalyticScene scene;
     scenes::add_rectangle(scene.surfels, kO, kX, kY, 100, glm::vec3(.5f));
     scene.camera = scenes::look(glm::vec3(.5f, .5f, 3), glm::vec3(.5f, .5f, 0), .005f, 16);
-    scene.settings.only_bounce = 0;
-    scene.settings.light_samples = 64;
+    scene.settings.set(kOnlyBounce, 0);
+    scene.settings.set(kLightSamples, 64);
     for (const float height : {.3f, 1.0f}) {
         scene.lights = {scenes::disc_light({.5f, .5f, height}, .4f, -kZ, 2)};
         const double truth = 2 * .5 * .4 * .4 / (.4 * .4 + height * height);
@@ -140,9 +144,9 @@ TEST_F(SoftLights, SealedRoomStaysBlackUnderAnyOfThemOutside) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(1, 40, glm::vec3(.9f));
     scene.camera = scenes::look(glm::vec3(.5f), glm::vec3(.9f, .8f, .4f), .8f, 64);
-    scene.settings.vpls = 64;
-    scene.settings.atlas = 512;
-    scene.settings.light_samples = 24;
+    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(vpl::kAtlas, 512);
+    scene.settings.set(kLightSamples, 24);
     scene.lights = {scenes::rectangle_light({.5f, .5f, 1.2f}, .4f * kX, .4f, -kZ, 1000),
                     scenes::disc_light({-.1f, .5f, .4f}, .3f, kX, 1000),
                     scenes::wide_sun({-.3f, .2f, -1}, .3f, 1000)};

@@ -10,6 +10,7 @@
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -288,7 +289,7 @@ TEST_F(UnlitTest, ALampBehindAClippedWallLightsTheRoomInEveryEngine) {
     clip.planes = {{{0, 0, 0.5}, {0, 0, -1}, false}};
     LitOptions options;
     options.lights = {make_spot({0, 0, 2}, {0, 0, -1}, 0.5f, 30)};
-    options.settings.bounces = 0;
+    options.settings.set(kBounces, 0);
     const CameraView camera = look({0, -3, 0.4f}, {0, 0, -1}, kWidth, kHeight);
     const auto mean = [&](const Lit& lit) {
         double sum = 0;

@@ -7,6 +7,9 @@
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -33,11 +36,11 @@ AnalyticScene box_with_a_block() {
     add_rectangle(s, c + u, v, h, 37, kWhite);
     scene.lights = {spot(glm::vec3(1.2f, .9f, 1.9f), glm::vec3(1.1f, 1.1f, 0), .8f, .7f, 10)};
     scene.camera = look(glm::vec3(1, -2, 1), glm::vec3(1, 1, 1), .5f, 64);
-    scene.settings.only_bounce = 1;
-    scene.settings.vpls = 256;
-    scene.settings.atlas = 2048;
-    scene.settings.interleave = 2;
-    scene.settings.samples = 64;
+    scene.settings.set(kOnlyBounce, 1);
+    scene.settings.set(vpl::kVpls, 256);
+    scene.settings.set(vpl::kAtlas, 2048);
+    scene.settings.set(vpl::kInterleave, 2);
+    scene.settings.set(reference::kSamples, 64);
     return scene;
 }
 
@@ -57,10 +60,10 @@ class VplEngineTest : public OnDevice {
 TEST_F(VplEngineTest, everyInterleaveGivesTheSameMeanLuminance) {
     AnalyticScene scene = box_with_a_block();
     scene.camera = look(glm::vec3(1, -2, 1), glm::vec3(1, 1, 1), .5f, 160);
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kInterleave, 1);
     const double whole = mean(scene);
     for (const uint32_t n : {2u, 4u}) {
-        scene.settings.interleave = n;
+        scene.settings.set(vpl::kInterleave, n);
         EXPECT_NEAR(mean(scene) / whole, 1, .01) << n;  // without the factor n^2 it is 1/4 or 1/16
     }
 }
@@ -69,17 +72,17 @@ TEST_F(VplEngineTest, oneBounceAgreesWithTheReference) {
     AnalyticScene scene = box_with_a_block();
     const double truth = mean(scene, "reference");
     EXPECT_NEAR(mean(scene) / truth, 1, .05);
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     EXPECT_NEAR(mean(scene) / truth, 1, .04);
 }
 
 TEST_F(VplEngineTest, furtherBouncesAgreeWithTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     for (const int bounce : {2, 3}) {
-        scene.settings.only_bounce = bounce;
+        scene.settings.set(kOnlyBounce, bounce);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .06) << bounce;
     }
 }
@@ -88,17 +91,17 @@ TEST_F(VplEngineTest, bouncesTogetherAreTheSumOfBouncesApart) {
     AnalyticScene scene = box_with_a_block();
     double sum = 0;
     for (int bounce = 0; bounce <= 3; ++bounce) {
-        scene.settings.only_bounce = bounce;
+        scene.settings.set(kOnlyBounce, bounce);
         sum += mean(scene);
     }
-    scene.settings.only_bounce = -1;
-    scene.settings.bounces = 3;
+    scene.settings.set(kOnlyBounce, -1);
+    scene.settings.set(kBounces, 3);
     EXPECT_NEAR(mean(scene) / sum, 1, 1e-4);  // the same VPLs
 }
 
 TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.vpls = 1024;
+    scene.settings.set(vpl::kVpls, 1024);
     const Light strong = scene.lights[0];
     const Light weak = spot(glm::vec3(.4f, .6f, 1.9f), glm::vec3(.1f, 1.6f, .6f), .5f, .4f, 3);
     scene.lights = {weak};
@@ -112,8 +115,8 @@ TEST_F(VplEngineTest, lightsShareTheVplsAndGiveTheSumOfWhatTheyGiveAlone) {
 
 TEST_F(VplEngineTest, lightsOfEveryKindWithAShadowMapLightIndirectlyAsInTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     Light point{};
     point.kind = kPointLight;
     point.position = {1.5f, .5f, 1.2f, 0};
@@ -133,8 +136,8 @@ TEST_F(VplEngineTest, lightsOfEveryKindWithAShadowMapLightIndirectlyAsInTheRefer
 
 TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     scene.lights.clear();
     scene.materials = {material(1, 0, 1, 0), material(.5f, 0, 1, 4)};
     for (Surfel& s : scene.surfels)  // a lamp in the ceiling
@@ -142,7 +145,7 @@ TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
             s.material = 1;
     // Half of the VPLs shine at the outside and light nothing, of all bounces.
     for (const int bounce : {1, 2}) {
-        scene.settings.only_bounce = bounce;
+        scene.settings.set(kOnlyBounce, bounce);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << bounce;
     }
 }
@@ -150,15 +153,15 @@ TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
 TEST_F(VplEngineTest, atlasSizeAndSeedHardlyChangeTheMean) {
     AnalyticScene scene = box_with_a_block();
     const double first = mean(scene);
-    scene.settings.seed = 2;
+    scene.settings.set(kSeed, 2);
     EXPECT_NEAR(mean(scene) / first, 1, .03);
-    scene.settings.atlas = 1024;
+    scene.settings.set(vpl::kAtlas, 1024);
     EXPECT_NEAR(mean(scene) / first, 1, .03);
 }
 
 TEST_F(VplEngineTest, framesSampleAnewAndTheirMeanIsNearerToTheReference) {
     AnalyticScene scene = box_with_a_block();
-    scene.settings.samples = 1024;
+    scene.settings.set(reference::kSamples, 1024);
     const auto truth = radiance(scene, "reference");
     const auto first = radiance(scene);
     std::vector<glm::vec4> sum = first;
@@ -181,8 +184,8 @@ TEST_F(VplEngineTest, glossyLobesAgreeWithTheReference) {
     AnalyticScene scene = box_with_a_block();
     for (const float exponent : {10.0f, 100.0f}) {
         scene.materials = {material(.5f, .4f, exponent, 0)};
-        scene.settings.interleave = 1;
-        scene.settings.vpls = 1024;
+        scene.settings.set(vpl::kInterleave, 1);
+        scene.settings.set(vpl::kVpls, 1024);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << exponent;
     }
 }
@@ -202,7 +205,7 @@ AnalyticScene two_rooms(bool open) {
         });
     scene.lights = {spot(glm::vec3(.5f, 1, 1.8f), glm::vec3(.8f, 1, 0), .7f, .6f, 10)};
     scene.camera = look(glm::vec3(2.5f, .2f, 1), glm::vec3(4, 1.4f, .8f), .8f, 64);
-    scene.settings.only_bounce = 1;
+    scene.settings.set(kOnlyBounce, 1);
     return scene;
 }
 
@@ -227,8 +230,8 @@ TEST_F(VplEngineTest, surfelsWithoutNormalsGiveAFinitePicture) {
 
 TEST_F(VplEngineTest, settingsItCannotKeepAreRefused) {
     for (const auto& spoil :
-         {+[](EngineSettings& s) { s.interleave = 3; }, +[](EngineSettings& s) { s.vpls = 0; },
-          +[](EngineSettings& s) { s.atlas = 16; }}) {
+         {+[](EngineSettings& s) { s.set(vpl::kInterleave, 3); }, +[](EngineSettings& s) { s.set(vpl::kVpls, 0); },
+          +[](EngineSettings& s) { s.set(vpl::kAtlas, 16); }}) {
         AnalyticScene scene = box_with_a_block();
         spoil(scene.settings);
         const auto rendered = scenes::render(*device, "vpl", scene);

@@ -8,6 +8,9 @@
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -30,8 +33,8 @@ TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(2, 80, glm::vec3(.3f));
     scene.camera = look(glm::vec3(.3f, .4f, .5f), glm::vec3(1.2f, 1.3f, .9f), 1, 64);
-    scene.settings.vpls = 1024;
-    scene.settings.interleave = 1;
+    scene.settings.set(vpl::kVpls, 1024);
+    scene.settings.set(vpl::kInterleave, 1);
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         scene.materials = {material(1, .3f, exponent, 1)};
         // All that a lobe returns, were none of it below the horizon.
@@ -40,7 +43,7 @@ TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
         for (const uint32_t bounces : {1u, 2u}) {
             power *= most;
             bound += power;
-            scene.settings.bounces = bounces;
+            scene.settings.set(kBounces, bounces);
             const double radiance = mean(scene);
             EXPECT_LT(radiance, 1.02 * bound) << exponent << ", " << bounces;
             EXPECT_NEAR(radiance / mean(scene, "reference"), 1, .04) << exponent << ", " << bounces;
@@ -59,17 +62,17 @@ AnalyticScene glossy_corner(float exponent) {
     scene.materials = {material(.5f, .45f, exponent, 0)};
     scene.lights = {spot(glm::vec3(1.2f, .9f, 1.9f), glm::vec3(1.1f, 1.1f, 0), .8f, .7f, 10)};
     scene.camera = look(glm::vec3(1, -2, 1.2f), glm::vec3(1, 1, .9f), .5f, 64);
-    scene.settings.only_bounce = 1;
+    scene.settings.set(kOnlyBounce, 1);
     return scene;
 }
 
 TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         AnalyticScene scene = glossy_corner(exponent);
-        scene.settings.vpls = 256;
-        scene.settings.atlas = 1024;
-        scene.settings.interleave = 4;
-        scene.settings.samples = 1024;
+        scene.settings.set(vpl::kVpls, 256);
+        scene.settings.set(vpl::kAtlas, 1024);
+        scene.settings.set(vpl::kInterleave, 4);
+        scene.settings.set(reference::kSamples, 1024);
         // Of the reference the mean over 4 x 4 pixels: a path tracer sparkles by itself.
         const auto truth = render(scene, "reference").radiance;
         constexpr size_t kSide = 64, kBlock = 4;
@@ -89,9 +92,9 @@ TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
 TEST_F(VplGlossyTest, lobesOfAllWidthsAgreeWithTheReference) {
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         AnalyticScene scene = glossy_corner(exponent);
-        scene.settings.vpls = 1024;
-        scene.settings.interleave = 1;
-        scene.settings.samples = 256;
+        scene.settings.set(vpl::kVpls, 1024);
+        scene.settings.set(vpl::kInterleave, 1);
+        scene.settings.set(reference::kSamples, 256);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .05) << exponent;
     }
 }
@@ -115,7 +118,7 @@ AnalyticScene mirror_and_wall() {
     scene.materials = {material(1, 0, 1, 0), material(0, kMirror, kExponent, 0)};
     scene.lights = {spot(glm::vec3(0, 0, 1.5f), glm::vec3(0.0f), .3f, .25f, 10)};
     scene.camera = look(glm::vec3(0, 0, 1.6f), glm::vec3(0, 0, kImage), .43f, 96);
-    scene.settings.only_bounce = 1;
+    scene.settings.set(kOnlyBounce, 1);
     return scene;
 }
 
@@ -143,7 +146,7 @@ Landed landed(const AnalyticScene& scene, const scenes::Rendered& rendered) {
 
 TEST_F(VplGlossyTest, aCausticHasItsPlaceItsEnergyAndWithTheFramesItsWidth) {
     AnalyticScene scene = mirror_and_wall();
-    scene.settings.samples = 1024;
+    scene.settings.set(reference::kSamples, 1024);
     const Landed truth = landed(scene, render(scene, "reference"));
     const Landed first = landed(scene, render(scene)), later = landed(scene, render(scene, "vpl", 1000));
     for (const Landed& light : {first, later}) {

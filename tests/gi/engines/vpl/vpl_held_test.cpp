@@ -5,6 +5,8 @@
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -20,9 +22,9 @@ class VplHeld : public OnDevice {
         const SurfelCloud cloud(scenes::closed_box(2, 60, glm::vec3(shot.albedo)));
         LitOptions options;
         options.lights = {make_spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
-        options.settings.bounces = shot.bounces;
-        options.settings.vpls = 64;
-        options.settings.atlas = 512;
+        options.settings.set(kBounces, shot.bounces);
+        options.settings.set(vpl::kVpls, 64);
+        options.settings.set(vpl::kAtlas, 512);
         return light_up(*device, engine, cloud, look(shot.eye, glm::vec3(1.2f, 1.3f, .9f), 48, 48), options)
             .radiance;
     }

@@ -7,6 +7,8 @@
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -24,10 +26,10 @@ class VplHistory : public OnDevice {
         const SurfelCloud cloud(scenes::closed_box(2, 60, glm::vec3(.5f)));
         LitOptions options;
         options.lights = {make_spot(glm::vec3(shot.light_x, 1, 1.8f), glm::vec3(1, 1, 0), .6f, 5)};
-        options.settings.only_bounce = 1;
-        options.settings.vpls = 64;
-        options.settings.interleave = 4;
-        options.settings.atlas = 512;
+        options.settings.set(kOnlyBounce, 1);
+        options.settings.set(vpl::kVpls, 64);
+        options.settings.set(vpl::kInterleave, 4);
+        options.settings.set(vpl::kAtlas, 512);
         options.moving = shot.moving;
         return light_up(*device, engine, cloud, look(shot.eye, shot.target, kSide, kSide), options).radiance;
     }

@@ -11,6 +11,10 @@
 #include "tests/gi/on_device.h"
 #include "tests/gi/engines/soft_light_scenes.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "gi/bounce_options.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
+#include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
 namespace {
@@ -31,11 +35,11 @@ AnalyticScene room(bool open) {
         scene.surfels.push_back(s);
     }
     scene.camera = scenes::look(glm::vec3(.2f, .3f, 1.1f), glm::vec3(1.3f, 1.4f, .7f), .8f, 48);
-    scene.settings.vpls = 256;
-    scene.settings.interleave = 1;
-    scene.settings.atlas = 1024;
-    scene.settings.light_samples = 16;
-    scene.settings.samples = 64;
+    scene.settings.set(vpl::kVpls, 256);
+    scene.settings.set(vpl::kInterleave, 1);
+    scene.settings.set(vpl::kAtlas, 1024);
+    scene.settings.set(kLightSamples, 16);
+    scene.settings.set(reference::kSamples, 64);
     return scene;
 }
 
@@ -52,8 +56,8 @@ double mean(Device& device, const char* engine, const AnalyticScene& scene, uint
 
 void expect_the_references_energy(Device& device, AnalyticScene scene, const char* what) {
     for (const int only : {-1, 1}) {
-        scene.settings.only_bounce = only;
-        scene.settings.bounces = 3;
+        scene.settings.set(kOnlyBounce, only);
+        scene.settings.set(kBounces, 3);
         const double truth = mean(device, "reference", scene, 1), found = mean(device, "vpl", scene, 4);
         std::printf("%s, only bounce %d: %+.2f %%\n", what, only, 100 * (found / truth - 1));
         EXPECT_NEAR(found / truth, 1, only < 0 ? .03 : .05) << what << ", only bounce " << only;
@@ -79,14 +83,14 @@ TEST_F(VplSoftLights, OpenFurnaceUnderAnEvenSkyIsOneEverywhere) {
     for (Surfel& s : scene.surfels) s.albedo = glm::vec3(.5f);
     scene.environment = scenes::even_sky(1);
     scene.materials = {scenes::material(1, 0, 1, .5f)};
-    scene.settings.bounces = 5;  // what is left is under .5^6
+    scene.settings.set(kBounces, 5);  // what is left is under .5^6
     EXPECT_NEAR(mean(*device, "vpl", scene, 2), 1, .025);
 }
 
 TEST_F(VplSoftLights, LightsWithoutSizeOrLightInsideWallsAndBlackSkiesAreDefined) {
     AnalyticScene scene = room(false);
-    scene.settings.vpls = 64;
-    scene.settings.atlas = 512;
+    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(vpl::kAtlas, 512);
     scene.environment = scenes::even_sky(0);
     const Light nothing[] = {
         scenes::rectangle_light({1, 1, 1}, kO, 0, -kZ, 1),
@@ -105,9 +109,9 @@ TEST_F(VplSoftLights, LightsWithoutSizeOrLightInsideWallsAndBlackSkiesAreDefined
 
 TEST_F(VplSoftLights, ManyTakeBoundedMemory) {
     AnalyticScene scene = room(false);
-    scene.settings.vpls = 64;
-    scene.settings.atlas = 512;
-    scene.settings.light_resolution = 512;
+    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(vpl::kAtlas, 512);
+    scene.settings.set(kLightResolution, 512);
     const uint64_t before = device->memory_used();
     device->set_memory_cap(before + (uint64_t{160} << 20));
     for (int i = 0; i < 64; ++i)
@@ -120,11 +124,11 @@ TEST_F(VplSoftLights, SamePicturesEveryRunAndOthersForOtherSeeds) {
     AnalyticScene scene = room(true);
     scene.environment = scenes::even_sky(1);
     scene.lights = {scenes::rectangle_light({1, 1, 1.9f}, .3f * kX, .2f, -kZ, 5)};
-    scene.settings.vpls = 64;
-    scene.settings.atlas = 512;
+    scene.settings.set(vpl::kVpls, 64);
+    scene.settings.set(vpl::kAtlas, 512);
     const auto first = scenes::render(*device, "vpl", scene, 3),
                again = scenes::render(*device, "vpl", scene, 3);
-    scene.settings.seed = 2;
+    scene.settings.set(kSeed, 2);
     const auto other = scenes::render(*device, "vpl", scene, 3);
     ASSERT_TRUE(first && again && other);
     EXPECT_EQ(first->radiance, again->radiance);
@@ -135,8 +139,8 @@ TEST_F(VplSoftLights, AnotherSkyIsNotLitByTheLastOnesVpls) {
     const SurfelCloud cloud(room(true).surfels);
     auto engine = *make_engine("vpl");
     LitOptions options;
-    options.settings.vpls = 64;
-    options.settings.atlas = 512;
+    options.settings.set(vpl::kVpls, 64);
+    options.settings.set(vpl::kAtlas, 512);
     const CameraView camera = room(true).camera;
     for (const float radiance : {1.0f, 3.0f, 0.0f, 2.0f}) {
         options.environment = scenes::even_sky(radiance);

@@ -1,0 +1,19 @@
+// The engines, in the order they are listed to users. A new engine adds its line here.
+#include <array>
+
+#include "gi/engines/direct/direct.h"
+#include "gi/engines/reference/reference.h"
+#include "gi/engines/unlit/unlit.h"
+#include "gi/engines/vpl/vpl.h"
+#include "gi/registry.h"
+
+namespace lucarne::gi {
+
+std::span<const EngineEntry> engines() {
+    static const std::array all = {direct_engine(), vpl_engine(), reference_engine(), unlit_engine()};
+    return all;
+}
+
+const EngineInfo& default_engine() { return vpl_engine().info; }
+
+}  // namespace lucarne::gi

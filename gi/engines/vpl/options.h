@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+
+#include "gi/options.h"
+
+namespace lucarne::gi::vpl {
+
+inline constexpr std::array<int64_t, 3> kInterleaves = {1, 2, 4};
+inline constexpr std::array<int64_t, 6> kAtlases = {256, 512, 1024, 2048, 4096, 8192};
+
+inline constexpr Option<uint32_t> kVpls{{
+    .kind = OptionKind::integer,
+    .key = "vpls",
+    .label = "VPLs",
+    .help = "Virtual point lights",
+    .cost = "virtual point lights: time and the shadow maps' memory grow with them",
+    .least = 1,
+    .most = 65536,
+    .slider = {16, 4096, true},
+    .defaults = {int64_t{64}, int64_t{256}, int64_t{1024}},
+    .cheaper = -1,
+}};
+
+inline constexpr Option<uint32_t> kInterleave{{
+    .kind = OptionKind::integer,
+    .key = "interleave",
+    .label = "interleaving",
+    .help = "Pixels along a side that share out the lights",
+    .cost = "pixels along a side that share out the lights: 4 is up to 16 times faster than 1,\n"
+            "at the price of blurred detail in indirect light",
+    .least = 1,
+    .most = 4,
+    .values = kInterleaves,
+    .slider = {1, 4, true},
+    .defaults = {int64_t{4}, int64_t{4}, int64_t{1}},
+    .cheaper = 1,
+}};
+
+inline constexpr Option<uint32_t> kAtlas{{
+    .kind = OptionKind::integer,
+    .key = "atlas",
+    .label = "shadow atlas",
+    .help = "Texels along a side of the shadow maps' atlas",
+    .cost = "texels along a side: twice as many cost four times the memory, and make finer shadows",
+    .least = 256,
+    .most = 8192,
+    .values = kAtlases,
+    .slider = {256, 8192, true},
+    .defaults = {int64_t{1024}, int64_t{1024}, int64_t{4096}},
+    .cheaper = -1,
+}};
+
+inline constexpr Option<bool> kBestCandidate{{
+    .kind = OptionKind::flag,
+    .key = "best_candidate",
+    .help = "Redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)",
+    .defaults = {false, false, false},
+}};
+
+inline constexpr Option<bool> kReuse{{
+    .kind = OptionKind::flag,
+    .key = "reuse",
+    .help = "While the camera moves, average with the frames before; --no-reuse lights each by itself",
+    .defaults = {true, true, true},
+}};
+
+}  // namespace lucarne::gi::vpl

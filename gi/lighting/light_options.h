@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+
+#include "gi/options.h"
+
+// Options of engines that see the scene from its lights.
+namespace lucarne::gi {
+
+inline constexpr std::array<int64_t, 7> kLightResolutions = {64, 128, 256, 512, 1024, 2048, 4096};
+
+/// Texels along a side of the light G-buffer and the shadow map.
+inline constexpr Option<uint32_t> kLightResolution{{
+    .kind = OptionKind::integer,
+    .key = "light_resolution",
+    .label = "light resolution",
+    .help = "Texels along a side of what each light sees: the sharpness of shadows' edges",
+    .cost = "texels along a side of each light's view: twice as many cost up to four times the time,\n"
+            "and make sharper shadow edges",
+    .least = 64,
+    .most = 4096,
+    .values = kLightResolutions,
+    .slider = {64, 4096, true},
+    .defaults = {int64_t{256}, int64_t{512}, int64_t{1024}},
+    .cheaper = -1,
+}};
+
+/// Views a frame of lights that have a size and of the sky (light_samples.h).
+inline constexpr Option<uint32_t> kLightSamples{{
+    .kind = OptionKind::integer,
+    .key = "light_samples",
+    .label = "light samples",
+    .help = "Views a frame of the lights that have a size, and of the sky",
+    .cost = "every view is one more picture from a light: time grows with them, and soft shadows converge sooner",
+    .least = 1,
+    .most = 1024,
+    .defaults = {int64_t{4}, int64_t{8}, int64_t{32}},
+    .cheaper = -1,
+}};
+
+}  // namespace lucarne::gi

@@ -1,0 +1,173 @@
+// An engine that is one folder and one line of the list of engines: its options are on the command line, in scene
+// files, presets, reports and the window without a word about them elsewhere.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include "gi/registry.h"
+#include "gi/scene/render_settings_file.h"
+#include "gi/scene/scene.h"
+#include "io/image/image.h"
+#include "tests/viewer/program.h"
+#include "viewer/commands/commands.h"
+#include "viewer/flythrough/report.h"
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// Runs a command of the program in this one, which has the added engine.
+Result<void> run(const std::vector<std::string>& arguments) {
+    CommandLine line("lucarne", "");
+    for (const auto add : commands()) add(line);
+    std::vector<std::string> words = {"lucarne"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    LUCARNE_ASSIGN(const auto action, line.parse(static_cast<int>(pointers.size()), pointers.data()));
+    return action ? action() : Result<void>{};
+}
+
+class AddedEngine : public ::testing::Test {
+ protected:
+    void SetUp() override { cache_ = test::make_cornell(folder_, "20k"); }
+    /// The most of each channel in a picture by the engine.
+    glm::vec3 brightest(std::vector<std::string> options) {
+        options.insert(options.begin(),
+                       {"render", cache_, "-o", folder_ / "out.exr", "--overwrite", "--size", "64x48", "--engine", "paint"});
+        const auto done = run(options);
+        EXPECT_TRUE(done) << done.error().line();
+        const auto picture = io::read_exr(folder_ / "out.exr");
+        EXPECT_TRUE(picture);
+        glm::vec3 most(0.0f);
+        for (const glm::vec4& pixel : picture->pixels) most = glm::max(most, glm::vec3(pixel));
+        return most;
+    }
+    std::string scene(const std::string& render) const {
+        const std::string cornell = test::bytes_of(LUCARNE_SOURCE_DIR "/data/scenes/cornell.json");
+        std::ofstream(folder_ / "scene.json") << "{\"render\": " << render << "," << cornell.substr(1);
+        return folder_ / "scene.json";
+    }
+    const test::TemporaryFolder folder_;
+    std::string cache_;
+};
+
+TEST_F(AddedEngine, TakesItsOptionsFromTheCommandLine) {
+    EXPECT_EQ(brightest({}), glm::vec3(0, 1, 0)) << "the default of the preset interactive";
+    EXPECT_EQ(brightest({"--preset", "preview"}), glm::vec3(1, 0, 0));
+    EXPECT_EQ(brightest({"--tint", "0.25,0.5,1", "--paint-gain", "2"}), glm::vec3(0.5f, 1, 2));
+    EXPECT_EQ(brightest({"--tint", "0,0,0.5", "--pattern", "stripes", "--stripe-width", "64"}), glm::vec3(0, 0, 0.5f));
+    testing::internal::CaptureStdout();
+    EXPECT_TRUE(run({"render", "--help"}));
+    const std::string help = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(help, HasSubstr("--tint R,G,B"));
+    EXPECT_THAT(help, HasSubstr("paint: Pixels of a stripe (1 to 64)"));
+    EXPECT_THAT(help, HasSubstr("plain, stripes"));
+    EXPECT_THAT(help, HasSubstr("--paint-sky"));
+}
+
+TEST_F(AddedEngine, RejectsWrongValuesBeforeAnythingIsDone) {
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--tint", "1,2,3"}, {"--tint", "red"}, {"--stripe-width", "0"}, {"--paint-gain", "9"},
+          {"--pattern", "dots"}}) {
+        std::vector<std::string> arguments = {"render", cache_, "-o", folder_ / "none.exr"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        const auto done = run(arguments);
+        ASSERT_FALSE(done) << wrong[1];
+        EXPECT_EQ(done.error().kind, ErrorKind::arguments);
+        EXPECT_THAT(done.error().line(), HasSubstr(wrong[0]));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "none.exr"));
+}
+
+TEST_F(AddedEngine, TakesItsOptionsFromSceneFilesAndWritesThem) {
+    const std::string render =
+        R"({"engine": "paint", "tint": [0.5, 0, 0], "paint_gain": 4, "stripe_width": 2, "pattern": "plain", "paint_sky": true})";
+    EXPECT_EQ(brightest({"--scene", scene(render)}), glm::vec3(2, 0, 0));
+    EXPECT_EQ(brightest({"--scene", scene(render), "--paint-gain", "1"}), glm::vec3(0.5f, 0, 0)) << "options win";
+    const auto read = gi::load_render_settings(scene(render));
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(gi::write_render_settings(*read), nlohmann::ordered_json::parse(render));
+    for (const char* wrong : {R"("tint": [1, 2, 3])", R"("paint_gain": 0)", R"("stripe_width": 65)", R"("pattern": "dots")",
+                              R"("paint_sky": 1)"}) {
+        const auto rejected = gi::parse_scene(std::string("{\"render\": {") + wrong + "}}", "wrong.json");
+        ASSERT_FALSE(rejected) << wrong;
+        const std::string key = std::string(wrong).substr(1, std::string(wrong).find('"', 1) - 1);
+        EXPECT_THAT(rejected.error().line(), HasSubstr("/render/" + key));
+    }
+}
+
+TEST_F(AddedEngine, StandsInReports) {
+    FlightConditions conditions;
+    conditions.engine = "paint";
+    conditions.settings = gi::default_settings(gi::Effort::high);
+    const auto report = flight_report(conditions, {});
+    EXPECT_EQ(report["settings"]["tint"], (nlohmann::ordered_json{0.0, 0.0, 1.0}));
+    EXPECT_EQ(report["settings"]["stripe_width"], 2);
+    EXPECT_EQ(report["settings"]["pattern"], "plain");
+    EXPECT_FALSE(report["settings"].contains("vpls"));
+}
+
+/// Draws the panel without a window, once a call.
+class Panel {
+ public:
+    Panel() {
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().DisplaySize = ImVec2(400, 900);
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    }
+    ~Panel() { ImGui::DestroyContext(); }
+    void draw(ViewModel& model, ImVec2 mouse, bool pressed) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 0.1f;
+        io.MousePos = mouse;
+        io.MouseDown[0] = pressed;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos(ImVec2(0, 0));
+        ImGui::SetNextWindowSize(ImVec2(400, 900));
+        ImGui::Begin("panel");
+        ImGui::GetStateStorage()->SetInt(ImGui::GetID("Effort"), 1);  // opened, as by a click
+        draw_rendering_panel(model);
+        ImGui::End();
+        ImGui::EndFrame();
+    }
+    void click(ViewModel& model, ImVec2 at) {
+        // A window hears of the mouse from its second frame on. A short drag to the right: numbers are dragged.
+        const ImVec2 to(at.x + 20, at.y);
+        for (const bool pressed : {false, false, false, true}) draw(model, at, pressed);
+        for (const bool pressed : {true, true, false, false}) draw(model, to, pressed);
+    }
+};
+
+TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
+    std::set<std::string> changed;
+    const auto look = [&](const ViewModel& model, const gi::EngineSettings& before) {
+        for (const gi::OptionInfo* option : gi::engine_options())
+            if (model.settings.get(*option) != before.get(*option)) changed.insert(std::string(option->key));
+    };
+    // Wherever a control is, a click on it changes something; one more below chooses from a list that has opened.
+    for (float y = 20; y < 500; y += 6) {
+        Panel panel;
+        ViewModel model(10);
+        model.engine = "paint";
+        ASSERT_TRUE(model.choose_preset("interactive"));
+        const gi::EngineSettings before = model.settings;
+        for (const ImVec2 at : {ImVec2(60, y), ImVec2(60, y + 40)}) {
+            panel.click(model, at);
+            if (model.engine == "paint" && model.preset == "interactive") look(model, before);
+        }
+    }
+    for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"}) EXPECT_THAT(changed, Contains(key));
+    EXPECT_FALSE(changed.contains("vpls")) << "another engine's";
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
+
+namespace lucarne::gi {
+
+/// What tests render with that choose nothing else: finer shadow maps and more paths than `interactive`.
+inline EngineSettings test_settings() {
+    EngineSettings settings;
+    settings.set(vpl::kAtlas, 2048);
+    settings.set(reference::kSamples, 64);
+    return settings;
+}
+
+}  // namespace lucarne::gi
