@@ -16,7 +16,13 @@ class OnDevice : public ::testing::Test {
         ASSERT_TRUE(made) << made.error().line();
         device = std::move(*made);
     }
+    void TearDown() override {
+        if (!device || lost_on_purpose) return;
+        const auto sound = device->check();
+        EXPECT_TRUE(sound) << sound.error().line();
+    }
     std::unique_ptr<Device> device;
+    bool lost_on_purpose = false;
 };
 
 }  // namespace lucarne::gi

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include "gi/device/gl/context_watch.h"
 #include "gi/device/gl/egl.h"
@@ -69,7 +70,7 @@ struct Device::State {
     bool refused = false;
     std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
     std::optional<ShaderFolder> shaders;
-    std::string shader_problem;
+    std::string shader_problem, mistake;
     ContextWatch watch;
 };
 
@@ -132,6 +133,8 @@ void Device::finish() {
     glFinish();
 }
 Result<void> Device::check() {
+    if (!state_->mistake.empty())
+        return failed(std::exchange(state_->mistake, {}), "is not declared", "it is a fault of the program");
     if (!state_->watch.lost()) return {};
     return failed("graphics device", state_->watch.reason(), "see that its driver is up to date");
 }
@@ -187,7 +190,8 @@ Result<const Program*> Device::program(std::string_view path, const Defines& def
     const auto make = [&](const std::vector<ShaderText>& texts) -> Result<CompiledProgram> {
         LUCARNE_ASSIGN(ShaderSource source, shader_source(path, defines, texts));
         LUCARNE_ASSIGN(const GLuint id, compile(path, source));
-        return CompiledProgram{std::move(source.text), std::unique_ptr<Program>(new Program(id))};
+        const std::string text = std::move(source.text);
+        return CompiledProgram{text, std::unique_ptr<Program>(new Program(*this, path, text, id))};
     };
     auto made = make(state_->shaders ? state_->shaders->texts() : shader_texts());
     if (!made && state_->shaders) {
@@ -219,12 +223,21 @@ void Device::reload_shaders() {
             continue;
         }
         compiled.text = std::move(source->text);
-        compiled.program.reset(new Program(*id));
+        compiled.program.reset(new Program(*this, path, compiled.text, *id));
     }
 }
 
 const std::string& Device::shader_problem() const {
     return state_->shader_problem;
+}
+
+void Device::note_unknown_uniform(std::string_view path, std::string_view uniform) {
+    const std::string what = fmt::format("shader {}: uniform {}", path, uniform);
+    // Whoever edits shaders may leave one out for a while.
+    if (state_->shaders)
+        note_shader_problem(Error{ErrorKind::failed, what, "is not declared", ""});
+    else if (state_->mistake.empty())
+        state_->mistake = what;
 }
 
 void Device::note_shader_problem(const Error& error) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,6 +68,9 @@ class Buffer {
     mutable std::array<uint32_t, 4> textures_{};  ///< made when first bound, one a view
 };
 
+/// The names of the uniforms that a shader's text declares, whether or not they are used.
+std::set<std::string, std::less<>> declared_uniforms(std::string_view text);
+
 /// A compiled compute program; owned by the device's cache.
 class Program {
  public:
@@ -89,11 +93,16 @@ class Program {
         int32_t location;
         uint32_t type;
     };
-    explicit Program(uint32_t id);
-    /// Null for uniforms that the compiler found unused: setting those is no error.
+    /// `text`: what it was compiled from.
+    Program(Device& device, std::string_view path, std::string_view text, uint32_t id);
+    /// Null for uniforms that the compiler found unused: setting those is no error. Setting one that the text does not
+    /// declare is: Device::check() says so.
     const Uniform* find(std::string_view uniform) const;
 
+    Device* device_;
+    std::string path_;
     uint32_t id_;
+    std::set<std::string, std::less<>> declared_;
     uint32_t local_[3] = {1, 1, 1};
     std::map<std::string, Uniform, std::less<>> uniforms_;
 };
@@ -145,7 +154,8 @@ class Device {
     void finish();  ///< waits until all work is done
 
     /// Errors: the driver has lost or reset the context; all that was made in it is gone, and what it was last
-    /// asked for is nonsense. Another device has to take its place.
+    /// asked for is nonsense. Another device has to take its place. Or a program was given a uniform that its text does
+    /// not declare: a mistake of whoever called it.
     Result<void> check();
     /// For tests: check() fails from its `checks`th call on.
     void lose_after(uint32_t checks);
@@ -154,7 +164,9 @@ class Device {
     Device();
     Result<Buffer> make(size_t bytes, uint64_t most, std::string_view what);
     void note_shader_problem(const Error& error);
+    void note_unknown_uniform(std::string_view path, std::string_view uniform);
     friend class Buffer;
+    friend class Program;
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 #include <epoxy/gl.h>
@@ -15,7 +17,41 @@ constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETC
 
 }  // namespace
 
-Program::Program(uint32_t id) : id_(id) {
+std::set<std::string, std::less<>> declared_uniforms(std::string_view text) {
+    std::set<std::string, std::less<>> names;
+    const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    std::string plain;  // without comments to the line's end
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = text.substr(at, end - at);
+        plain.append(line.substr(0, std::min(line.find("//"), line.size()))).push_back('\n');
+        at = end + 1;
+    }
+    constexpr std::string_view kWord = "uniform";
+    for (size_t at = plain.find(kWord); at != plain.npos; at = plain.find(kWord, at)) {
+        const bool whole = (at == 0 || !is_word(plain[at - 1])) && !is_word(plain[at + kWord.size()]);
+        at += kWord.size();
+        if (!whole) continue;
+        // "Light lights[4], other;": the last word before a comma, a bracket or the end is a name.
+        std::string word;
+        bool in_brackets = false;
+        for (; at < plain.size(); ++at) {
+            const char c = plain[at];
+            if (is_word(c) && !in_brackets) {
+                if (at > 0 && !is_word(plain[at - 1])) word.clear();
+                word.push_back(c);
+            }
+            in_brackets = c == '[' || (in_brackets && c != ']');
+            if (c != ',' && c != ';') continue;
+            names.insert(word);
+            if (c == ';') break;
+        }
+    }
+    return names;
+}
+
+Program::Program(Device& device, std::string_view path, std::string_view text, uint32_t id)
+    : device_(&device), path_(path), id_(id), declared_(declared_uniforms(text)) {
     GLint local[3] = {1, 1, 1};
     glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, local);
     for (int i = 0; i < 3; ++i) local_[i] = static_cast<uint32_t>(local[i]);
@@ -42,7 +78,10 @@ Program::~Program() {
 
 const Program::Uniform* Program::find(std::string_view uniform) const {
     const auto found = uniforms_.find(uniform);
-    return found == uniforms_.end() ? nullptr : &found->second;
+    if (found != uniforms_.end()) return &found->second;
+    const auto name = uniform.substr(0, uniform.find_first_of(".["));
+    if (name != kThreadsARow && !declared_.contains(name)) device_->note_unknown_uniform(path_, name);
+    return nullptr;
 }
 
 void Program::set(std::string_view uniform, int32_t value) const {

@@ -24,9 +24,9 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
     scratch.odds.bind(kBindOdds);
     for (const Program* program : {race, combine}) {
         set_layout(*program, maps.layout);
-        program->set("light_count", count);
         program->set("footprint_variance", scratch.footprint_variance);
     }
+    combine->set("light_count", count);
     race->set("seed", seed);
     race->set("id_bits", maps.id_bits);
     constexpr uint32_t kRaceGroup = 64;  // redistribute.comp

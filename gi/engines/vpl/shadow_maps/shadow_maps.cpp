@@ -43,6 +43,7 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
     const auto run = [&](const Program& program, uint32_t level) {
         const uint32_t side = layout.side >> level;
         set_layout(program, layout);
+        program.set("maps", layout.maps);
         program.set("level", level);
         program.dispatch(side, side, layout.maps);
     };
@@ -124,9 +125,10 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     target.large.bind(kBindLarge);
     target.meetings.bind(kBindMeetings);
     const SplatPrograms programs{meet, enter, draw, draw_large};
-    for (const Program* program : {meet, enter, draw, draw_large}) {
+    for (const Program* program : {meet, enter}) program->set("splat_angle", target.layout.splat_angle);
+    for (const Program* program : {enter, draw, draw_large}) program->set("cut_size", cut.size());
+    for (const Program* program : {draw, draw_large}) {
         set_layout(*program, target.layout);
-        program->set("cut_size", cut.size());
         program->set("id_bits", target.id_bits);
     }
     if (target.id_bits) {
@@ -143,7 +145,6 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
 
 void set_layout(const Program& program, const AtlasLayout& layout) {
     program.set("map_side", layout.side);
-    program.set("maps", layout.maps);
     program.set("splat_angle", layout.splat_angle);
 }
 

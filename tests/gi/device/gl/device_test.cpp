@@ -89,6 +89,18 @@ TEST_F(DeviceTest, ShaderThatDoesNotCompileIsAnErrorThatNamesItsFile) {
         << "the same file without the define is another program";
 }
 
+TEST_F(DeviceTest, UniformThatNoShaderDeclaresIsAnError) {
+    const auto program = device->program("gi/post/luminance.comp");
+    ASSERT_TRUE(program);
+    (*program)->set("pixels", 1u);
+    EXPECT_TRUE(device->check());
+    (*program)->set("pixel", 1u);
+    const auto checked = device->check();
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().what, "shader gi/post/luminance.comp: uniform pixel");
+    EXPECT_TRUE(device->check()) << "it is said once";
+}
+
 TEST_F(DeviceTest, PassesAreTimedInOrder) {
     PassTimes times(*device);
     times.begin("first");
@@ -123,6 +135,13 @@ TEST(ShaderSource, FileIsIncludedOnceAndBracketsAreDropped) {
         source->text,
         "#version 450 core\n#define N 4\n#line 1 0\n#line 1 1\n#line 2 1\nint b;\n#line 2 0\n#line 3 0\n"
         "#line 4 0\nvoid main() {}\n");
+}
+
+TEST(ShaderSource, UniformsAreFoundByTheirDeclarations) {
+    EXPECT_EQ(declared_uniforms("uniform uint pixels;  // uniform uint no;\nuniform vec4 ramp[RAMP], other;\n"
+                                "layout(binding = 3) uniform usamplerBuffer texels;\nfloat uniformity; uniform CameraView\n"
+                                "    camera;\nvoid main() { nonuniform(x); }"),
+              (std::set<std::string, std::less<>>{"camera", "other", "pixels", "ramp", "texels"}));
 }
 
 TEST(ShaderSource, MissingIncludeIsAnError) {

@@ -19,6 +19,7 @@ TEST_F(ContextLoss, AContextThatWorksIsNotTakenForALostOne) {
 }
 
 TEST_F(ContextLoss, AnInjectedLossStaysAndSaysWhy) {
+    lost_on_purpose = true;
     device->lose_after(3);
     EXPECT_TRUE(device->check());
     EXPECT_TRUE(device->check());
