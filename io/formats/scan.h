@@ -67,7 +67,7 @@ struct WriteOptions {
 };
 
 /// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file appears when `finish`
-/// succeeds. `info.details` of a source of the same format restores its header (version, point format, VLRs,
+/// succeeds. `info.notes` of a source of the same format restores its header (version, point format, VLRs,
 /// types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options);

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -106,20 +105,19 @@ class E57Source final : public PointSource {
                 info_.stations.push_back(
                     {e57_.layout.scans[i].station, scan.pose ? scan.pose->translation : glm::dvec3(0.0)});
         }
-        nlohmann::json details = e57::to_details(document);
-        details["color_bits"] = info_.color_bits;
-        if (const auto limits = intensity_limits()) details[kIntensityLimits] = *limits;
-        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        info_.notes.e57 = e57::notes_of(document);
+        info_.notes.color_bits = info_.color_bits;
+        info_.notes.intensity_limits = intensity_limits();
     }
 
     /// That hold for the intensities of all scans.
-    std::optional<std::array<double, 2>> intensity_limits() const {
-        std::optional<std::array<double, 2>> all;
+    std::optional<IntensityLimits> intensity_limits() const {
+        std::optional<IntensityLimits> all;
         for (const e57::Scan& scan : e57_.document.scans) {
             if (scan.records == 0 || !scan.find(names::intensity)) continue;
             if (!scan.intensity_limits) return std::nullopt;
             const auto [low, high] = *scan.intensity_limits;
-            all = all ? std::array{std::min((*all)[0], low), std::max((*all)[1], high)} : std::array{low, high};
+            all = all ? IntensityLimits{std::min(all->low, low), std::max(all->high, high)} : IntensityLimits{low, high};
         }
         return all;
     }

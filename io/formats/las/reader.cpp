@@ -3,7 +3,6 @@
 #include <atomic>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
@@ -121,11 +120,10 @@ class LasSource final : public PointSource {
         if (color && color->type == ScalarType::u16 && color->components == 3) {  // extra bytes may have that name
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
-        las::Header kept = header_;
-        kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
-        nlohmann::json details = las::to_details(kept);
-        details["color_bits"] = info_.color_bits;
-        info_.details = details.dump();
+        LasNotes kept = header_;
+        kept.record_length = static_cast<uint16_t>(kept.record_length - header_.wave_bytes);
+        info_.notes.las = std::move(kept);
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 

@@ -3,7 +3,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -151,12 +150,8 @@ class PcdSource final : public PointSource {
         // Who writes a cloud without a grid often leaves the viewpoint at its default.
         if (info_.stations.empty() && (organised || viewpoint != glm::dvec3(0.0)))
             info_.stations.push_back({1, viewpoint});
-        info_.details = nlohmann::json{{"format", "pcd"},
-                                       {"color_bits", info_.color_bits},
-                                       {"width", header_.width},
-                                       {"height", header_.height},
-                                       {"viewpoint", header_.viewpoint}}
-                            .dump();
+        info_.notes.pcd = {header_.width, header_.height, header_.viewpoint};
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 

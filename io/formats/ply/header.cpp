@@ -4,7 +4,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -200,14 +199,11 @@ std::string_view word_of(ScalarType type) {
     return {};
 }
 
-nlohmann::json to_details(const Header& header) {
-    nlohmann::json properties = nlohmann::json::array();
+PlyNotes notes_of(const Header& header) {
+    PlyNotes notes{{}, header.comments, header.infos};
     for (const Property& p : header.vertices().properties)
-        if (!p.count) properties.push_back({{"name", p.name}, {"type", word_of(p.type)}});
-    return {{"format", "ply"},
-            {"properties", properties},
-            {"comments", header.comments},
-            {"obj_info", header.infos}};
+        if (!p.count) notes.properties.push_back({p.name, p.type});
+    return notes;
 }
 
 }  // namespace lucarne::io::ply

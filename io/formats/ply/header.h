@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/files/file.h"
 #include "io/formats/common/remarks.h"
 
@@ -48,7 +46,7 @@ Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool sa
 std::optional<ScalarType> type_of(std::string_view word);
 std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
 
-/// `info.details`: the properties and comments, for a later export.
-nlohmann::json to_details(const Header& header);
+/// The properties and comments, for a later export.
+PlyNotes notes_of(const Header& header);
 
 }  // namespace lucarne::io::ply

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
@@ -269,8 +268,8 @@ Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Head
     add_losses(info.losses, loader.vertex_losses());
     add_losses(info.losses, faces.losses);
     info.format += ", mesh";
-    const nlohmann::json details = {{"mesh", {{"faces", loader.faces()}}}};
-    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), details, loader.state(), options));
+    info.notes = {.mesh = MeshNotes{.faces = loader.faces()}};
+    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), loader.state(), options));
     return faces;
 }
 

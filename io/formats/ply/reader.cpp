@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
@@ -141,9 +140,8 @@ class PlySource final : public PointSource {
         set_unit(info_, options, remarks.metres_per_unit);
         LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
-        nlohmann::json details = ply::to_details(header_);
-        details["color_bits"] = info_.color_bits;
-        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        info_.notes.ply = ply::notes_of(header_);
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 

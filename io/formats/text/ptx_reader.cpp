@@ -5,7 +5,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -217,7 +216,8 @@ class PtxSource final : public PointSource {
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
         set_unit(info_, options, 1.0);  // the format is in metres
-        info_.details = nlohmann::json{{"color_bits", info_.color_bits}, {kIntensityLimits, {0, 1}}}.dump();
+        info_.notes.color_bits = info_.color_bits;
+        info_.notes.intensity_limits = {0, 1, true};
         size_t values = 3;
         for (const Scan& scan : scans) values = std::max(values, scan.values);
         if (values >= 4) schema_.add(std::string(names::intensity), ScalarType::f32);

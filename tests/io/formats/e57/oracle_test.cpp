@@ -60,7 +60,7 @@ void expect_same(const PointSource& source, const nlohmann::json& truth) {
     for (const Station& s : source.info().stations)
         stations.push_back({s.id, s.position.x, s.position.y, s.position.z});
     EXPECT_EQ(stations, truth["stations"]);
-    EXPECT_EQ(nlohmann::json::parse(source.info().details)["image_count"], truth["images"]);
+    EXPECT_EQ(source.info().notes.e57->image_count, truth["images"]);
     EXPECT_EQ(source.schema().attributes.size() + 1, truth["attributes"].size());
     for (const auto& [name, components] : truth["attributes"].items())
         for (size_t c = 0; c < components.size(); ++c)
