@@ -157,6 +157,8 @@ struct ScanInfo {
     FormatNotes notes;                  ///< what export needs to write the same format again
     std::string coordinate_system;      ///< its name, as the file has it; empty where it says nothing
     uint32_t epsg = 0;                  ///< its code in the EPSG registry; 0 where the file says none
+    /// The box that the header of a LAS, LAZ or COPC file states, true or not: the least, the largest. Not of caches.
+    std::optional<std::array<glm::dvec3, 2>> stated_box;
     Losses losses;                      ///< what is known before a pass; a cache's: all that its build left out
 };
 

@@ -15,9 +15,15 @@ Handle::~Handle() {
     if (fd_ >= 0) ::close(fd_);
 }
 
-uint64_t HandlePool::enrol() {
+uint64_t HandlePool::next_number() {
     const std::lock_guard lock(mutex_);
     return next_++;
+}
+
+uint64_t HandlePool::enrol(std::shared_ptr<const Handle> handle) {
+    const uint64_t number = next_number();
+    if (handle) keep(number, std::move(handle));
+    return number;
 }
 
 int HandlePool::open_to_read(const std::filesystem::path& path) {

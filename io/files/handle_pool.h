@@ -47,8 +47,8 @@ class HandlePool {
     explicit HandlePool(size_t most, Opener opener = open_to_read) : most_(most), opener_(std::move(opener)) {}
     static int open_to_read(const std::filesystem::path& path);
 
-    /// A number for a file that will be asked for again.
-    uint64_t enrol();
+    /// A number for a file that will be asked for again; `handle` where it is open.
+    uint64_t enrol(std::shared_ptr<const Handle> handle = nullptr);
     void leave(uint64_t number);
     /// Errors: the file cannot be opened (any more), or its name stands for another file now.
     Result<std::shared_ptr<const Handle>> acquire(uint64_t number, const std::filesystem::path& path,
@@ -62,6 +62,7 @@ class HandlePool {
     };
 
     std::shared_ptr<const Handle> kept_handle(uint64_t number);
+    uint64_t next_number();
     std::shared_ptr<const Handle> keep(uint64_t number, std::shared_ptr<const Handle> handle);
 
     const size_t most_;

@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "io/files/byte_source.h"
 #include "io/lattice.h"
 #include "io/points.h"
 
@@ -39,6 +40,9 @@ std::string options_text(const ReadOptions& options);
 /// files whose rows look the same. Reads the header only, and a sample of a text file.
 /// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
+                                               const ReadOptions& options = {});
+/// The same of bytes that are open already, and by the name of their path.
+Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
                                                const ReadOptions& options = {});
 
 /// What one pass over all points tells.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
-#include "io/formats/las/bounds.h"
 #include "io/formats/mesh/source.h"
 #include "io/formats/notes_json.h"
 #include "viewer/inputs/units.h"
@@ -53,9 +52,9 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
                           {"min", vector_json(samples.min)},
                           {"max", vector_json(samples.max)}});
     }
-    if (const auto stated = io::las::stated_box(info.path)) {
-        described["stated_min"] = vector_json(stated->front());
-        described["stated_max"] = vector_json(stated->back());
+    if (info.stated_box) {
+        described["stated_min"] = vector_json(info.stated_box->front());
+        described["stated_max"] = vector_json(info.stated_box->back());
     }
     described["bytes_per_point"] = schema.stride;
     described["coordinate_system"] = info.coordinate_system;

@@ -75,8 +75,10 @@ bool KeptCache::made_of(const octree::NodeSource& cache, bool same_state) const 
 
 std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
     for (const path& file : {beside_, in_folder_}) {
-        if (file.empty() || !octree::is_cache(file)) continue;
-        auto cache = octree::open_cache(file);
+        if (file.empty()) continue;
+        auto input = InputFile::open_shared(file);
+        if (!input || !octree::is_cache(**input)) continue;
+        auto cache = octree::open_cache(std::move(*input));
         if (cache && made_of(**cache, true)) return std::move(*cache);
         log::info("{}: {}; it is not used", file.string(),
                   cache ? "was made from another state of the scan, or with other options" : cache.error().why);

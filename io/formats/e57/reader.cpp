@@ -15,7 +15,7 @@ namespace {
 
 /// Everything that is read of a file but its points.
 struct E57 {
-    std::shared_ptr<const InputFile> file;
+    std::shared_ptr<const ByteSource> file;
     e57::Document document;
     std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
     e57::Layout layout;
@@ -130,7 +130,7 @@ class E57Source final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::string> read_xml(const std::shared_ptr<const InputFile>& file, const e57::FileHeader& header) {
+Result<std::string> read_xml(const std::shared_ptr<const ByteSource>& file, const e57::FileHeader& header) {
     if (header.xml_end - header.xml_begin > e57::kMostXmlBytes)
         return rejected(file->path().string(),
                         fmt::format("has an XML section of more than {} MiB", e57::kMostXmlBytes >> 20));
@@ -158,7 +158,7 @@ Result<void> check_apart(const std::string& name, const e57::FileHeader& header,
 
 /// The scan's section. `constant` counts the points of all scans that take no bytes: kMostConstant in a file,
 /// or one a byte of it.
-Result<e57::Section> checked_section(const std::shared_ptr<const InputFile>& file,
+Result<e57::Section> checked_section(const std::shared_ptr<const ByteSource>& file,
                                      const e57::FileHeader& header, const e57::Scan& scan, bool salvage,
                                      uint64_t& constant) {
     LUCARNE_ASSIGN(auto section, e57::read_section(file, header, scan, salvage));
@@ -192,7 +192,7 @@ void warn_of_unit(const std::string& name, const e57::Document& document) {
                   name, *units.horizontal);
 }
 
-Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     const std::string name = file->path().string();
     LUCARNE_ASSIGN(const auto header, e57::read_file_header(file, options.salvage));

@@ -61,7 +61,7 @@ constexpr bool has_color(uint8_t f) {
 /// of a known point format, and files that cannot hold the points they promise. Records that are broken or
 /// too large to keep (kMostRecordBytes in all) are left out with a warning. With `salvage` the points are those
 /// that are there, or could be, and the missing ones are a loss.
-Result<Header> read_header(const InputFile& file, bool salvage = false);
+Result<Header> read_header(const ByteSource& file, bool salvage = false);
 
 inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
 inline constexpr uint32_t kMostRecords = 100'000;

@@ -30,7 +30,7 @@ bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
 
 class ObjParser {
  public:
-    ObjParser(const std::shared_ptr<const InputFile>& file, bool salvage)
+    ObjParser(const std::shared_ptr<const ByteSource>& file, bool salvage)
         : name_(file->path().string()),
           salvage_(salvage),
           input_(file, 0, file->size()),
@@ -284,7 +284,7 @@ class ObjParser {
     uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
-Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     ObjParser parser(file, options.salvage);
     LUCARNE_TRY(parser.parse());

@@ -21,7 +21,7 @@ using namespace pcd;
 /// Binary records, one behind the other.
 class BinaryReader final : public PointReader {
  public:
-    BinaryReader(std::shared_ptr<const InputFile> file, const Header& header, const ply::Layout& layout)
+    BinaryReader(std::shared_ptr<const ByteSource> file, const Header& header, const ply::Layout& layout)
         : input_(file, header.data_offset, file->size()), layout_(layout), left_(header.points) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
@@ -64,7 +64,7 @@ struct Compressed {
 /// Compressed fields, decoded side by side.
 class CompressedReader final : public PointReader {
  public:
-    CompressedReader(const std::shared_ptr<const InputFile>& file, const Header& header,
+    CompressedReader(const std::shared_ptr<const ByteSource>& file, const Header& header,
                      const ply::Layout& layout, const Compressed& compressed)
         : header_(header), layout_(layout), left_(header.points) {
         for (const auto& state : compressed.fields) {
@@ -122,7 +122,7 @@ class CompressedReader final : public PointReader {
 
 class PcdSource final : public PointSource {
  public:
-    PcdSource(std::shared_ptr<const InputFile> file, Header header, bool salvage)
+    PcdSource(std::shared_ptr<const ByteSource> file, Header header, bool salvage)
         : file_(std::move(file)), header_(std::move(header)), salvage_(salvage), layout_(pcd::make_layout(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
@@ -244,7 +244,7 @@ class PcdSource final : public PointSource {
         return {};
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     Header header_;
     bool salvage_;
     Layout layout_;
@@ -253,7 +253,7 @@ class PcdSource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
     auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);

@@ -31,7 +31,7 @@ constexpr std::array<TypeWords, 8> kTypes = {{{ScalarType::i8, "char", "int8"},
 
 class HeaderParser {
  public:
-    HeaderParser(const std::shared_ptr<const InputFile>& file, bool salvage)
+    HeaderParser(const std::shared_ptr<const ByteSource>& file, bool salvage)
         : name_(file->path().string()),
           salvage_(salvage),
           size_(file->size()),
@@ -183,7 +183,7 @@ uint64_t Element::record_bytes() const {
     return bytes;
 }
 
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage) {
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage) {
     return HeaderParser(file, salvage).parse();
 }
 

@@ -40,7 +40,7 @@ struct Header {
 
 /// Rejects a header that is malformed, larger than 1 MiB, or names no vertex element with x and y; without
 /// `salvage` also one that promises more than the file has bytes.
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage = false);
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
 /// "uchar", "uint8"...; empty for unknown words.
 std::optional<ScalarType> type_of(std::string_view word);

@@ -41,7 +41,7 @@ bool is_face(const Element& element) {
 
 class MeshLoader {
  public:
-    MeshLoader(const std::shared_ptr<const InputFile>& file, const Header& header, double color_white,
+    MeshLoader(const std::shared_ptr<const ByteSource>& file, const Header& header, double color_white,
                bool salvage)
         : file_(file),
           header_(header),
@@ -235,7 +235,7 @@ class MeshLoader {
         }
     }
 
-    const std::shared_ptr<const InputFile>& file_;
+    const std::shared_ptr<const ByteSource>& file_;
     const Header& header_;
     BufferedInput input_;
     mesh::Mesh mesh_;
@@ -256,7 +256,7 @@ bool has_faces(const Header& header) {
     return std::any_of(header.elements.begin(), header.elements.end(), is_face);
 }
 
-Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Header& header, ScanInfo info,
+Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header, ScanInfo info,
                         const ReadOptions& options) {
     MeshLoader loader(file, header, color_white(info.color_bits), options.salvage);
     LUCARNE_TRY(loader.load());

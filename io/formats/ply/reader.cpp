@@ -22,7 +22,7 @@ using namespace ply;
 
 class PlyReader final : public PointReader {
  public:
-    PlyReader(std::shared_ptr<const InputFile> file, const ply::Header& header, const ply::Layout& layout,
+    PlyReader(std::shared_ptr<const ByteSource> file, const ply::Header& header, const ply::Layout& layout,
               uint64_t offset, bool salvage)
         : input_(file, offset, file->size()),
           header_(header),
@@ -118,7 +118,7 @@ class PlyReader final : public PointReader {
 
 class PlySource final : public PointSource {
  public:
-    PlySource(std::shared_ptr<const InputFile> file, ply::Header header, bool salvage, bool faces_known)
+    PlySource(std::shared_ptr<const ByteSource> file, ply::Header header, bool salvage, bool faces_known)
         : file_(std::move(file)),
           header_(std::move(header)),
           salvage_(salvage),
@@ -277,7 +277,7 @@ class PlySource final : public PointSource {
 
     static constexpr uint64_t kBlocks = 64, kBlockPoints = 256;  ///< of a sample
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     ply::Header header_;
     bool salvage_;
     bool faces_known_;  ///< another reads the mesh, and says what of it is lost
@@ -286,7 +286,7 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
     LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);

@@ -50,7 +50,7 @@ class ScanFinder {
  public:
     /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that can
     /// be made out is left out.
-    ScanFinder(std::shared_ptr<const InputFile> file, char line_end, bool salvage)
+    ScanFinder(std::shared_ptr<const ByteSource> file, char line_end, bool salvage)
         : size_(file->size()), line_end_(line_end), salvage_(salvage), input_(std::move(file), 0, size_) {}
 
     Result<std::vector<Scan>> find() {
@@ -207,7 +207,7 @@ class ScanFinder {
 
 class PtxSource final : public PointSource {
  public:
-    PtxSource(std::shared_ptr<const InputFile> file, const std::vector<Scan>& scans, char line_end,
+    PtxSource(std::shared_ptr<const ByteSource> file, const std::vector<Scan>& scans, char line_end,
               const ReadOptions& options, bool lost_a_scan)
         : file_(std::move(file)), salvage_(options.salvage) {
         add_loss(info_.losses, lost::cut_scan, lost_a_scan);
@@ -263,14 +263,14 @@ class PtxSource final : public PointSource {
         return {scan.begin, scan.end, std::move(layout), scan.rows, scan.first_line};
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     bool salvage_;
     Schema schema_;
     std::vector<Section> sections_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     std::array<std::byte, 4096> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));

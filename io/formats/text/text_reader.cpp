@@ -42,7 +42,7 @@ std::string_view trimmed(std::string_view text) {
 
 class TextSource final : public PointSource {
  public:
-    explicit TextSource(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
+    explicit TextSource(std::shared_ptr<const ByteSource> file) : file_(std::move(file)) {}
 
     Result<void> describe(const ReadOptions& options) {
         const std::string extension = lower_extension(file_->path());
@@ -214,13 +214,13 @@ class TextSource final : public PointSource {
                 add_loss(info_.losses, "columns that are left out", 1);
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     Head head_;
     std::vector<Section> sections_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const ByteSource> file,
                                                const ReadOptions& options) {
     auto source = std::make_unique<TextSource>(std::move(file));
     LUCARNE_TRY(source->describe(options));
