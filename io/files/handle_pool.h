@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <list>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 #include <utility>
 
 #include <sys/types.h>
 
 #include "io/core/error.h"
+#include "io/core/recently_used.h"
 
 namespace lucarne {
 
@@ -56,11 +55,6 @@ class HandlePool {
     size_t open() const;  ///< handles kept now
 
  private:
-    struct Kept {
-        uint64_t number;
-        std::shared_ptr<const Handle> handle;
-    };
-
     std::shared_ptr<const Handle> kept_handle(uint64_t number);
     uint64_t next_number();
     std::shared_ptr<const Handle> keep(uint64_t number, std::shared_ptr<const Handle> handle);
@@ -69,8 +63,7 @@ class HandlePool {
     const Opener opener_;
     mutable std::mutex mutex_;
     uint64_t next_ = 0;
-    std::list<Kept> kept_;  ///< the last used first
-    std::unordered_map<uint64_t, std::list<Kept>::iterator> places_;
+    RecentlyUsed<uint64_t, std::shared_ptr<const Handle>> kept_;
 };
 
 }  // namespace lucarne
