@@ -1,14 +1,10 @@
 #include "viewer/inputs/input.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 
 #include <fmt/format.h>
 
-#include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/files/file.h"
@@ -126,28 +122,6 @@ InputOptions with_each_once(InputOptions options) {
 }
 
 }  // namespace
-
-Result<TemporaryFolder> TemporaryFolder::create() {
-    std::error_code code;
-    const auto base = std::filesystem::temp_directory_path(code);
-    if (code) return failed("temporary folder", code.message(), "set TMPDIR to a folder that can be written");
-    std::string name = (base / "lucarne-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-        return failed(base.string(), std::strerror(errno), "set TMPDIR to a folder that can be written");
-    at_interrupt(name, [name] {
-        std::error_code ignored;
-        std::filesystem::remove_all(name, ignored);
-        return std::string();
-    });
-    return TemporaryFolder(name);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code code;
-    if (path_.empty()) return;
-    std::filesystem::remove_all(path_, code);
-    forget_interrupt(path_);
-}
 
 Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening) {
     const InputOptions options = with_each_once(given);
