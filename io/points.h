@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/core/error.h"
+#include "io/notes.h"
 
 namespace lucarne::io {
 
@@ -150,12 +151,14 @@ struct ScanInfo {
     double metres_per_unit = 1.0;
     bool unit_stated = false;           ///< by the file, its format or the user; else metres are assumed
     /// How many bits of a component of `color` are in use: 8 or 16 (many 16-bit fields hold 0-255; the
-    /// attribute stays as the file had it), 0 for floats from 0 to 1. Also in `details` as "color_bits".
+    /// attribute stays as the file had it), 0 for floats from 0 to 1.
     uint32_t color_bits = 8;
     std::vector<Station> stations;
-    std::string details = "{}";         ///< JSON object: what export needs to write the same format again
+    FormatNotes notes;                  ///< what export needs to write the same format again
     std::string coordinate_system;      ///< its name, as the file has it; empty where it says nothing
     uint32_t epsg = 0;                  ///< its code in the EPSG registry; 0 where the file says none
+    /// The box that the header of a LAS, LAZ or COPC file states, true or not: the least, the largest. Not of caches.
+    std::optional<std::array<glm::dvec3, 2>> stated_box;
     Losses losses;                      ///< what is known before a pass; a cache's: all that its build left out
 };
 

@@ -10,6 +10,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "io/core/quantile.h"
+
 namespace lucarne::gi {
 namespace {
 
@@ -44,10 +46,7 @@ double mean_of_channels(const glm::dvec3& v) {
 /// Trimmed mean and percentile; reorders the values.
 void rank(std::vector<double>& errors, ImageMetrics& metrics) {
     const size_t count = errors.size();
-    const auto percentile = static_cast<size_t>(std::ceil(0.99 * static_cast<double>(count))) - 1;
-    const auto at = errors.begin() + static_cast<ptrdiff_t>(percentile);
-    std::nth_element(errors.begin(), at, errors.end());
-    metrics.p99 = std::sqrt(*at);
+    metrics.p99 = std::sqrt(nearest_rank(errors, 0.99));
     metrics.trimmed_pixels = static_cast<uint64_t>(kTrimmed * static_cast<double>(count));
     const size_t kept = count - metrics.trimmed_pixels;
     if (kept < count)

@@ -2,7 +2,7 @@
 
 #include "io/core/log.h"
 
-namespace lucarne::viewer {
+namespace lucarne {
 
 JobQueue::~JobQueue() {
     {
@@ -39,4 +39,4 @@ void JobQueue::work() {
     }
 }
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne

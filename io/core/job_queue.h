@@ -10,7 +10,7 @@
 
 #include "io/core/guarded.h"
 
-namespace lucarne::viewer {
+namespace lucarne {
 
 /// A thread that does one job after another, so that the window's own never waits.
 class JobQueue {
@@ -48,4 +48,4 @@ class JobQueue {
     std::thread thread_;
 };
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne

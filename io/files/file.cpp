@@ -54,7 +54,7 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared
     file.identity_ = {status.st_dev, status.st_ino};
     file.path_ = path;
     if (pool) {
-        file.number_ = pool->enrol();
+        file.number_ = pool->enrol(std::move(handle));
         file.pool_ = std::move(pool);
     } else {
         file.own_ = std::move(handle);
@@ -62,6 +62,12 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared
     constexpr int64_t kSecond = 1'000'000'000;
     file.modified_ = status.st_mtim.tv_sec * kSecond + status.st_mtim.tv_nsec;
     return file;
+}
+
+Result<std::shared_ptr<const InputFile>> InputFile::open_shared(const std::filesystem::path& path,
+                                                                std::shared_ptr<HandlePool> pool) {
+    LUCARNE_ASSIGN(InputFile file, open(path, std::move(pool)));
+    return std::make_shared<const InputFile>(std::move(file));
 }
 
 InputFile::InputFile(InputFile&& other) noexcept {
@@ -86,10 +92,6 @@ Result<std::shared_ptr<const Handle>> InputFile::handle() const {
     return pool_->acquire(number_, path_, identity_);
 }
 
-Result<void> InputFile::read_at(uint64_t offset, std::span<std::byte> out) const {
-    LUCARNE_ASSIGN(const auto open_handle, handle());
-    return read_exactly(open_handle->fd(), offset, out, path_);
-}
 Result<size_t> InputFile::read_some(uint64_t offset, std::span<std::byte> out) const {
     LUCARNE_ASSIGN(const auto open_handle, handle());
     return read_up_to(open_handle->fd(), offset, out, path_);

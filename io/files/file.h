@@ -8,28 +8,26 @@
 #include <string>
 
 #include "io/core/error.h"
+#include "io/files/byte_source.h"
 #include "io/files/handle_pool.h"
 
 namespace lucarne {
 
-/// A regular file opened for reading at any offset. Thread-safe (pread). Directories, devices, missing and
-/// unreadable files are rejected with their reason.
-class InputFile {
+/// A regular file opened for reading at any offset (pread). Directories, devices, missing and unreadable files are
+/// rejected with their reason. Its size and time are those of when it was opened.
+class InputFile final : public ByteSource {
  public:
     /// With `pool` the handle is one of a bounded number, and the file must keep its name while it is read.
     static Result<InputFile> open(const std::filesystem::path& path,
                                   std::shared_ptr<HandlePool> pool = nullptr);
+    /// The same for who hands it on.
+    static Result<std::shared_ptr<const InputFile>> open_shared(const std::filesystem::path& path,
+                                                                std::shared_ptr<HandlePool> pool = nullptr);
     InputFile(InputFile&& other) noexcept;
     InputFile& operator=(InputFile&& other) noexcept;
-    ~InputFile();
+    ~InputFile() override;
 
-    uint64_t size() const { return size_; }
-    int64_t modified() const { return modified_; }  ///< when it was opened, ns since 1970
-    const std::filesystem::path& path() const { return path_; }
-    /// Reads exactly `out.size()` bytes at `offset`; fewer is an error that says so (a truncated file).
-    Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
-    /// Reads up to `out.size()` bytes at `offset` and returns how many there were; 0 at the end.
-    Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const;
+    Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const override;
 
  private:
     friend class OutputFile;
@@ -40,9 +38,6 @@ class InputFile {
     std::shared_ptr<HandlePool> pool_;
     uint64_t number_ = 0;  ///< in the pool
     FileIdentity identity_;
-    uint64_t size_ = 0;
-    int64_t modified_ = 0;
-    std::filesystem::path path_;
 };
 
 /// A file that appears under its name whole or not at all: it is written nameless (O_TMPFILE, so that even

@@ -1,8 +1,9 @@
 #include "io/files/handle_pool.h"
 
 #include <cerrno>
-#include <iterator>
+#include <optional>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,9 +16,15 @@ Handle::~Handle() {
     if (fd_ >= 0) ::close(fd_);
 }
 
-uint64_t HandlePool::enrol() {
+uint64_t HandlePool::next_number() {
     const std::lock_guard lock(mutex_);
     return next_++;
+}
+
+uint64_t HandlePool::enrol(std::shared_ptr<const Handle> handle) {
+    const uint64_t number = next_number();
+    if (handle) keep(number, std::move(handle));
+    return number;
 }
 
 int HandlePool::open_to_read(const std::filesystem::path& path) {
@@ -25,34 +32,25 @@ int HandlePool::open_to_read(const std::filesystem::path& path) {
 }
 
 void HandlePool::leave(uint64_t number) {
-    std::list<Kept> closed;  // after the lock
+    std::optional<std::shared_ptr<const Handle>> closed;  // after the lock
     const std::lock_guard lock(mutex_);
-    const auto place = places_.find(number);
-    if (place == places_.end()) return;
-    closed.splice(closed.begin(), kept_, place->second);
-    places_.erase(place);
+    closed = kept_.take(number);
 }
 
 /// Null: none is kept.
 std::shared_ptr<const Handle> HandlePool::kept_handle(uint64_t number) {
     const std::lock_guard lock(mutex_);
-    const auto place = places_.find(number);
-    if (place == places_.end()) return nullptr;
-    kept_.splice(kept_.begin(), kept_, place->second);
-    return kept_.front().handle;
+    const auto* kept = kept_.find(number);
+    return kept ? *kept : nullptr;
 }
 
 /// Keeps `handle`, unless another thread has opened the file meanwhile: then returns that one's.
 std::shared_ptr<const Handle> HandlePool::keep(uint64_t number, std::shared_ptr<const Handle> handle) {
-    std::list<Kept> closed;  // after the lock
+    std::vector<std::shared_ptr<const Handle>> closed;  // after the lock
     const std::lock_guard lock(mutex_);
-    if (const auto place = places_.find(number); place != places_.end()) return place->second->handle;
-    kept_.push_front({number, handle});
-    places_[number] = kept_.begin();
-    while (kept_.size() > most_) {
-        places_.erase(kept_.back().number);
-        closed.splice(closed.begin(), kept_, std::prev(kept_.end()));
-    }
+    if (const auto* kept = kept_.find(number)) return *kept;
+    kept_.add(number, handle);
+    while (kept_.size() > most_) closed.push_back(kept_.take_oldest());
     return handle;
 }
 

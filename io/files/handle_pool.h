@@ -3,15 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <list>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 #include <utility>
 
 #include <sys/types.h>
 
 #include "io/core/error.h"
+#include "io/core/recently_used.h"
 
 namespace lucarne {
 
@@ -47,8 +46,8 @@ class HandlePool {
     explicit HandlePool(size_t most, Opener opener = open_to_read) : most_(most), opener_(std::move(opener)) {}
     static int open_to_read(const std::filesystem::path& path);
 
-    /// A number for a file that will be asked for again.
-    uint64_t enrol();
+    /// A number for a file that will be asked for again; `handle` where it is open.
+    uint64_t enrol(std::shared_ptr<const Handle> handle = nullptr);
     void leave(uint64_t number);
     /// Errors: the file cannot be opened (any more), or its name stands for another file now.
     Result<std::shared_ptr<const Handle>> acquire(uint64_t number, const std::filesystem::path& path,
@@ -56,20 +55,15 @@ class HandlePool {
     size_t open() const;  ///< handles kept now
 
  private:
-    struct Kept {
-        uint64_t number;
-        std::shared_ptr<const Handle> handle;
-    };
-
     std::shared_ptr<const Handle> kept_handle(uint64_t number);
+    uint64_t next_number();
     std::shared_ptr<const Handle> keep(uint64_t number, std::shared_ptr<const Handle> handle);
 
     const size_t most_;
     const Opener opener_;
     mutable std::mutex mutex_;
     uint64_t next_ = 0;
-    std::list<Kept> kept_;  ///< the last used first
-    std::unordered_map<uint64_t, std::list<Kept>::iterator> places_;
+    RecentlyUsed<uint64_t, std::shared_ptr<const Handle>> kept_;
 };
 
 }  // namespace lucarne

@@ -13,6 +13,7 @@
 namespace lucarne {
 namespace {
 
+using file_io::folder_of;
 using file_io::reason;
 
 constexpr const char* kAdvice = "remove it, or choose another folder";
@@ -34,10 +35,6 @@ Result<int> open_private_folder(const std::filesystem::path& folder) {
     if (!why) return fd;
     ::close(fd);
     return failed(folder.string(), why, kAdvice);
-}
-
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/las/crs.h"
 #include "io/formats/las/extras.h"
@@ -12,8 +11,6 @@
 
 namespace lucarne::io {
 namespace {
-
-using json = nlohmann::json;
 
 /// Files without points decide nothing, and those that only say a unit leave it to others.
 bool says_system(const ScanInfo& scan) {
@@ -26,14 +23,6 @@ bool same_system(const ScanInfo& a, const ScanInfo& b) {
     return a.coordinate_system == b.coordinate_system;
 }
 
-bool is_las(const json& details) {
-    return details.is_object() && details.value("format", json()) == "las";
-}
-
-json details_of(const ScanInfo& scan) {
-    return json::parse(scan.details, nullptr, false);
-}
-
 /// The extra bytes of all LAS files, and what different_extras says of them.
 struct Extras {
     las::Vlr record{std::string(las::kSpecUser), las::kExtraBytesRecord, "", false, {}};
@@ -42,7 +31,7 @@ struct Extras {
 Extras merged_extras(std::span<const ScanInfo> scans) {
     Extras extras;
     for (const ScanInfo& scan : scans) {
-        const auto record = scan.declared_points > 0 ? las::extras_record(details_of(scan)) : std::nullopt;
+        const auto record = scan.declared_points > 0 ? las::extras_record(scan.notes) : std::nullopt;
         if (!record) continue;
         const auto names = las::add_entries(extras.record, *record);
         if (!names.empty() && extras.differ.empty())
@@ -55,33 +44,33 @@ Extras merged_extras(std::span<const ScanInfo> scans) {
     return extras;
 }
 
-void merge_extras(std::span<const ScanInfo> scans, json& details) {
-    const Extras extras = merged_extras(scans);
-    if (!extras.record.data.empty()) details["extras"] = las::records_to_json({extras.record});
-    if (!extras.differ.empty()) details[kExtrasNote] = extras.differ;
+void merge_extras(std::span<const ScanInfo> scans, FormatNotes& notes) {
+    Extras extras = merged_extras(scans);
+    if (!extras.record.data.empty()) notes.extras = {std::move(extras.record)};
+    if (!extras.differ.empty()) notes.extras_note = extras.differ;
 }
 
-/// What is said of the system of all, into `details`, those of the first or none.
-void merge_systems(std::span<const ScanInfo> scans, json& details, ScanInfo& info) {
+/// Notes in `info` what holds for the systems of all scans. Its notes are those of the first scan, or none.
+void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
+    FormatNotes& notes = info.notes;
     const auto giver = std::find_if(scans.begin(), scans.end(), says_system);
     if (giver == scans.end()) return;
     if (const std::string differ = different_systems(scans); !differ.empty()) {
-        details["projection"] = json::array();
-        details[kSystemNote] = differ + "; the file written says none";
+        notes.projection.emplace();
+        notes.system_note = differ + "; the file written says none";
         info.coordinate_system.clear();
         info.epsg = 0;
         return;
     }
-    if (giver != scans.begin() || !is_las(details))
-        details["projection"] = las::records_to_json(las::projection_records(details_of(*giver)));
+    if (giver != scans.begin() || !notes.las) notes.projection = las::projection_records(giver->notes);
     info.coordinate_system = giver->coordinate_system;
     info.epsg = giver->epsg;
     const auto silent = std::find_if(scans.begin(), scans.end(), [](const ScanInfo& scan) {
         return scan.declared_points > 0 && !says_system(scan);
     });
     if (silent != scans.end())
-        details[kSystemNote] = fmt::format("{} says no coordinate system and is taken to be in that of {}",
-                                           silent->path, giver->path);
+        notes.system_note = fmt::format("{} says no coordinate system and is taken to be in that of {}", silent->path,
+                                        giver->path);
 }
 
 }  // namespace
@@ -116,25 +105,22 @@ ScanInfo merged_info(std::span<const ScanInfo> scans) {
     if (scans.empty()) return {};
     ScanInfo info = scans[0];
     if (scans.size() == 1) return info;
-    json details = details_of(scans[0]);
-    bool all_las = is_las(details), same = details.is_object();
-    std::optional<Range> limits = stated_range(details);  // that hold for all, or none
+    bool all_las = info.notes.las.has_value(), same = true;
+    std::optional<Range> limits = stated_range(info.notes);  // that hold for all, or none
     for (const ScanInfo& scan : scans.subspan(1)) {
-        const json each = details_of(scan);
-        all_las = all_las && is_las(each);
-        same = same && scan.format == info.format && each.is_object();
-        const auto range = stated_range(each);
+        all_las = all_las && scan.notes.las;
+        same = same && scan.format == info.format;
+        const auto range = stated_range(scan.notes);
         limits =
             limits && range
                 ? std::optional(Range{std::min(limits->low, range->low), std::max(limits->high, range->high)})
                 : std::nullopt;
     }
-    if (!all_las && !same) details = json::object();
-    details.erase(kIntensityLimits);
-    if (limits) details[kIntensityLimits] = {limits->low, limits->high};
-    merge_systems(scans, details, info);
-    merge_extras(scans, details);
-    info.details = details.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (!all_las && !same) info.notes = {};
+    info.notes.intensity_limits.reset();
+    if (limits) info.notes.intensity_limits = {limits->low, limits->high};
+    merge_systems(scans, info);
+    merge_extras(scans, info.notes);
     info.stations.clear();
     for (const auto& scan : scans)
         info.stations.insert(info.stations.end(), scan.stations.begin(), scan.stations.end());

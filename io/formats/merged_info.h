@@ -9,11 +9,6 @@
 // What a file that holds the points of several scans can say of them all.
 namespace lucarne::io {
 
-/// In the details of merged_info: what a user has to know of its coordinate system.
-inline constexpr const char* kSystemNote = "system_note";
-/// The same of numbers in extra bytes.
-inline constexpr const char* kExtrasNote = "extras_note";
-
 /// Whether two units of length are one: some programs write fewer digits of a US survey foot than others.
 /// (The two feet are 2e-6 apart.)
 inline constexpr double kSameUnit = 1e-9;
@@ -30,7 +25,7 @@ std::string different_systems(std::span<const ScanInfo> scans);
 /// file before; empty where there is none.
 std::string different_extras(std::span<const ScanInfo> scans);
 
-/// The stations of all scans; the first's details (header, types) where all are of one format, LAS and LAZ
+/// The stations of all scans; the first's notes (header, types) where all are of one format, LAS and LAZ
 /// being one; all descriptions of extra bytes; their coordinate system where they agree. Scans that differ in
 /// it leave none, those that say nothing are taken to be in that of the others; a note tells so.
 ScanInfo merged_info(std::span<const ScanInfo> scans);

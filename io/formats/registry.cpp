@@ -32,8 +32,12 @@ std::string_view foreign_format(std::string_view head) {
 
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
                                                const ReadOptions& options) {
-    LUCARNE_ASSIGN(auto opened, InputFile::open(path));
-    const auto file = std::make_shared<const InputFile>(std::move(opened));
+    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
+    return open_scan(std::move(file), options);
+}
+
+Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+    const std::filesystem::path& path = file->path();
     if (file->size() == 0) return rejected(path.string(), "is empty");
     std::array<std::byte, kHeadBytes> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
 #include "io/formats/mesh/source.h"
@@ -63,9 +62,8 @@ std::optional<std::string> savable(const PointSource& scan) {
     // Nobody wants to wait for the samples of a mesh only to have them counted.
     if (mesh::is_sampled(info)) {
         if (!damaged(info.losses)) return std::nullopt;
-        const auto details = nlohmann::json::parse(info.details);
         return fmt::format("{}, about {}, can be saved with --salvage",
-                           counted(details.at("mesh").at("triangles").get<uint64_t>(), "whole triangles"),
+                           counted(info.notes.mesh->triangles, "whole triangles"),
                            counted(info.declared_points, "points"));
     }
     const auto contents = survey(scan);

@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "io/files/byte_source.h"
 #include "io/lattice.h"
 #include "io/points.h"
 
@@ -40,6 +41,9 @@ std::string options_text(const ReadOptions& options);
 /// Errors: unreadable, empty, unknown or contradictory files (ErrorKind::input_rejected).
 Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path,
                                                const ReadOptions& options = {});
+/// The same of bytes that are open already, and by the name of their path.
+Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
+                                               const ReadOptions& options = {});
 
 /// What one pass over all points tells.
 struct Contents {
@@ -67,7 +71,7 @@ struct WriteOptions {
 };
 
 /// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file appears when `finish`
-/// succeeds. `info.details` of a source of the same format restores its header (version, point format, VLRs,
+/// succeeds. `info.notes` of a source of the same format restores its header (version, point format, VLRs,
 /// types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options);

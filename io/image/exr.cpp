@@ -43,7 +43,7 @@ class MemoryOutput final : public Imf::OStream {
 
 class FileInput final : public Imf::IStream {
  public:
-    explicit FileInput(const InputFile& file) : Imf::IStream(""), file_(file) {}
+    explicit FileInput(const ByteSource& file) : Imf::IStream(""), file_(file) {}
     bool read(char* out, int bytes) override {
         const auto wanted = std::as_writable_bytes(std::span(out, static_cast<size_t>(std::max(bytes, 0))));
         if (!file_.read_at(at_, wanted)) throw std::runtime_error("it ends early");
@@ -54,7 +54,7 @@ class FileInput final : public Imf::IStream {
     void seekg(uint64_t at) override { at_ = at; }
 
  private:
-    const InputFile& file_;
+    const ByteSource& file_;
     uint64_t at_ = 0;
 };
 
@@ -77,7 +77,7 @@ void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int 
     exr.readPixels(line, static_cast<int>(line + lines - 1));
 }
 
-Image decode(const InputFile& file, uint64_t most_pixels) {
+Image decode(const ByteSource& file, uint64_t most_pixels) {
     // The library allocates by the header's size: it must know the limit before it reads the header. The
     // setting is the library's own and the same every time.
     Imf::Header::setMaxImageSize(kLargestSide, kLargestSide);

@@ -188,7 +188,7 @@ std::string_view problem_of(Bytes header, uint64_t file_bytes) {
 
 }  // namespace
 
-Result<void> check_exr_header(const InputFile& file) {
+Result<void> check_exr_header(const ByteSource& file) {
     std::vector<char> front(std::min(file.size(), kMostHeaderBytes));
     LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(front))));
     constexpr std::string_view kMagic = "\x76\x2f\x31\x01";

@@ -22,7 +22,7 @@ constexpr size_t kLongestRun = 127;
 /// Reads a file from front to back in pieces.
 class Stream {
  public:
-    Stream(const InputFile& file, uint64_t at) : file_(file), at_(at) {}
+    Stream(const ByteSource& file, uint64_t at) : file_(file), at_(at) {}
 
     uint64_t left() const { return file_.size() - at_ + (end_ - next_); }
     Result<uint8_t> byte() {
@@ -37,7 +37,7 @@ class Stream {
     }
 
  private:
-    const InputFile& file_;
+    const ByteSource& file_;
     uint64_t at_;
     std::array<std::byte, 65536> piece_;
     size_t next_ = 0, end_ = 0;
@@ -70,7 +70,7 @@ bool read_size(std::string_view line, Header& header) {
     return true;
 }
 
-Result<Header> read_header(const InputFile& file) {
+Result<Header> read_header(const ByteSource& file) {
     const std::string name = file.path().string();
     std::string text(std::min<uint64_t>(file.size(), kLongestHeader), '\0');
     LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(text))));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kAgain = "convert the scan again";
 
-auto damaged(const InputFile& file, std::string why) {
+auto damaged(const ByteSource& file, std::string why) {
     return rejected(file.path().string(), std::move(why), kAgain);
 }
 
@@ -26,7 +26,7 @@ bool inside(uint64_t offset, uint64_t bytes, uint64_t end) {
     return offset >= format::kFirstPayload && offset <= end && bytes <= end - offset;
 }
 
-Result<Superblock> newest_superblock(const InputFile& file) {
+Result<Superblock> newest_superblock(const ByteSource& file) {
     LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
     const auto& [a, b] = blocks;
     if (!a && !b)
@@ -44,7 +44,7 @@ Result<Superblock> newest_superblock(const InputFile& file) {
 
 /// Reads a checksummed range, and leaves `behind` zeros behind it. Its size was checked against the file
 /// before.
-Result<std::vector<std::byte>> read_checked(const InputFile& file, uint64_t offset, uint64_t bytes,
+Result<std::vector<std::byte>> read_checked(const ByteSource& file, uint64_t offset, uint64_t bytes,
                                             uint64_t sum, const std::string& what, size_t behind = 0) {
     std::vector<std::byte> data(bytes + behind);
     const std::span read(data.data(), bytes);
@@ -55,7 +55,7 @@ Result<std::vector<std::byte>> read_checked(const InputFile& file, uint64_t offs
 
 }  // namespace
 
-Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const InputFile& file) {
+Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const ByteSource& file) {
     if (file.size() < format::kFirstPayload) return damaged(file, "is too short for a cache");
     std::array<std::byte, format::kFirstPayload> bytes;
     LUCARNE_TRY(file.read_at(0, bytes));
@@ -64,12 +64,10 @@ Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const InputFil
                       format::decode(all.last<format::kSuperblockBytes>())};
 }
 
-Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path,
-                                                   std::shared_ptr<HandlePool> handles) {
-    LUCARNE_ASSIGN(InputFile file, InputFile::open(path, std::move(handles)));
-    auto newest = newest_superblock(file);
-    if (!newest && !is_cache(path))
-        return rejected(path.string(), "is no cache",
+Result<std::unique_ptr<CacheFile>> CacheFile::open(std::shared_ptr<const ByteSource> file) {
+    auto newest = newest_superblock(*file);
+    if (!newest && !is_cache(*file))
+        return rejected(file->path().string(), "is no cache",
                         "if it is a scan, convert it first: lucarne convert SCAN -o CACHE.luc");
     LUCARNE_ASSIGN(const Superblock block, std::move(newest));
     std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));
@@ -79,13 +77,18 @@ Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& 
     return cache;
 }
 
+Result<std::unique_ptr<CacheFile>> CacheFile::open(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
+    return open(std::move(file));
+}
+
 Result<void> CacheFile::read_directory() {
-    LUCARNE_ASSIGN(const auto metadata, read_checked(file_, block_.metadata_offset, block_.metadata_bytes,
+    LUCARNE_ASSIGN(const auto metadata, read_checked(*file_, block_.metadata_offset, block_.metadata_bytes,
                                                      block_.metadata_checksum, "its metadata"));
     LUCARNE_ASSIGN(header_,
-                   parse_metadata(file_.path().string(),
+                   parse_metadata(file_->path().string(),
                                   {reinterpret_cast<const char*>(metadata.data()), metadata.size()}));
-    LUCARNE_ASSIGN(const auto bytes, read_checked(file_, block_.directory_offset, block_.directory_bytes,
+    LUCARNE_ASSIGN(const auto bytes, read_checked(*file_, block_.directory_offset, block_.directory_bytes,
                                                   block_.directory_checksum, "its directory"));
     const size_t count = bytes.size() / format::kEntryBytes;
     nodes_.reserve(count);
@@ -94,12 +97,12 @@ Result<void> CacheFile::read_directory() {
         const Entry entry = format::load_entry(&bytes[i * format::kEntryBytes]);
         if (entry.key.level > kMostLevel ||
             ((entry.key.x | entry.key.y | entry.key.z) >> entry.key.level) != 0)
-            return damaged(file_, fmt::format("node {} lies outside the root cube", i));
+            return damaged(*file_, fmt::format("node {} lies outside the root cube", i));
         if (entry.codec > format::kCodecColumns)
-            return damaged(file_, fmt::format("node {} uses the unknown codec {}", i, entry.codec));
+            return damaged(*file_, fmt::format("node {} uses the unknown codec {}", i, entry.codec));
         if (!std::all_of(entry.area_floor.begin(), entry.area_floor.end(),
                          [](float v) { return std::isfinite(v) && v >= 0; }))
-            return damaged(file_, fmt::format("node {} has an impossible area floor", i));
+            return damaged(*file_, fmt::format("node {} has an impossible area floor", i));
         nodes_.push_back({.key = entry.key,
                           .child_mask = entry.child_mask,
                           .count = entry.count,
@@ -107,13 +110,13 @@ Result<void> CacheFile::read_directory() {
                           .payload_bytes = entry.payload_bytes,
                           .area_floor = entry.area_floor});
         if (entry.layout > header_.layouts.size())
-            return damaged(file_, fmt::format("node {} has the unknown layout {}", i, entry.layout));
+            return damaged(*file_, fmt::format("node {} has the unknown layout {}", i, entry.layout));
         payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec, entry.layout});
     }
     layouts_.push_back({header_.schema.stride, std::make_unique<codec::DecoderPool>(header_.schema), {}});
     for (const auto& layout : header_.layouts) {
         if (!RecordMap::fits(layout, header_.schema))
-            return damaged(file_, "it has a layout whose records its schema cannot hold");
+            return damaged(*file_, "it has a layout whose records its schema cannot hold");
         layouts_.push_back(
             {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header_.schema)});
     }
@@ -123,7 +126,7 @@ Result<void> CacheFile::read_directory() {
 /// Breadth first and Morton sorted means: walking the nodes in order, their children follow each other
 /// without a gap. That makes parents exist, keys consistent and unique, and the order right, all at once.
 Result<void> CacheFile::check_structure() {
-    if (nodes_.empty() || nodes_[0].key != NodeKey{}) return damaged(file_, "it has no root node");
+    if (nodes_.empty() || nodes_[0].key != NodeKey{}) return damaged(*file_, "it has no root node");
     size_t next = 1;
     for (size_t i = 0; i < nodes_.size(); ++i) {
         auto& node = nodes_[i];
@@ -132,21 +135,21 @@ Result<void> CacheFile::check_structure() {
         for (uint32_t octant = 0; octant < 8; ++octant) {
             if (!(node.child_mask >> octant & 1)) continue;
             if (next >= nodes_.size() || next <= i || nodes_[next].key != node.key.child(octant))
-                return damaged(file_, fmt::format("the children of node {} are not where they belong", i));
+                return damaged(*file_, fmt::format("the children of node {} are not where they belong", i));
             nodes_[next++].parent = static_cast<uint32_t>(i);
         }
     }
-    if (next != nodes_.size()) return damaged(file_, fmt::format("node {} has no parent", next));
+    if (next != nodes_.size()) return damaged(*file_, fmt::format("node {} has no parent", next));
     std::vector<uint64_t> below(nodes_.size(), 0);
     for (size_t i = nodes_.size(); i-- > 0;) {
         const auto& node = nodes_[i];
         if (node.subtree_count < node.count || node.subtree_count - node.count != below[i])
-            return damaged(file_, fmt::format("the counts below node {} do not add up", i));
+            return damaged(*file_, fmt::format("the counts below node {} do not add up", i));
         if (i > 0 && __builtin_add_overflow(below[node.parent], node.subtree_count, &below[node.parent]))
-            return damaged(file_, "its counts overflow");
+            return damaged(*file_, "its counts overflow");
     }
     if (nodes_[0].subtree_count != header_.points)
-        return damaged(file_, "metadata and directory disagree about the number of points");
+        return damaged(*file_, "metadata and directory disagree about the number of points");
     return {};
 }
 
@@ -162,16 +165,16 @@ Result<void> CacheFile::check_payloads() {
                               ? bytes == records
                               : bytes < records && records <= codec::kMostRecordBytes;
         if (!fits || !inside(payloads_[i].offset, bytes, block_.file_bytes))
-            return damaged(file_, fmt::format("the points of node {} lie outside the file", i));
+            return damaged(*file_, fmt::format("the points of node {} lie outside the file", i));
         if (bytes) ranges.emplace_back(payloads_[i].offset, payloads_[i].offset + bytes);
     }
     std::sort(ranges.begin(), ranges.end());
     for (size_t i = 1; i < ranges.size(); ++i)
-        if (ranges[i].first < ranges[i - 1].second) return damaged(file_, "parts of it overlap");
+        if (ranges[i].first < ranges[i - 1].second) return damaged(*file_, "parts of it overlap");
     return {};
 }
 
-Result<NodeData> load_payload(const InputFile& file, uint32_t node, const NodeInfo& info,
+Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride) {
     const bool raw = payload.codec == format::kCodecRaw;
     LUCARNE_ASSIGN(auto bytes, read_checked(file, payload.offset, info.payload_bytes, payload.checksum,
@@ -186,7 +189,7 @@ Result<NodeData> load_payload(const InputFile& file, uint32_t node, const NodeIn
 Result<NodeData> CacheFile::load(uint32_t node) const {
     const Layout& layout = layouts_[payloads_[node].layout];
     LUCARNE_ASSIGN(NodeData data,
-                   load_payload(file_, node, nodes_[node], payloads_[node], *layout.decoders, layout.stride));
+                   load_payload(*file_, node, nodes_[node], payloads_[node], *layout.decoders, layout.stride));
     if (!layout.to_schema) return data;
     NodeData converted{data.count, {}};
     layout.to_schema->convert(data.records.data(), data.count, converted.records);
@@ -208,17 +211,18 @@ Entry CacheFile::entry(uint32_t node) const {
             .area_floor = info.area_floor};
 }
 
-bool is_cache(const std::filesystem::path& path) {
-    const auto file = InputFile::open(path);
-    if (!file) return false;
+bool is_cache(const ByteSource& file) {
     std::array<std::byte, 8> start;
-    return file->size() >= start.size() && file->read_at(0, start) &&
+    return file.size() >= start.size() && file.read_at(0, start) &&
            std::memcmp(start.data(), format::kMagic.data(), start.size()) == 0;
 }
 
-Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path,
-                                               std::shared_ptr<HandlePool> handles) {
-    return CacheFile::open(path, std::move(handles));
+Result<std::unique_ptr<NodeSource>> open_cache(std::shared_ptr<const ByteSource> file) {
+    return CacheFile::open(std::move(file));
+}
+
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path) {
+    return CacheFile::open(path);
 }
 
 }  // namespace lucarne::octree

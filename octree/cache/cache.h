@@ -9,14 +9,13 @@
 
 namespace lucarne::octree {
 
-/// Whether the file starts like a cache; false for anything else, unreadable files included.
-bool is_cache(const std::filesystem::path& path);
+/// Whether the file starts like a cache; false where it cannot be read.
+bool is_cache(const ByteSource& file);
 
 /// Opens a cache: reads superblock, metadata and directory and checks everything that can be checked without
 /// the points (sizes against the file, keys, counts, offsets, overlaps). Errors: ErrorKind::input_rejected.
-/// With `handles` its file shares their number with others.
-Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path,
-                                               std::shared_ptr<HandlePool> handles = nullptr);
+Result<std::unique_ptr<NodeSource>> open_cache(std::shared_ptr<const ByteSource> file);
+Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path);
 
 struct VerifyReport {
     uint64_t nodes = 0, points = 0, bytes = 0;
@@ -26,6 +25,8 @@ struct VerifyReport {
 
 /// Reads the whole cache and checks every checksum and invariant: both superblocks, every point inside its
 /// node's cube, the bounds, the counts. `progress` is told the bytes of each node checked.
+Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
+                                  const std::function<void(uint64_t)>& progress);
 Result<VerifyReport> verify_cache(const std::filesystem::path& path,
                                   const std::function<void(uint64_t)>& progress);
 

@@ -16,7 +16,7 @@
 namespace lucarne::octree {
 
 /// Both superblocks of a file; empty where damaged.
-Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const InputFile& file);
+Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const ByteSource& file);
 
 /// Where a node's points are, and how.
 struct StoredPayload {
@@ -24,14 +24,14 @@ struct StoredPayload {
     uint8_t codec = format::kCodecRaw, layout = 0;
 };
 /// Reads, checks and decodes a node's points, in the layout that they are stored in. Its sizes were checked against the file before.
-Result<NodeData> load_payload(const InputFile& file, uint32_t node, const NodeInfo& info,
+Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
 
-/// A cache on disk: directory in memory, points by pread.
+/// A cache: its directory in memory, its points where they are.
 class CacheFile final : public NodeSource {
  public:
-    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path,
-                                                   std::shared_ptr<HandlePool> handles = nullptr);
+    static Result<std::unique_ptr<CacheFile>> open(std::shared_ptr<const ByteSource> file);
+    static Result<std::unique_ptr<CacheFile>> open(const std::filesystem::path& path);
 
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }
@@ -39,16 +39,17 @@ class CacheFile final : public NodeSource {
 
     /// A node's directory entry.
     format::Entry entry(uint32_t node) const;
-    const InputFile& file() const { return file_; }
+    const ByteSource& file() const { return *file_; }
     const format::Superblock& superblock() const { return block_; }
 
  private:
-    CacheFile(InputFile file, const format::Superblock& block) : file_(std::move(file)), block_(block) {}
+    CacheFile(std::shared_ptr<const ByteSource> file, const format::Superblock& block)
+        : file_(std::move(file)), block_(block) {}
     Result<void> read_directory();
     Result<void> check_structure();
     Result<void> check_payloads();
 
-    InputFile file_;
+    std::shared_ptr<const ByteSource> file_;
     format::Superblock block_;
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/formats/notes_json.h"
 #include "octree/cache/format.h"
 
 namespace lucarne::octree {
@@ -103,7 +104,7 @@ json scan_json(const io::ScanInfo& scan) {
             {"metres_per_unit", scan.metres_per_unit},
             {"color_bits", scan.color_bits},
             {"stations", std::move(stations)},
-            {"details", scan.details}};
+            {"details", io::notes_text(scan.notes)}};
     if (!scan.coordinate_system.empty()) result["coordinate_system"] = scan.coordinate_system;
     if (scan.epsg) result["epsg"] = scan.epsg;
     for (const auto& loss : scan.losses)
@@ -124,7 +125,7 @@ io::ScanInfo scan_of(const json& value) {
             "colours of an unknown width");
     for (const auto& s : value.at("stations"))
         scan.stations.push_back({s.at("id").get<uint32_t>(), vector_of(s.at("position"))});
-    scan.details = value.at("details").get<std::string>();
+    scan.notes = io::notes_of_text(value.at("details").get_ref<const std::string&>());
     scan.coordinate_system = value.value("coordinate_system", std::string());
     scan.epsg = value.value("epsg", uint32_t{0});
     if (value.contains("losses"))

@@ -46,9 +46,10 @@ Result<void> check_points(const CacheFile& cache, uint32_t index, glm::dvec3& le
 
 }  // namespace
 
-Result<VerifyReport> verify_cache(const std::filesystem::path& path,
+Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
                                   const std::function<void(uint64_t)>& progress) {
-    LUCARNE_ASSIGN(const auto cache, CacheFile::open(path));
+    const std::string name = file->path().string();
+    LUCARNE_ASSIGN(const auto cache, CacheFile::open(std::move(file)));
     LUCARNE_TRY(check_superblocks(*cache));
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     glm::dvec3 least(kInfinity), most(-kInfinity);
@@ -61,11 +62,16 @@ Result<VerifyReport> verify_cache(const std::filesystem::path& path,
         progress(nodes[i].payload_bytes);
     }
     if (report.points && (least != cache->header().min || most != cache->header().max))
-        return rejected(path.string(), "its bounds are not those of its points");
+        return rejected(name, "its bounds are not those of its points");
     report.nodes = nodes.size();
     report.bytes = cache->file().size();
     report.bytes_behind_end = report.bytes - cache->superblock().file_bytes;  // the reader checked that it fits
     return report;
+}
+
+Result<VerifyReport> verify_cache(const std::filesystem::path& path, const std::function<void(uint64_t)>& progress) {
+    LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
+    return verify_cache(std::move(file), progress);
 }
 
 }  // namespace lucarne::octree

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 
-#include "io/files/handle_pool.h"
+#include "io/files/byte_source.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -13,7 +12,6 @@ namespace lucarne::octree {
 /// estimated among them where the file has none. There are no areas: the floors say what a point stands for,
 /// by a sample of the top of the tree and the counts of nodes. Errors: those of io::copc::File::open; nodes
 /// that are there twice or have no parent.
-Result<std::unique_ptr<NodeSource>> open_copc(const std::filesystem::path& path,
-                                              std::shared_ptr<HandlePool> handles = nullptr);
+Result<std::unique_ptr<NodeSource>> open_copc(std::shared_ptr<const ByteSource> input);
 
 }  // namespace lucarne::octree

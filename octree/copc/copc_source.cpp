@@ -157,9 +157,8 @@ Result<NodeData> CopcSource::load(uint32_t node) const {
 
 }  // namespace
 
-Result<std::unique_ptr<NodeSource>> open_copc(const std::filesystem::path& path,
-                                              std::shared_ptr<HandlePool> handles) {
-    LUCARNE_ASSIGN(auto file, io::copc::File::open(path, std::move(handles)));
+Result<std::unique_ptr<NodeSource>> open_copc(std::shared_ptr<const ByteSource> input) {
+    LUCARNE_ASSIGN(auto file, io::copc::File::open(std::move(input)));
     auto source = std::make_unique<CopcSource>(std::move(file));
     LUCARNE_TRY(source->open());
     return source;

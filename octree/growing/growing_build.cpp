@@ -84,7 +84,7 @@ struct GrowingBuild::State final : BuildListener {
     BuildState now;
 
     Result<void> take_first();
-    void publish(std::shared_ptr<const InputFile> file);
+    void publish(std::shared_ptr<const ByteSource> file);
     void show(std::shared_ptr<const NodeSource> source);
     void work();
     void end(Result<std::shared_ptr<const NodeSource>> cache);
@@ -124,7 +124,7 @@ Result<void> GrowingBuild::State::take_first() {
 }
 
 /// Makes a source of all there is.
-void GrowingBuild::State::publish(std::shared_ptr<const InputFile> file) {
+void GrowingBuild::State::publish(std::shared_ptr<const ByteSource> file) {
     const auto start = Clock::now();
     show(make_growing_source({header, entries, roots, loose, std::move(file)}));
     published = Clock::now();

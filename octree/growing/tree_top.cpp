@@ -48,7 +48,7 @@ class GrowingSource final : public NodeSource {
 
  private:
     SourceHeader header_;
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     std::unique_ptr<codec::DecoderPool> decoders_;
     std::vector<NodeInfo> nodes_;
     std::vector<Content> contents_;

@@ -33,7 +33,7 @@ struct GrowingState {
     std::span<const format::Entry> settled;  ///< any order; what no node of `roots` stands over is left out
     std::span<const std::shared_ptr<const LooseNode>> roots;  ///< along the Morton curve
     const LoosePoints& sample;                                ///< of the whole cloud
-    std::shared_ptr<const InputFile> file;                    ///< holds what is settled
+    std::shared_ptr<const ByteSource> file;                    ///< holds what is settled
 };
 
 /// The whole of it as an octree. Every point stands in it once: of the sample only what lies behind the last

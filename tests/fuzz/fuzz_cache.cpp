@@ -66,10 +66,9 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     std::memcpy(bytes.data(), data, octree::kFields);
     std::memcpy(&bytes[octree::format::kFirstPayload], data + octree::kFields, size - octree::kFields);
     octree::reseal(std::as_writable_bytes(std::span(bytes)));
-    const auto path = memory_file(bytes);
-    if (!path) return false;
-    (void)octree::verify_cache(*path, [](uint64_t) {});
-    const auto opened = octree::open_cache(*path);
+    const auto file = memory_source(bytes);
+    (void)octree::verify_cache(file, [](uint64_t) {});
+    const auto opened = octree::open_cache(file);
     if (opened) octree::use(**opened);
     return true;
 }

@@ -15,9 +15,7 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     std::memcpy(&bytes[24], "\x01\x04", 2);
     std::memcpy(&bytes[94], "\x77\x01", 2);  // a header of 375 bytes
     std::memcpy(&bytes[377], "copc\0\0\0\0\0\0\0\0\0\0\0\0\x01\0\xa0\0", 20);
-    const auto path = memory_file(bytes);
-    if (!path) return false;
-    const auto opened = octree::open_copc(*path);
+    const auto opened = octree::open_copc(memory_source(bytes));
     if (!opened) return true;
     const octree::NodeSource& source = **opened;
     for (uint32_t node = 0; node < source.nodes().size(); ++node) (void)source.load(node);

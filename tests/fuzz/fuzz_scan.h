@@ -19,8 +19,8 @@ inline void write_unfinished(const io::PointSource& source, std::span<const std:
     if (writer) (void)(*writer)->write(records);
 }
 
-inline void read_and_write(const std::filesystem::path& path, bool salvage) {
-    const auto source = io::open_scan(path, {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
+inline void read_and_write(std::shared_ptr<const ByteSource> file, bool salvage) {
+    const auto source = io::open_scan(std::move(file), {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
     if (!source) return;
     const auto reader = (*source)->open();
     if (!reader) return;
@@ -37,9 +37,8 @@ inline void read_and_write(const std::filesystem::path& path, bool salvage) {
 
 /// Of a file of these bytes.
 inline bool scan(std::string_view bytes) {
-    const auto path = memory_file(bytes);
-    if (!path) return false;
-    for (const bool salvage : {false, true}) read_and_write(*path, salvage);
+    const auto file = memory_source(bytes);
+    for (const bool salvage : {false, true}) read_and_write(file, salvage);
     return true;
 }
 

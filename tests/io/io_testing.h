@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "io/formats/scan.h"
+#include "tests/temporary_folder.h"
 
 // What the tests of io share: the folder of shared scans, a folder that goes away, whole scans in memory.
 namespace lucarne::io::testing {
@@ -24,20 +25,7 @@ inline std::filesystem::path shared_data() {
     return std::filesystem::exists(folder / "data") ? folder / "data" : std::filesystem::path();
 }
 
-class TemporaryFolder {
- public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lucarne-test-XXXXXX").string();
-        path_ = mkdtemp(name.data());
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-
- private:
-    std::filesystem::path path_;
-};
+using TemporaryFolder = lucarne::test::Folder;
 
 inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

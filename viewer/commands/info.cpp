@@ -72,9 +72,9 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
             {"scans", std::move(scans)}};
 }
 
-Result<json> describe_scan(const std::string& path, const InfoOptions& options) {
+Result<json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
-    LUCARNE_ASSIGN(const auto scan, io::open_scan(path, options.read));
+    LUCARNE_ASSIGN(const auto scan, io::open_scan(std::move(file), options.read));
     // A mesh of a few bytes may have millions of samples.
     if (options.quick || io::mesh::is_sampled(scan->info())) return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
@@ -87,12 +87,14 @@ Result<json> describe_scan(const std::string& path, const InfoOptions& options) 
 }
 
 Result<json> describe(const std::string& path, const InfoOptions& options) {
-    if (!octree::is_octree(path)) return describe_scan(path, options);
-    LUCARNE_ASSIGN(const auto source, octree::open_octree(path));
-    if (octree::is_cache(path)) return describe_octree(*source, "cache");
+    LUCARNE_ASSIGN(const std::shared_ptr<const ByteSource> file, InputFile::open_shared(path));
+    const octree::OctreeKind kind = octree::octree_kind(*file);
+    if (kind == octree::OctreeKind::none) return describe_scan(file, options);
+    LUCARNE_ASSIGN(const auto source, octree::open_octree(file));
+    if (kind == octree::OctreeKind::cache) return describe_octree(*source, "cache");
     // Its octree knows only the box that the header states.
     json described = describe_octree(*source, "copc");
-    LUCARNE_ASSIGN(const json scan, describe_scan(path, options));
+    LUCARNE_ASSIGN(const json scan, describe_scan(file, options));
     for (const char* key : {"min", "max"}) described.erase(key);
     for (const char* key : {"min", "max", "stated_min", "stated_max", "left_out"})
         if (scan.contains(key)) described[key] = scan[key];

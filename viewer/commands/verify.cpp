@@ -6,6 +6,7 @@
 #include "io/core/log.h"
 #include "io/core/options.h"
 #include "io/core/progress.h"
+#include "io/files/file.h"
 #include "octree/cache/cache.h"
 #include "viewer/commands/commands.h"
 
@@ -13,13 +14,14 @@ namespace lucarne::viewer {
 namespace {
 
 Result<void> verify(const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(const std::shared_ptr<const ByteSource> file, InputFile::open_shared(path));
     uint64_t bytes = 0;
     {
-        LUCARNE_ASSIGN(const auto cache, octree::open_cache(path));
+        LUCARNE_ASSIGN(const auto cache, octree::open_cache(file));
         for (const auto& node : cache->nodes()) bytes += node.payload_bytes;
     }
     Progress progress("verifying", bytes, "bytes");
-    LUCARNE_ASSIGN(const auto report, octree::verify_cache(path, [&](uint64_t done) { progress.add(done); }));
+    LUCARNE_ASSIGN(const auto report, octree::verify_cache(file, [&](uint64_t done) { progress.add(done); }));
     log::info("{}: sound; {} points in {} nodes on {} levels, {}", path.string(), report.points, report.nodes,
               report.depth + 1, bytes_text(report.bytes));
     if (report.bytes_behind_end)

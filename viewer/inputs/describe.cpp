@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "io/core/counted.h"
-#include "io/formats/las/bounds.h"
 #include "io/formats/mesh/source.h"
+#include "io/formats/notes_json.h"
 #include "viewer/inputs/units.h"
 
 namespace lucarne::viewer {
@@ -46,15 +46,15 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
         described["min"] = vector_json(contents->min);
         described["max"] = vector_json(contents->max);
     }
-    const json details = json::parse(info.details, nullptr, false);
-    const bool known = details.is_object();
     if (!contents && io::mesh::is_sampled(info)) {
-        const json& mesh = details["mesh"];
-        described.update({{"expected_points", mesh["samples"]}, {"min", mesh["min"]}, {"max", mesh["max"]}});
+        const auto& samples = *info.notes.mesh->samples;
+        described.update({{"expected_points", samples.count},
+                          {"min", vector_json(samples.min)},
+                          {"max", vector_json(samples.max)}});
     }
-    if (const auto stated = io::las::stated_box(info.path)) {
-        described["stated_min"] = vector_json(stated->front());
-        described["stated_max"] = vector_json(stated->back());
+    if (info.stated_box) {
+        described["stated_min"] = vector_json(info.stated_box->front());
+        described["stated_max"] = vector_json(info.stated_box->back());
     }
     described["bytes_per_point"] = schema.stride;
     described["coordinate_system"] = info.coordinate_system;
@@ -65,8 +65,9 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
     described["stations"] = std::move(stations);
     described["attributes"] = attributes_json(schema);
     described["left_out"] = losses_json(contents ? contents->losses : info.losses);
+    const json notes = json::parse(io::notes_text(info.notes));
     for (const char* list : {"scans", "images", "mesh"})
-        if (known && details.contains(list)) described[list] = details[list];
+        if (notes.contains(list)) described[list] = notes[list];
     return described;
 }
 

@@ -1,16 +1,13 @@
 #include "viewer/inputs/input.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 
 #include <fmt/format.h>
 
-#include "io/core/interrupt.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/files/file.h"
 #include "io/formats/scan.h"
 #include "octree/cache/cache.h"
 #include "octree/open.h"
@@ -25,7 +22,7 @@ namespace {
 using octree::GrowingBuild;
 
 constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< of a build beside which pictures are drawn
-constexpr size_t kMostOpenCaches = 64;                 ///< handles that several share; more are opened again in turn
+constexpr size_t kMostOpenFiles = 64;                  ///< handles; those of further files are opened again in turn
 using Source = std::shared_ptr<const octree::NodeSource>;
 
 /// The scans, and where their cache goes; or the cache, if it is there.
@@ -36,12 +33,35 @@ struct Scans {
     std::optional<TemporaryFolder> folder;
 };
 
-Result<Scans> open_scans(const InputOptions& options) {
+/// The files that are named, each opened once.
+struct Files {
+    std::vector<std::shared_ptr<const ByteSource>> all;
+    std::vector<octree::OctreeKind> kinds;
+    bool octree = false;  ///< there is one among them: each is opened by itself
+};
+
+/// Many files share a bounded number of handles.
+Result<Files> open_files(const InputOptions& options) {
+    const auto handles = options.paths.size() > kMostOpenFiles ? std::make_shared<HandlePool>(kMostOpenFiles) : nullptr;
+    Files files;
+    for (const std::string& path : options.paths) {
+        LUCARNE_ASSIGN(std::shared_ptr<const ByteSource> file, InputFile::open_shared(path, handles));
+        files.kinds.push_back(octree::octree_kind(*file));
+        files.all.push_back(std::move(file));
+        if (files.octree || files.kinds.back() == octree::OctreeKind::none) continue;
+        files.octree = true;
+        if (options.read.metres_per_unit)
+            log::warn("{}: is an octree and keeps its unit; --unit is for scans that are converted", path);
+    }
+    return files;
+}
+
+Result<Scans> open_scans(const InputOptions& options, std::span<const std::shared_ptr<const ByteSource>> files) {
     Scans scans;
     std::vector<io::ScanInfo> infos;
-    for (const auto& path : options.paths) {
-        auto scan = io::open_scan(path, options.read);
-        if (!scan) return tl::unexpected(io::with_salvage_advice(scan.error(), path, options.read));
+    for (const auto& file : files) {
+        auto scan = io::open_scan(file, options.read);
+        if (!scan) return tl::unexpected(io::with_salvage_advice(scan.error(), file->path(), options.read));
         infos.push_back((*scan)->info());
         scans.inputs.push_back(std::move(*scan));
     }
@@ -68,8 +88,8 @@ Result<Scans> open_scans(const InputOptions& options) {
 }
 
 /// Scans as one cache, the one kept or a new one.
-Result<Source> convert_scans(const InputOptions& options) {
-    LUCARNE_ASSIGN(Scans scans, open_scans(options));
+Result<Source> convert_scans(const InputOptions& options, std::span<const std::shared_ptr<const ByteSource>> files) {
+    LUCARNE_ASSIGN(Scans scans, open_scans(options, files));
     if (scans.cache) return scans.cache;
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
     if (auto built = octree::build_cache(scans.build); !built)
@@ -81,15 +101,15 @@ Result<Source> convert_scans(const InputOptions& options) {
 }
 
 /// Every input by itself, octrees as they are.
-Result<Source> open_parts(const InputOptions& options) {
-    const auto handles = std::make_shared<HandlePool>(kMostOpenCaches);
+Result<Source> open_parts(const InputOptions& options, const Files& files) {
     std::vector<Source> sources;
-    for (const std::string& path : options.paths) {
-        if (octree::is_octree(path)) {
-            LUCARNE_ASSIGN(auto octree, octree::open_octree(path, handles));
+    for (size_t i = 0; i < files.all.size(); ++i) {
+        if (files.kinds[i] != octree::OctreeKind::none) {
+            LUCARNE_ASSIGN(auto octree, octree::open_octree(files.all[i]));
             sources.push_back(std::move(octree));
         } else {
-            LUCARNE_ASSIGN(sources.emplace_back(), convert_scans({{path}, options.no_cache, options.read}));
+            LUCARNE_ASSIGN(sources.emplace_back(), convert_scans({{options.paths[i]}, options.no_cache, options.read},
+                                                                 std::span(&files.all[i], 1)));
         }
     }
     if (sources.size() == 1) return std::move(sources.front());
@@ -101,48 +121,17 @@ InputOptions with_each_once(InputOptions options) {
     return options;
 }
 
-/// Whether octrees are among them, which are opened as they are.
-bool has_octree(const InputOptions& options) {
-    const auto found =
-        std::ranges::find_if(options.paths, [](const auto& path) { return octree::is_octree(path); });
-    if (found == options.paths.end()) return false;
-    if (options.read.metres_per_unit)
-        log::warn("{}: is an octree and keeps its unit; --unit is for scans that are converted", *found);
-    return true;
-}
-
 }  // namespace
-
-Result<TemporaryFolder> TemporaryFolder::create() {
-    std::error_code code;
-    const auto base = std::filesystem::temp_directory_path(code);
-    if (code) return failed("temporary folder", code.message(), "set TMPDIR to a folder that can be written");
-    std::string name = (base / "lucarne-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-        return failed(base.string(), std::strerror(errno), "set TMPDIR to a folder that can be written");
-    at_interrupt(name, [name] {
-        std::error_code ignored;
-        std::filesystem::remove_all(name, ignored);
-        return std::string();
-    });
-    return TemporaryFolder(name);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code code;
-    if (path_.empty()) return;
-    std::filesystem::remove_all(path_, code);
-    forget_interrupt(path_);
-}
 
 Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening) {
     const InputOptions options = with_each_once(given);
     OpenInput open;
-    if (has_octree(options)) {
-        LUCARNE_ASSIGN(open.source, open_parts(options));
+    LUCARNE_ASSIGN(const Files files, open_files(options));
+    if (files.octree) {
+        LUCARNE_ASSIGN(open.source, open_parts(options, files));
         return open;
     }
-    LUCARNE_ASSIGN(Scans scans, open_scans(options));
+    LUCARNE_ASSIGN(Scans scans, open_scans(options, files.all));
     open.source = scans.cache;
     if (open.source) return open;
     open.folder = std::move(scans.folder);
@@ -160,7 +149,8 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
 
 Result<Source> open_input(const InputOptions& given) {
     const InputOptions options = with_each_once(given);
-    return has_octree(options) ? open_parts(options) : convert_scans(options);
+    LUCARNE_ASSIGN(const Files files, open_files(options));
+    return files.octree ? open_parts(options, files) : convert_scans(options, files.all);
 }
 
 Result<Source> open_input(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/core/error.h"
+#include "io/files/temporary_folder.h"
 #include "io/formats/scan.h"
 #include "octree/growing/growing_build.h"
 #include "octree/tree/source.h"
@@ -19,23 +20,6 @@ struct InputOptions {
     bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
     io::ReadOptions read;
     bool required = true;  ///< at least one path
-};
-
-/// A folder of our own that is removed with all that is in it.
-class TemporaryFolder {
- public:
-    static Result<TemporaryFolder> create();
-    TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::move(other.path_)) { other.path_.clear(); }
-    TemporaryFolder& operator=(TemporaryFolder&& other) noexcept {
-        std::swap(path_, other.path_);
-        return *this;
-    }
-    ~TemporaryFolder();
-    const std::filesystem::path& path() const { return path_; }
-
- private:
-    explicit TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {}
-    std::filesystem::path path_;
 };
 
 /// How a window opens what it shows while it is being converted.

@@ -1,7 +1,6 @@
 #include "viewer/inputs/kept_cache.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "io/files/file.h"
+#include "io/files/user_folder.h"
 #include "io/core/log.h"
 #include "io/core/random.h"
 #include "octree/cache/cache.h"
@@ -17,17 +17,6 @@ namespace lucarne::viewer {
 namespace {
 
 using std::filesystem::path;
-
-/// XDG Base Directory Specification 0.8: relative paths do not count.
-path cache_folder() {
-    const auto folder = [](const char* variable) {
-        const char* value = std::getenv(variable);
-        return value && *value == '/' ? path(value) : path();
-    };
-    if (const path given = folder("XDG_CACHE_HOME"); !given.empty()) return given / "lucarne";
-    if (const path home = folder("HOME"); !home.empty()) return home / ".cache" / "lucarne";
-    return {};
-}
 
 path absolute(const std::string& name) {
     std::error_code unknown;
@@ -58,7 +47,7 @@ KeptCache::KeptCache(const Scans& scans, std::string options) : scans_(scans), o
               (scans_.size() == 1
                    ? name + ".luc"
                    : fmt::format("{}+{}-{:08x}.luc", name, scans_.size() - 1, static_cast<uint32_t>(hash)));
-    if (const path folder = cache_folder(); !folder.empty())
+    if (const path folder = user_folder("XDG_CACHE_HOME", ".cache"); !folder.empty())
         in_folder_ = folder / fmt::format("{}-{:016x}.luc", name.substr(0, 100), hash);
 }
 
@@ -75,8 +64,10 @@ bool KeptCache::made_of(const octree::NodeSource& cache, bool same_state) const 
 
 std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
     for (const path& file : {beside_, in_folder_}) {
-        if (file.empty() || !octree::is_cache(file)) continue;
-        auto cache = octree::open_cache(file);
+        if (file.empty()) continue;
+        auto input = InputFile::open_shared(file);
+        if (!input || !octree::is_cache(**input)) continue;
+        auto cache = octree::open_cache(std::move(*input));
         if (cache && made_of(**cache, true)) return std::move(*cache);
         log::info("{}: {}; it is not used", file.string(),
                   cache ? "was made from another state of the scan, or with other options" : cache.error().why);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "gi/scene/colour_map.h"
 #include "octree/tree/attributes.h"
 
 namespace lucarne::viewer {
@@ -131,8 +132,8 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
     if (attribute.components != 1) return field;
     if (attribute.name == io::names::classification) {
         const double code = io::scalar_at(attribute.type, at);
-        const auto name = code >= 0 && code <= 255 ? class_name(static_cast<unsigned>(code)) : "";
-        if (!name.empty()) field.value += fmt::format(" {}", name);
+        if (code >= 0 && code <= 255)
+            field.value += fmt::format(" {}", gi::class_name(static_cast<uint8_t>(code)));
     }
     if (attribute.name == io::names::scan && attribute.type == io::ScalarType::u16)
         if (const std::string name = file_name(header.scans, io::load<uint16_t>(at)); !name.empty())
@@ -141,33 +142,6 @@ std::optional<PointField> field_of(const octree::SourceHeader& header, const io:
 }
 
 }  // namespace
-
-std::string_view class_name(unsigned classification) {
-    static constexpr std::array<std::string_view, 23> kNames = {"never classified",
-                                                                "unclassified",
-                                                                "ground",
-                                                                "low vegetation",
-                                                                "medium vegetation",
-                                                                "high vegetation",
-                                                                "building",
-                                                                "low noise",
-                                                                "model key point",
-                                                                "water",
-                                                                "rail",
-                                                                "road surface",
-                                                                "",
-                                                                "wire guard",
-                                                                "wire conductor",
-                                                                "transmission tower",
-                                                                "wire connector",
-                                                                "bridge deck",
-                                                                "high noise",
-                                                                "overhead structure",
-                                                                "ignored ground",
-                                                                "snow",
-                                                                "temporal exclusion"};
-    return classification < kNames.size() ? kNames[classification] : std::string_view();
-}
 
 std::array<std::string, 3> coordinate_texts(const io::Schema& schema, const std::byte* record) {
     std::array<std::string, 3> texts;

@@ -34,7 +34,4 @@ std::array<std::string, 3> coordinate_texts(const io::Schema& schema, const std:
 /// `record` is one of those that source.load(node) gives.
 ExactPoint exact_point(const octree::NodeSource& source, uint32_t node, const std::byte* record);
 
-/// "ground" for 2 (ASPRS LAS 1.4 R15, table 17); empty where the standard gives no name.
-std::string_view class_name(unsigned classification);
-
 }  // namespace lucarne::viewer

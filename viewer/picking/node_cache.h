@@ -1,10 +1,9 @@
 #pragma once
 
-#include <list>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 
+#include "io/core/recently_used.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::viewer {
@@ -23,14 +22,9 @@ class NodeCache {
     Result<std::shared_ptr<const octree::NodeData>> node(uint32_t index);
 
  private:
-    struct Kept {
-        uint32_t node;
-        std::shared_ptr<const octree::NodeData> data;
-    };
     std::shared_ptr<const octree::NodeSource> source_;
     std::mutex mutex_;
-    std::list<Kept> kept_;  ///< the last used first
-    std::unordered_map<uint32_t, std::list<Kept>::iterator> places_;
+    RecentlyUsed<uint32_t, std::shared_ptr<const octree::NodeData>> kept_;
     uint64_t bytes_ = 0;
 };
 

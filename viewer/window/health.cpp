@@ -1,7 +1,9 @@
 #include "viewer/window/health.h"
 
 #include <algorithm>
-#include <cmath>
+#include <span>
+
+#include "io/core/quantile.h"
 
 namespace lucarne::viewer {
 
@@ -10,13 +12,8 @@ void FrameTimes::add(double seconds) {
 }
 
 double FrameTimes::quantile(double share) const {
-    const size_t count = std::min(frames_, kKept);
-    if (count == 0) return 0;
-    std::array<double, kKept> sorted = last_;
-    const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(count)));
-    const auto nth = sorted.begin() + static_cast<ptrdiff_t>(std::clamp<size_t>(rank, 1, count) - 1);
-    std::nth_element(sorted.begin(), nth, sorted.begin() + static_cast<ptrdiff_t>(count));
-    return *nth;
+    std::array<double, kKept> times = last_;
+    return nearest_rank(std::span(times).first(std::min(frames_, kKept)), share);
 }
 
 bool RecoveryTries::take(Clock::time_point now) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "io/files/user_folder.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
 
@@ -117,14 +118,8 @@ void Settings::opened(const std::string& path) {
 }
 
 fs::path config_folder() {
-    const auto folder = [](const char* variable) {
-        const char* value = std::getenv(variable);
-        return value && *value == '/' ? fs::path(value) : fs::path();  // relative ones do not count (XDG 0.8)
-    };
-    if (const fs::path own = folder("LUCARNE_CONFIG"); !own.empty()) return own;
-    if (const fs::path given = folder("XDG_CONFIG_HOME"); !given.empty()) return given / "lucarne";
-    if (const fs::path home = folder("HOME"); !home.empty()) return home / ".config" / "lucarne";
-    return {};
+    if (const fs::path own = absolute_folder("LUCARNE_CONFIG"); !own.empty()) return own;
+    return user_folder("XDG_CONFIG_HOME", ".config");
 }
 
 std::string put_aside(const fs::path& file, const Error& reason) {

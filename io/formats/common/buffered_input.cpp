@@ -9,7 +9,7 @@
 
 namespace lucarne::io {
 
-BufferedInput::BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end,
+BufferedInput::BufferedInput(std::shared_ptr<const ByteSource> file, uint64_t offset, uint64_t end,
                              uint64_t buffer)
     : file_(std::move(file)), next_(offset), end_(std::max(offset, end)) {
     buffer_.resize(static_cast<size_t>(std::min(buffer, end_ - next_)));

@@ -18,7 +18,7 @@ class BufferedInput {
     static constexpr size_t kLargestPeek = size_t{1} << 20;
 
     /// `buffer`: the bytes it holds; lines and long peeks need all of them.
-    BufferedInput(std::shared_ptr<const InputFile> file, uint64_t offset, uint64_t end,
+    BufferedInput(std::shared_ptr<const ByteSource> file, uint64_t offset, uint64_t end,
                   uint64_t buffer = 2 * kLargestPeek);
 
     /// What is buffered, at least `bytes` (at most half the buffer) unless the range ends before. Valid until
@@ -38,7 +38,7 @@ class BufferedInput {
     std::string path() const { return file_->path().string(); }
 
  private:
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     uint64_t next_, end_;  ///< where the next system call reads; the end of the range
     std::vector<std::byte> buffer_;
     size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed

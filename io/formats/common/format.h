@@ -19,7 +19,7 @@ struct Format {
     /// ".las", lower case: what `create` is chosen by; what a file is that nothing else tells.
     std::string_view extension;
     bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to kHeadBytes)
-    Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const InputFile> file,
+    Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const ByteSource> file,
                                                  const ReadOptions& options);
     /// Null for a format that is only read.
     Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,

@@ -13,7 +13,7 @@ namespace lucarne::io {
 /// file. `indices` ascend. Records near each other are read at once, up to 256 KiB; those further apart each
 /// on its own, so that a file of any size costs no more than its picked points do.
 template <class Take>
-Result<void> for_picked(const InputFile& file, uint64_t begin, size_t length,
+Result<void> for_picked(const ByteSource& file, uint64_t begin, size_t length,
                         std::span<const uint64_t> indices, const Take& take) {
     constexpr uint64_t kNear = 8192, kMost = uint64_t{256} << 10;  // bytes
     std::vector<std::byte> bytes;

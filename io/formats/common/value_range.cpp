@@ -2,16 +2,11 @@
 
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 namespace lucarne::io {
 
-std::optional<Range> stated_range(const nlohmann::json& details) {
-    const auto limits =
-        details.is_object() ? details.value(kIntensityLimits, nlohmann::json()) : nlohmann::json();
-    if (!limits.is_array() || limits.size() != 2 || !limits[0].is_number() || !limits[1].is_number())
-        return std::nullopt;
-    const Range range{limits[0].get<double>(), limits[1].get<double>()};
+std::optional<Range> stated_range(const FormatNotes& notes) {
+    if (!notes.intensity_limits) return std::nullopt;
+    const Range range{notes.intensity_limits->low, notes.intensity_limits->high};
     const double width = range.high - range.low;
     if (!(width > 1e-300) || !std::isfinite(width)) return std::nullopt;
     return range;

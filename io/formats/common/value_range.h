@@ -1,7 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/points.h"
 
 // From where to where intensities go that have no 16 bits of their own.
@@ -10,10 +8,9 @@ namespace lucarne::io {
 struct Range {
     double low = 0, high = 1;  ///< low < high
 };
-inline constexpr const char* kIntensityLimits = "intensity_limits";  ///< in ScanInfo::details: [low, high]
 
 /// What the format of a scan, or its file, says; empty where neither does.
-std::optional<Range> stated_range(const nlohmann::json& details);
+std::optional<Range> stated_range(const FormatNotes& notes);
 
 /// Looks at the values of an attribute of one component.
 class RangeSearch {

@@ -14,18 +14,6 @@ namespace {
 
 constexpr uint64_t kBoxOffset = 179;  ///< in a LAS header: max x, min x, max y, min y, max z, min z
 
-bool begins_as_copc(const InputFile& file) {
-    std::array<std::byte, las::header_bytes(4) + 54> bytes{};
-    if (file.size() < bytes.size() || !file.read_at(0, bytes)) return false;
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const size_t record = las::header_bytes(4);  // the info record comes first, at this place
-    return text.starts_with("LASF") && load<uint8_t>(&bytes[25]) == 4 &&
-           load<uint16_t>(&bytes[94]) == record &&
-           text.substr(record + 2, kUser.size() + 1) == std::string_view("copc\0", 5) &&
-           load<uint16_t>(&bytes[record + 18]) == kInfoRecord &&
-           load<uint16_t>(&bytes[record + 20]) >= kInfoBytes;
-}
-
 Result<Info> read_info(const std::string& file, const las::Header& header) {
     const las::Vlr* record = header.find(kUser, kInfoRecord);
     if (!record || record->data.size() < kInfoBytes) return rejected(file, "has no COPC info record");
@@ -59,9 +47,16 @@ std::vector<std::byte> Info::bytes() const {
     return data;
 }
 
-bool is_copc(const std::filesystem::path& path) {
-    const auto file = InputFile::open(path);
-    return file && begins_as_copc(*file);
+bool is_copc(const ByteSource& file) {
+    std::array<std::byte, las::header_bytes(4) + 54> bytes{};
+    if (file.size() < bytes.size() || !file.read_at(0, bytes)) return false;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const size_t record = las::header_bytes(4);  // the info record comes first, at this place
+    return text.starts_with("LASF") && load<uint8_t>(&bytes[25]) == 4 &&
+           load<uint16_t>(&bytes[94]) == record &&
+           text.substr(record + 2, kUser.size() + 1) == std::string_view("copc\0", 5) &&
+           load<uint16_t>(&bytes[record + 18]) == kInfoRecord &&
+           load<uint16_t>(&bytes[record + 20]) >= kInfoBytes;
 }
 
 bool is_name(const std::filesystem::path& path) {
@@ -71,11 +66,9 @@ bool is_name(const std::filesystem::path& path) {
     return name.ends_with(".copc.laz");
 }
 
-Result<File> File::open(const std::filesystem::path& path, std::shared_ptr<HandlePool> handles) {
-    LUCARNE_ASSIGN(auto opened, InputFile::open(path, std::move(handles)));
-    const auto input = std::make_shared<const InputFile>(std::move(opened));
-    const std::string name = path.string();
-    if (!begins_as_copc(*input)) return rejected(name, "is no COPC file");
+Result<File> File::open(std::shared_ptr<const ByteSource> input) {
+    const std::string name = input->path().string();
+    if (!is_copc(*input)) return rejected(name, "is no COPC file");
     File file;
     LUCARNE_ASSIGN(auto header, las::read_header(*input));
     LUCARNE_ASSIGN(file.info_, read_info(name, header));

@@ -40,8 +40,8 @@ struct Node {
     laz::ChunkPlace chunk;  ///< of no points: none
 };
 
-/// Whether the file begins as COPC must; false for anything else, unreadable files included.
-bool is_copc(const std::filesystem::path& path);
+/// Whether the file begins as COPC must; false where it cannot be read.
+bool is_copc(const ByteSource& file);
 
 /// Whether a file of this name is to be COPC: it ends in .copc.laz.
 bool is_name(const std::filesystem::path& path);
@@ -53,7 +53,7 @@ class File {
     /// the file and must not overlap, so cycles end there. Errors: pages or chunks that do, keys outside the
     /// root cube, more points than their bytes can hold, nodes over kMostNodeBytes, another sum of points
     /// than the header's, and what makes it no LAZ that can be read.
-    static Result<File> open(const std::filesystem::path& path, std::shared_ptr<HandlePool> handles);
+    static Result<File> open(std::shared_ptr<const ByteSource> input);
 
     const Info& info() const { return info_; }
     const PointSource& scan() const { return *scan_; }      ///< the same points as LAZ

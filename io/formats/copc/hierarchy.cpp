@@ -11,13 +11,13 @@ namespace {
 constexpr uint64_t kBlockBytes = kEntryBytes << 15;  ///< of a page, read at a time
 constexpr int32_t kPage = -1;                        ///< as a number of points: the entry is another page's
 
-auto refused(const InputFile& file, const std::string& why) {
+auto refused(const ByteSource& file, const std::string& why) {
     return rejected(file.path().string(), why, "convert it, which reads it as the LAZ that it is");
 }
 
 class HierarchyReader {
  public:
-    HierarchyReader(const InputFile& file, const las::Header& header) : file_(file), header_(header) {}
+    HierarchyReader(const ByteSource& file, const las::Header& header) : file_(file), header_(header) {}
 
     Result<std::vector<Node>> read(const Info& info) {
         LUCARNE_TRY(add_page(info.page_offset, info.page_bytes));
@@ -111,7 +111,7 @@ class HierarchyReader {
         return {};
     }
 
-    const InputFile& file_;
+    const ByteSource& file_;
     const las::Header& header_;
     std::vector<Page> pages_;
     std::map<uint64_t, uint64_t> ends_;  ///< of the pages, and their begins
@@ -120,7 +120,7 @@ class HierarchyReader {
 
 }  // namespace
 
-Result<std::vector<Node>> read_hierarchy(const InputFile& file, const las::Header& header, const Info& info) {
+Result<std::vector<Node>> read_hierarchy(const ByteSource& file, const las::Header& header, const Info& info) {
     return HierarchyReader(file, header).read(info);
 }
 

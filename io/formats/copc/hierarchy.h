@@ -5,6 +5,6 @@
 namespace lucarne::io::copc {
 
 /// All nodes of a file, the root page's first. Errors: see File::open.
-Result<std::vector<Node>> read_hierarchy(const InputFile& file, const las::Header& header, const Info& info);
+Result<std::vector<Node>> read_hierarchy(const ByteSource& file, const las::Header& header, const Info& info);
 
 }  // namespace lucarne::io::copc

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
 #include "io/formats/common/format.h"
@@ -206,26 +205,23 @@ Image parse_image(pugi::xml_node node) {
     return image;
 }
 
-nlohmann::json describe(const Scan& scan) {
-    nlohmann::json fields = nlohmann::json::array();
-    for (const Field& field : scan.fields) fields.push_back(field.name);
-    nlohmann::json json = {
-        {"name", scan.name}, {"guid", scan.guid}, {"points", scan.records}, {"fields", std::move(fields)}};
+E57Notes::Scan notes_of(const Scan& scan) {
+    E57Notes::Scan notes{scan.name, scan.guid, scan.records};
+    for (const Field& field : scan.fields) notes.fields.push_back(field.name);
     if (scan.pose) {
-        const auto& p = *scan.pose;
-        json["position"] = {p.translation.x, p.translation.y, p.translation.z};
-        json["rotation"] = nlohmann::json::array();  // row by row
+        const auto& r = scan.pose->rotation;
+        notes.position = scan.pose->translation;
+        notes.rotation.emplace();
         for (int row = 0; row < 3; ++row)
-            json["rotation"].push_back({p.rotation[0][row], p.rotation[1][row], p.rotation[2][row]});
+            (*notes.rotation)[static_cast<size_t>(row)] = {r[0][row], r[1][row], r[2][row]};
     }
-    if (scan.intensity_limits) json["intensity_limits"] = *scan.intensity_limits;
-    if (scan.color_maximum) json["color_maximum"] = *scan.color_maximum;
+    notes.intensity_limits = scan.intensity_limits;
+    notes.color_maximum = scan.color_maximum;
     if (scan.bounds) {
-        const auto& [low, high] = *scan.bounds;
-        json["stated_min"] = {low.x, low.y, low.z};
-        json["stated_max"] = {high.x, high.y, high.z};
+        notes.stated_min = scan.bounds->front();
+        notes.stated_max = scan.bounds->back();
     }
-    return json;
+    return notes;
 }
 
 }  // namespace
@@ -283,25 +279,13 @@ Result<Document> parse_document(const std::string& file, std::string& xml) {
     return document;
 }
 
-nlohmann::json to_details(const Document& document) {
-    nlohmann::json scans = nlohmann::json::array(), images = nlohmann::json::array();
+E57Notes notes_of(const Document& document) {
+    E57Notes notes{document.guid, document.library, document.coordinate_system, {}, {}, document.images.size()};
     for (size_t i = 0; i < std::min(document.scans.size(), kMostListed); ++i)
-        scans.push_back(describe(document.scans[i]));
-    for (size_t i = 0; i < std::min(document.images.size(), kMostListed); ++i) {
-        const Image& image = document.images[i];
-        images.push_back({{"name", image.name},
-                          {"representation", image.representation},
-                          {"encoding", image.encoding},
-                          {"bytes", image.bytes},
-                          {"width", image.width},
-                          {"height", image.height}});
-    }
-    return {{"guid", document.guid},
-            {"library", document.library},
-            {"coordinate_system", document.coordinate_system},
-            {"scans", std::move(scans)},
-            {"images", std::move(images)},
-            {"image_count", document.images.size()}};
+        notes.scans.push_back(notes_of(document.scans[i]));
+    for (size_t i = 0; i < std::min(document.images.size(), kMostListed); ++i)
+        notes.images.push_back(document.images[i]);
+    return notes;
 }
 
 }  // namespace lucarne::io::e57

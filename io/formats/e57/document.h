@@ -9,9 +9,9 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include "io/core/error.h"
+#include "io/notes.h"
 
 // What the XML section of an E57 file says (ASTM E2807-11, 8), as far as points need it.
 namespace lucarne::io::e57 {
@@ -56,10 +56,7 @@ struct Scan {
     std::optional<std::array<size_t, 3>> find(const std::array<std::string_view, 3>& names) const;
 };
 
-struct Image {
-    std::string name, representation, encoding;  ///< "spherical", "jpeg"
-    uint64_t bytes = 0, width = 0, height = 0;
-};
+using Image = E57Notes::Image;
 
 struct Document {
     std::string guid, library, coordinate_system;
@@ -71,9 +68,8 @@ struct Document {
 /// elements that are missing or contradict themselves.
 Result<Document> parse_document(const std::string& file, std::string& xml);
 
-/// For ScanInfo::details: the scans with their fields, poses and limits, and the images; the first
-/// kMostListed.
-nlohmann::json to_details(const Document& document);
+/// The scans with their fields, poses and limits, and the images; the first kMostListed of each.
+E57Notes notes_of(const Document& document);
 
 inline constexpr uint64_t kMostXmlBytes = uint64_t{32} << 20;
 inline constexpr size_t kMostTags = size_t{1} << 21;  ///< bounds the tree, 64 bytes a node

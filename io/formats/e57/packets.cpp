@@ -25,7 +25,7 @@ uint64_t record_bits(const Scan& scan) {
         [](uint64_t sum, const Field& f) { return sum + (f.kind == Field::Kind::text ? 0 : f.bits); });
 }
 
-Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
+Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, const FileHeader& header,
                              const Scan& scan, bool salvage) {
     const std::string name = file->path().string();
     const auto wrong = [&](const std::string& why) {
@@ -73,7 +73,7 @@ void unpack_bits(const std::byte* bytes, uint64_t first, unsigned bits, size_t c
     }
 }
 
-RecordReader::RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section,
+RecordReader::RecordReader(const std::shared_ptr<const ByteSource>& file, const Section& section,
                            const Scan& scan, bool salvage)
     : input_(file, section.data, section.end, salvage),
       left_(scan.records),

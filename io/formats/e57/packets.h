@@ -16,7 +16,7 @@ struct Section {
 /// Reads and checks the header of a scan's section. Errors: no such section, one that reaches beyond the
 /// file, more records than its bits can hold (kMostConstant where they take none). With `salvage` what lies
 /// beyond the file is left out.
-Result<Section> read_section(const std::shared_ptr<const InputFile>& file, const FileHeader& header,
+Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, const FileHeader& header,
                              const Scan& scan, bool salvage = false);
 
 /// What one record takes; 0 where all fields are constants.
@@ -28,7 +28,7 @@ inline constexpr size_t kBlockRecords = 1024;
 /// streams runs ahead of others, at most kMostAhead bytes.
 class RecordReader {
  public:
-    RecordReader(const std::shared_ptr<const InputFile>& file, const Section& section, const Scan& scan,
+    RecordReader(const std::shared_ptr<const ByteSource>& file, const Section& section, const Scan& scan,
                  bool salvage = false);
 
     /// Reads up to min(most, kBlockRecords) records; 0 at the end of the scan. Errors: damaged packets, and

@@ -17,7 +17,7 @@ constexpr uint64_t kPagesAtOnce = 256;
 
 }  // namespace
 
-Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file, bool salvage) {
+Result<FileHeader> read_file_header(const std::shared_ptr<const ByteSource>& file, bool salvage) {
     const std::string name = file->path().string();
     std::array<std::byte, kHeaderBytes> raw{};
     LUCARNE_TRY(file->read_at(0, raw));
@@ -64,7 +64,7 @@ Result<uint64_t> logical_offset(const std::string& file, const FileHeader& heade
     return page * kPageContent + within;
 }
 
-PageInput::PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end, bool salvage)
+PageInput::PageInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end, bool salvage)
     : file_(std::move(file)),
       next_page_(begin / kPageContent),
       end_(end),

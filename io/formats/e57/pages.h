@@ -22,7 +22,7 @@ struct FileHeader {
 
 /// Errors: versions and page sizes other than the standard's, a file shorter than its header says or than its
 /// XML. With `salvage` the file may be shorter than its header says, as long as its XML is there.
-Result<FileHeader> read_file_header(const std::shared_ptr<const InputFile>& file, bool salvage = false);
+Result<FileHeader> read_file_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
 /// The logical offset of `physical`, which names `what` in errors: inside the file, not inside a checksum.
 Result<uint64_t> logical_offset(const std::string& file, const FileHeader& header, uint64_t physical,
@@ -33,7 +33,7 @@ Result<uint64_t> logical_offset(const std::string& file, const FileHeader& heade
 class PageInput {
  public:
     /// With `salvage` the range ends before the first page whose checksum is wrong.
-    PageInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end, bool salvage = false);
+    PageInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end, bool salvage = false);
 
     /// At least `bytes` (at most kLargestPeek); fewer left in the range is an error. Valid until the next
     /// call.
@@ -48,7 +48,7 @@ class PageInput {
  private:
     Result<void> fill();
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     uint64_t next_page_, end_;
     bool salvage_;
     size_t skip_first_;  ///< bytes of the first page that lie before the range

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -16,7 +15,7 @@ namespace {
 
 /// Everything that is read of a file but its points.
 struct E57 {
-    std::shared_ptr<const InputFile> file;
+    std::shared_ptr<const ByteSource> file;
     e57::Document document;
     std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
     e57::Layout layout;
@@ -106,20 +105,19 @@ class E57Source final : public PointSource {
                 info_.stations.push_back(
                     {e57_.layout.scans[i].station, scan.pose ? scan.pose->translation : glm::dvec3(0.0)});
         }
-        nlohmann::json details = e57::to_details(document);
-        details["color_bits"] = info_.color_bits;
-        if (const auto limits = intensity_limits()) details[kIntensityLimits] = *limits;
-        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        info_.notes.e57 = e57::notes_of(document);
+        info_.notes.color_bits = info_.color_bits;
+        info_.notes.intensity_limits = intensity_limits();
     }
 
     /// That hold for the intensities of all scans.
-    std::optional<std::array<double, 2>> intensity_limits() const {
-        std::optional<std::array<double, 2>> all;
+    std::optional<IntensityLimits> intensity_limits() const {
+        std::optional<IntensityLimits> all;
         for (const e57::Scan& scan : e57_.document.scans) {
             if (scan.records == 0 || !scan.find(names::intensity)) continue;
             if (!scan.intensity_limits) return std::nullopt;
             const auto [low, high] = *scan.intensity_limits;
-            all = all ? std::array{std::min((*all)[0], low), std::max((*all)[1], high)} : std::array{low, high};
+            all = all ? IntensityLimits{std::min(all->low, low), std::max(all->high, high)} : IntensityLimits{low, high};
         }
         return all;
     }
@@ -132,7 +130,7 @@ class E57Source final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::string> read_xml(const std::shared_ptr<const InputFile>& file, const e57::FileHeader& header) {
+Result<std::string> read_xml(const std::shared_ptr<const ByteSource>& file, const e57::FileHeader& header) {
     if (header.xml_end - header.xml_begin > e57::kMostXmlBytes)
         return rejected(file->path().string(),
                         fmt::format("has an XML section of more than {} MiB", e57::kMostXmlBytes >> 20));
@@ -160,7 +158,7 @@ Result<void> check_apart(const std::string& name, const e57::FileHeader& header,
 
 /// The scan's section. `constant` counts the points of all scans that take no bytes: kMostConstant in a file,
 /// or one a byte of it.
-Result<e57::Section> checked_section(const std::shared_ptr<const InputFile>& file,
+Result<e57::Section> checked_section(const std::shared_ptr<const ByteSource>& file,
                                      const e57::FileHeader& header, const e57::Scan& scan, bool salvage,
                                      uint64_t& constant) {
     LUCARNE_ASSIGN(auto section, e57::read_section(file, header, scan, salvage));
@@ -194,7 +192,7 @@ void warn_of_unit(const std::string& name, const e57::Document& document) {
                   name, *units.horizontal);
 }
 
-Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     const std::string name = file->path().string();
     LUCARNE_ASSIGN(const auto header, e57::read_file_header(file, options.salvage));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "io/formats/common/format.h"
@@ -18,18 +17,11 @@ int32_t clamped(double value) {
 
 }  // namespace
 
-std::optional<std::array<glm::dvec3, 2>> stated_box(const std::filesystem::path& path) {
-    constexpr size_t kBox = 179;  // in the header: max x, min x, max y, min y, max z, min z
-    const auto file = InputFile::open(path);
-    std::array<std::byte, kBox + 48> header{};
-    if (!file || !file->read_at(0, header) || std::memcmp(header.data(), "LASF", 4) != 0) return std::nullopt;
-    std::array<glm::dvec3, 2> box{};
-    for (int axis = 0; axis < 3; ++axis) {
-        box[1][axis] = load<double>(&header[kBox + 16 * static_cast<size_t>(axis)]);
-        box[0][axis] = load<double>(&header[kBox + 16 * static_cast<size_t>(axis) + 8]);
-        if (!usable(box[0][axis]) || !usable(box[1][axis]) || box[0][axis] > box[1][axis]) return std::nullopt;
-    }
-    return box;
+std::optional<std::array<glm::dvec3, 2>> stated_box(const Header& header) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!usable(header.low[axis]) || !usable(header.high[axis]) || header.low[axis] > header.high[axis])
+            return std::nullopt;
+    return std::array{header.low, header.high};
 }
 
 StatedBounds::StatedBounds(const Header& header) {

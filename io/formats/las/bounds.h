@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -11,9 +10,8 @@
 
 namespace lucarne::io::las {
 
-/// The box that the header of a LAS, LAZ or COPC file states, true or not: the least, the largest. None where the file is
-/// none of these, or what it states is no box.
-std::optional<std::array<glm::dvec3, 2>> stated_box(const std::filesystem::path& path);
+/// The box that a header states, true or not: the least, the largest. None where what it states is no box.
+std::optional<std::array<glm::dvec3, 2>> stated_box(const Header& header);
 
 /// Tells points that cannot be from those of a scan: they lie farther outside the box that the header states than that
 /// is long. Small lies about the box are common, bytes that were never written or decoded amiss are seldom near.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/crs/registry.h"
@@ -155,19 +154,14 @@ CoordinateSystem coordinate_system(const Header& header) {
     return system;
 }
 
-std::vector<Vlr> projection_records(const nlohmann::json& details) {
-    if (!details.is_object()) return {};
-    const bool merged = details.contains("projection");
-    if (merged || details.value("format", nlohmann::json()) == "las") {
-        auto records =
-            records_from_json(details.value(merged ? "projection" : "records", nlohmann::json::array()));
-        if (!records) return {};
-        std::erase_if(*records, [](const Vlr& v) { return v.user_id != kProjectionUser; });
-        return std::move(*records);
+std::vector<Vlr> projection_records(const FormatNotes& notes) {
+    if (notes.projection || notes.las) {
+        auto records = notes.projection ? *notes.projection : notes.las->vlrs;
+        std::erase_if(records, [](const Vlr& v) { return v.user_id != kProjectionUser; });
+        return records;
     }
-    const auto text = details.value("coordinate_system", nlohmann::json());
-    if (!text.is_string() || wkt_system(text.get<std::string>()).name.empty()) return {};
-    return {wkt_record(text.get<std::string>())};
+    if (!notes.e57 || wkt_system(notes.e57->coordinate_system).name.empty()) return {};
+    return {wkt_record(notes.e57->coordinate_system)};
 }
 
 void set_projection(Header& header, std::vector<Vlr> records) {

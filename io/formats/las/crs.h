@@ -3,8 +3,6 @@
 #include <optional>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/formats/las/header.h"
 #include "io/formats/crs/wkt.h"
 
@@ -31,9 +29,9 @@ inline constexpr const char* kLocalSystem = "local";
 /// their citations 3073, 1026, 2049.
 CoordinateSystem coordinate_system(const Header& header);
 
-/// The records of the coordinate system that a scan's details have: a LAS file's own, those of merged_info, or the
+/// The records of the coordinate system in the notes of a scan: a LAS file's own, those of merged_info, or the
 /// well-known text of an E57. Empty where they have none.
-std::vector<Vlr> projection_records(const nlohmann::json& details);
+std::vector<Vlr> projection_records(const FormatNotes& notes);
 
 /// Gives the header these records instead of its own.
 void set_projection(Header& header, std::vector<Vlr> records);

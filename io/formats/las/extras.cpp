@@ -6,7 +6,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/format.h"
 #include "io/formats/common/text.h"
@@ -223,15 +222,12 @@ std::vector<Attribute> extra_attributes(const Header& header, const Schema& sche
     return extra;
 }
 
-std::optional<Vlr> extras_record(const nlohmann::json& details) {
-    if (!details.is_object()) return std::nullopt;
-    const bool merged = details.contains("extras");
-    if (!merged && details.value("format", nlohmann::json()) != "las") return std::nullopt;
-    auto records = records_from_json(details.value(merged ? "extras" : "records", nlohmann::json::array()));
-    if (!records) return std::nullopt;
-    const auto found = std::find_if(records->begin(), records->end(),
+std::optional<Vlr> extras_record(const FormatNotes& notes) {
+    if (!notes.extras && !notes.las) return std::nullopt;
+    const std::vector<Vlr>& records = notes.extras ? *notes.extras : notes.las->vlrs;
+    const auto found = std::find_if(records.begin(), records.end(),
                                     [](const Vlr& v) { return v.is(kSpecUser, kExtraBytesRecord); });
-    return found == records->end() ? std::nullopt : std::optional(std::move(*found));
+    return found == records.end() ? std::nullopt : std::optional(*found);
 }
 
 std::vector<std::string> add_entries(Vlr& record, const Vlr& more) {
@@ -253,11 +249,10 @@ std::vector<std::string> add_entries(Vlr& record, const Vlr& more) {
 }
 
 std::string scaled_extras(const ScanInfo& info, const Schema& schema) {
-    const auto details = nlohmann::json::parse(info.details, nullptr, false);
-    const auto record = extras_record(details);
+    const auto record = extras_record(info.notes);
     if (!record) return {};
-    const auto header = from_details(info.path, details);
-    const Schema fields = header ? fields_of(*header) : Schema{};
+    Schema fields;
+    if (info.notes.las && info.notes.las_damage.empty()) fields = fields_of(Header{*info.notes.las});
     std::string text;
     for (const Attribute& a : schema.attributes) {
         auto entry = kept_entry(&*record, a, a.name);

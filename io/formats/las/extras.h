@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/formats/las/layout.h"
 
 // What a point format has no field for, or none of its type: the extra bytes of a record, and what they are
@@ -31,8 +29,8 @@ Schema fields_of(const Header& header);
 /// The attributes of `schema` that go to extra bytes, in record order; bytes that nobody described come last.
 std::vector<Attribute> extra_attributes(const Header& header, const Schema& schema);
 
-/// The record of extra bytes that a scan's details have: a LAS file's own, or that of merged_info.
-std::optional<Vlr> extras_record(const nlohmann::json& details);
+/// The record of extra bytes in the notes of a scan: a LAS file's own, or that of merged_info.
+std::optional<Vlr> extras_record(const FormatNotes& notes);
 
 /// Adds what another file's record describes to `record`, unless that does already. Gives the names of those
 /// whose numbers mean another thing there (by scale or offset): they have neither then.

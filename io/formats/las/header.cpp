@@ -31,7 +31,7 @@ std::string text_field(const std::byte* at, size_t width) {
 /// Reads records of one kind from [at, end). Stops with a warning at the first that does not fit.
 class RecordReader {
  public:
-    RecordReader(const InputFile& file, Header& header)
+    RecordReader(const ByteSource& file, Header& header)
         : file_(file), out_(header.vlrs), losses_(header.losses) {}
 
     Result<void> read(bool extended, uint32_t count, uint64_t at, uint64_t end) {
@@ -78,7 +78,7 @@ class RecordReader {
         return {};
     }
 
-    const InputFile& file_;
+    const ByteSource& file_;
     std::vector<Vlr>& out_;
     Losses& losses_;
     uint64_t kept_ = 0;
@@ -141,7 +141,7 @@ Result<void> check_format(const std::string& name, const Header& h) {
     return {};
 }
 
-Result<void> check_sizes(const InputFile& file, const Header& h, const RawHeader& raw) {
+Result<void> check_sizes(const ByteSource& file, const Header& h, const RawHeader& raw) {
     const std::string name = file.path().string();
     if (raw.header_size < header_bytes(h.minor))
         return rejected(name, fmt::format("has a header of {} bytes, but LAS 1.{} needs {}", raw.header_size,
@@ -155,7 +155,7 @@ Result<void> check_sizes(const InputFile& file, const Header& h, const RawHeader
     return {};
 }
 
-Result<void> check_points(const InputFile& file, Header& h, bool salvage) {
+Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
     const uint64_t bytes = file.size() - h.points_offset;
     if (salvage) {
         const uint64_t most = h.compressed ? bytes * kMostPointsAByte : bytes / h.record_length;
@@ -194,7 +194,7 @@ const Vlr* Header::find(std::string_view user, uint16_t record) const {
     return found == vlrs.end() ? nullptr : &*found;
 }
 
-Result<Header> read_header(const InputFile& file, bool salvage) {
+Result<Header> read_header(const ByteSource& file, bool salvage) {
     const std::string name = file.path().string();
     std::array<std::byte, 375> block{};
     LUCARNE_ASSIGN(const size_t got, file.read_some(0, block));

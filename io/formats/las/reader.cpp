@@ -3,7 +3,6 @@
 #include <atomic>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
@@ -21,7 +20,7 @@ namespace {
 
 class LasReader final : public PointReader {
  public:
-    LasReader(std::shared_ptr<const InputFile> file, const las::Header& header, const Schema& schema)
+    LasReader(std::shared_ptr<const ByteSource> file, const las::Header& header, const Schema& schema)
         : input_(std::move(file), header.points_offset,
                  header.points_offset + header.points * header.record_length),
           header_(header),
@@ -86,7 +85,7 @@ class WatchedReader final : public PointReader {
 
 class LasSource final : public PointSource {
  public:
-    LasSource(std::shared_ptr<const InputFile> file, las::Header header)
+    LasSource(std::shared_ptr<const ByteSource> file, las::Header header)
         : file_(std::move(file)), header_(std::move(header)), bounds_(header_), schema_(las::make_schema(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
@@ -114,6 +113,7 @@ class LasSource final : public PointSource {
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
         info_.losses = header_.losses;
+        info_.stated_box = las::stated_box(header_);
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
@@ -121,11 +121,10 @@ class LasSource final : public PointSource {
         if (color && color->type == ScalarType::u16 && color->components == 3) {  // extra bytes may have that name
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
-        las::Header kept = header_;
-        kept.record_length = static_cast<uint16_t>(kept.record_length - kept.wave_bytes);
-        nlohmann::json details = las::to_details(kept);
-        details["color_bits"] = info_.color_bits;
-        info_.details = details.dump();
+        LasNotes kept = header_;
+        kept.record_length = static_cast<uint16_t>(kept.record_length - header_.wave_bytes);
+        info_.notes.las = std::move(kept);
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 
@@ -223,7 +222,7 @@ class LasSource final : public PointSource {
         return 8u;
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     las::Header header_;
     las::StatedBounds bounds_;
     std::optional<laz::Points> compressed_;
@@ -232,7 +231,7 @@ class LasSource final : public PointSource {
     mutable std::atomic<bool> warned_ = false;
 };
 
-Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, las::read_header(*file, options.salvage));
     auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
     LUCARNE_TRY(source->describe(options));

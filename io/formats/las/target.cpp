@@ -5,7 +5,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
@@ -68,10 +67,10 @@ const Attribute* wide_intensity(const Schema& schema, const std::vector<Attribut
 /// Positions that are not integers yet get what the options know, else the decimals that they have.
 /// Intensities are spread from the limits that their format has, else from what they are; whole numbers that
 /// fit stay.
-Result<Survey> survey_of(const Schema& schema, const nlohmann::json& details, const Attribute* intensity,
+Result<Survey> survey_of(const Schema& schema, const FormatNotes& notes, const Attribute* intensity,
                          const WriteOptions& options) {
     Survey survey{{schema.scale, schema.offset}, {}};
-    if (intensity) survey.intensity = stated_range(details);
+    if (intensity) survey.intensity = stated_range(notes);
     const bool floats = schema.position != PositionType::i32_scaled;
     if (floats) survey.lattice = options.lattice.value_or(Lattice{glm::dvec3(1e-4), glm::dvec3(0.0)});
     std::optional<DecimalSearch> search;
@@ -105,13 +104,11 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
 }
 
 /// The coordinate system of what is no LAS, or of several scans, and the extra bytes of these.
-void state_merged(const std::string& path, Header& header, const nlohmann::json& details, bool from_las) {
-    for (const char* key : {kSystemNote, kExtrasNote})
-        if (const auto note = details.value(key, nlohmann::json()); note.is_string())
-            log::warn("{}: {}", path, note.get<std::string>());
-    if (const auto extras = extras_record(details))
-        record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
-    if (!from_las || details.contains("projection")) set_projection(header, projection_records(details));
+void state_merged(const std::string& path, Header& header, const FormatNotes& notes) {
+    for (const std::string& note : {notes.system_note, notes.extras_note})
+        if (!note.empty()) log::warn("{}: {}", path, note);
+    if (const auto extras = extras_record(notes)) record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
+    if (!notes.las || notes.projection) set_projection(header, projection_records(notes));
 }
 
 /// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
@@ -227,12 +224,11 @@ bool Converter::convert(const std::byte* in, size_t count, std::byte* out) {
 
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
                            const WriteOptions& options, Container container) {
-    const auto details = nlohmann::json::parse(info.details, nullptr, false);
-    const bool from_las = details.is_object() && details.value("format", nlohmann::json()) == "las";
+    const bool from_las = info.notes.las.has_value();
     Target target;
     Header& header = target.header;
     if (from_las) {
-        LUCARNE_ASSIGN(header, from_details(path, details));
+        LUCARNE_ASSIGN(header, header_of(path, info.notes));
     } else {
         header.software = "Lucarne";
     }
@@ -241,13 +237,13 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     choose_format(header, schema, from_las, container);
     if (options.expected_points > std::numeric_limits<uint32_t>::max()) header.minor = 4;
     add_stations(header, info.stations);
-    if (details.is_object()) state_merged(path, header, details, from_las);
+    state_merged(path, header, info.notes);
     state_unit(path, header, info.metres_per_unit);
     if (extended_format(header.point_format) && (header.compressed || !was_extended)) prefer_wkt(path, header);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));
-    LUCARNE_ASSIGN(const Survey survey, survey_of(schema, details, wide_intensity(schema, extra), options));
+    LUCARNE_ASSIGN(const Survey survey, survey_of(schema, info.notes, wide_intensity(schema, extra), options));
     header.scale = survey.lattice.scale;
     header.offset = survey.lattice.offset;
     target.schema = make_schema(header);

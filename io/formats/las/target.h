@@ -44,7 +44,7 @@ struct Target {
     Converter converter;
 };
 
-/// The header kept in `info.details` where the source was LAS, else the smallest point format that has a
+/// The header kept in `info.notes` where the source was LAS, else the smallest point format that has a
 /// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
 /// bytes (where it does not fit, the field gets what comes near: las_extras.h). Positions that are not
 /// integers yet get the lattice of `options`, else the decimals that its preview shows, else the finest its

@@ -8,7 +8,6 @@
 #include <span>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
@@ -31,7 +30,7 @@ bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
 
 class ObjParser {
  public:
-    ObjParser(const std::shared_ptr<const InputFile>& file, bool salvage)
+    ObjParser(const std::shared_ptr<const ByteSource>& file, bool salvage)
         : name_(file->path().string()),
           salvage_(salvage),
           input_(file, 0, file->size()),
@@ -285,7 +284,7 @@ class ObjParser {
     uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
-Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     ObjParser parser(file, options.salvage);
     LUCARNE_TRY(parser.parse());
@@ -296,24 +295,22 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const InputFile> f
     info.modified = file->modified();
     set_unit(info, options, std::nullopt);
     info.losses = parser.losses();
-    nlohmann::json details;
-    if (parser.other() > 0) {
-        details["mesh"]["left_out_lines_points_curves"] = parser.other();
+    MeshNotes& notes = info.notes.mesh.emplace();
+    notes.faces = parser.faces();
+    notes.other_statements = parser.other();
+    notes.missing_corners = parser.missing();
+    if (parser.other() > 0)
         log::warn("{}: {} lines, points, curves and calls are left out", info.path, parser.other());
-    }
-    if (parser.missing() > 0) {
-        details["mesh"]["coordinates_and_normals_not_there"] = parser.missing();
+    if (parser.missing() > 0)
         log::warn("{}: corners name {} texture coordinates or normals that are not there, they have none",
                   info.path, parser.missing());
-    }
-    if (parser.faces() > 0) details["mesh"]["faces"] = parser.faces();
     mesh.finish();
     if (parser.faces() > 0 && mesh.triangles.empty() && !options.quiet)
         log::warn("{}: has no whole face with an area; its vertices are read", info.path);
     const bool vertices = options.mesh.vertices || mesh.triangles.empty();
     info.format = fmt::format("OBJ, {}", vertices ? "vertices" : "mesh");
-    if (vertices) return vertices_only(std::move(mesh), std::move(info), std::move(details));
-    return sampled(std::move(mesh), std::move(info), std::move(details), parser.state(), options);
+    if (vertices) return vertices_only(std::move(mesh), std::move(info));
+    return sampled(std::move(mesh), std::move(info), parser.state(), options);
 }
 
 /// Text whose first statement is one of OBJ's, and no header of rows ("v x y z").

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -162,22 +161,26 @@ Schema sample_schema(const Mesh& mesh) {
     return schema;
 }
 
-void describe(const Mesh& mesh, nlohmann::json& of_mesh) {
-    of_mesh["vertices"] = mesh.positions.size();
-    of_mesh["triangles"] = mesh.triangles.size();
-    of_mesh["textures"] = mesh.textures.size();
-    if (mesh.without_area > 0) of_mesh["left_out_without_area"] = mesh.without_area;
-    if (mesh.not_finite > 0) of_mesh["left_out_not_finite"] = mesh.not_finite;
+/// Completes what the reader of the file has noted.
+MeshNotes& note(const Mesh& mesh, ScanInfo& info) {
+    info.notes.color_bits = info.color_bits = 8;
+    if (!info.notes.mesh) info.notes.mesh.emplace();
+    MeshNotes& notes = *info.notes.mesh;
+    notes.vertices = mesh.positions.size();
+    notes.triangles = mesh.triangles.size();
+    notes.textures = mesh.textures.size();
+    notes.without_area = mesh.without_area;
+    notes.not_finite = mesh.not_finite;
+    return notes;
 }
 
 }  // namespace
 
 bool is_sampled(const ScanInfo& info) {
-    const auto details = nlohmann::json::parse(info.details, nullptr, false);
-    return details.is_object() && details.contains("mesh") && details["mesh"].contains("spacing_m");
+    return info.notes.mesh && info.notes.mesh->samples;
 }
 
-Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann::json details, uint64_t state,
+Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t state,
                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(const double spacing, spacing_of(mesh, info, options));
     if (mesh.not_finite > 0)
@@ -194,14 +197,7 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann:
             "{}: a mesh of {:.6g} m2, sampled every {:.3g} m: about {}; --spacing or --mesh-points can say "
             "otherwise",
             info.path, mesh.area() * metres * metres, spacing * metres, counted(info.declared_points, "points"));
-    describe(mesh, details["mesh"]);
-    details["mesh"]["area_m2"] = mesh.area() * metres * metres;
-    details["mesh"]["spacing_m"] = spacing * metres;
-    details["mesh"]["samples"] = info.declared_points;
-    details["mesh"]["min"] = {mesh.low.x, mesh.low.y, mesh.low.z};
-    details["mesh"]["max"] = {mesh.high.x, mesh.high.y, mesh.high.z};
-    details["color_bits"] = info.color_bits = 8;
-    info.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    note(mesh, info).samples = {mesh.area() * metres * metres, spacing * metres, info.declared_points, mesh.low, mesh.high};
     // A cache of these samples is another one as soon as any of this differs.
     info.modified = static_cast<int64_t>(
         mix64(mix64(static_cast<uint64_t>(info.modified), std::bit_cast<uint64_t>(spacing)), state));
@@ -209,13 +205,11 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, nlohmann:
     return std::make_unique<MeshSource>(std::move(mesh), std::move(schema), std::move(info), spacing);
 }
 
-Result<std::unique_ptr<PointSource>> vertices_only(Mesh mesh, ScanInfo info, nlohmann::json details) {
+Result<std::unique_ptr<PointSource>> vertices_only(Mesh mesh, ScanInfo info) {
     Schema schema;
     if (!mesh.colors.empty()) schema.add(std::string(names::color), ScalarType::u8, 3);
     info.declared_points = mesh.positions.size();
-    describe(mesh, details["mesh"]);
-    details["color_bits"] = info.color_bits = 8;
-    info.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    note(mesh, info);
     return std::make_unique<MeshSource>(std::move(mesh), std::move(schema), std::move(info), 0.0);
 }
 

@@ -31,7 +31,7 @@ std::filesystem::path Companions::place(std::string_view name, const std::filesy
     return from / wanted.filename();
 }
 
-void Companions::count(const InputFile& file) {
+void Companions::count(const ByteSource& file) {
     state_ = mix64(mix64(state_, file.size()), static_cast<uint64_t>(file.modified()));
 }
 

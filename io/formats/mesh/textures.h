@@ -26,7 +26,7 @@ class Companions {
 
  private:
     std::filesystem::path place(std::string_view name, const std::filesystem::path& from) const;
-    void count(const InputFile& file);
+    void count(const ByteSource& file);
 
     Mesh& mesh_;
     std::filesystem::path folder_;

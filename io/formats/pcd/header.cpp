@@ -52,7 +52,7 @@ std::string upper(std::string_view word) {
 
 class HeaderParser {
  public:
-    explicit HeaderParser(const std::shared_ptr<const InputFile>& file)
+    explicit HeaderParser(const std::shared_ptr<const ByteSource>& file)
         : input_(file, 0, std::min(file->size(), kMostHeader)) {}
 
     Result<Header> parse() {
@@ -186,7 +186,7 @@ uint64_t Header::record_bytes() const {
     return bytes;
 }
 
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file) {
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file) {
     return HeaderParser(file).parse();
 }
 

@@ -33,6 +33,6 @@ struct Header {
 };
 
 /// Rejects a header that is malformed, larger than 1 MiB, without x, y and z, or that contradicts itself.
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file);
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file);
 
 }  // namespace lucarne::io::pcd

@@ -8,7 +8,7 @@ constexpr size_t kWindow = 8192;                  ///< the largest distance
 constexpr uint64_t kBuffer = uint64_t{64} << 10;  ///< many passes stand side by side
 }  // namespace
 
-LzfInput::LzfInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end)
+LzfInput::LzfInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end)
     : file_(file), end_(end), input_(std::move(file), begin, end, kBuffer) {
     at_.position = begin;
 }

@@ -17,7 +17,7 @@ namespace lucarne::io::pcd {
 class LzfInput {
  public:
     /// The stream is [begin, end) of the file.
-    LzfInput(std::shared_ptr<const InputFile> file, uint64_t begin, uint64_t end);
+    LzfInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end);
 
     /// Where a pass stands.
     struct State {
@@ -35,7 +35,7 @@ class LzfInput {
  private:
     Result<void> next_run();
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     uint64_t end_;
     BufferedInput input_;
     State at_;

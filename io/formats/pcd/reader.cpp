@@ -3,7 +3,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -22,7 +21,7 @@ using namespace pcd;
 /// Binary records, one behind the other.
 class BinaryReader final : public PointReader {
  public:
-    BinaryReader(std::shared_ptr<const InputFile> file, const Header& header, const ply::Layout& layout)
+    BinaryReader(std::shared_ptr<const ByteSource> file, const Header& header, const ply::Layout& layout)
         : input_(file, header.data_offset, file->size()), layout_(layout), left_(header.points) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
@@ -65,7 +64,7 @@ struct Compressed {
 /// Compressed fields, decoded side by side.
 class CompressedReader final : public PointReader {
  public:
-    CompressedReader(const std::shared_ptr<const InputFile>& file, const Header& header,
+    CompressedReader(const std::shared_ptr<const ByteSource>& file, const Header& header,
                      const ply::Layout& layout, const Compressed& compressed)
         : header_(header), layout_(layout), left_(header.points) {
         for (const auto& state : compressed.fields) {
@@ -123,7 +122,7 @@ class CompressedReader final : public PointReader {
 
 class PcdSource final : public PointSource {
  public:
-    PcdSource(std::shared_ptr<const InputFile> file, Header header, bool salvage)
+    PcdSource(std::shared_ptr<const ByteSource> file, Header header, bool salvage)
         : file_(std::move(file)), header_(std::move(header)), salvage_(salvage), layout_(pcd::make_layout(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
@@ -151,12 +150,8 @@ class PcdSource final : public PointSource {
         // Who writes a cloud without a grid often leaves the viewpoint at its default.
         if (info_.stations.empty() && (organised || viewpoint != glm::dvec3(0.0)))
             info_.stations.push_back({1, viewpoint});
-        info_.details = nlohmann::json{{"format", "pcd"},
-                                       {"color_bits", info_.color_bits},
-                                       {"width", header_.width},
-                                       {"height", header_.height},
-                                       {"viewpoint", header_.viewpoint}}
-                            .dump();
+        info_.notes.pcd = {header_.width, header_.height, header_.viewpoint};
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 
@@ -249,7 +244,7 @@ class PcdSource final : public PointSource {
         return {};
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     Header header_;
     bool salvage_;
     Layout layout_;
@@ -258,7 +253,7 @@ class PcdSource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
     auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);

@@ -5,7 +5,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/counted_writer.h"
 #include "io/formats/pcd/header.h"
@@ -112,15 +111,7 @@ class PcdWriter final : public CountedWriter {
  private:
     /// Of a PCD source, as it was; else the only station.
     static std::string viewpoint_of(const ScanInfo& info) {
-        const auto details = nlohmann::json::parse(info.details, nullptr, false);
-        std::string text;
-        if (details.is_object() && details.contains("viewpoint") && details["viewpoint"].is_array() &&
-            details["viewpoint"].size() == 7) {
-            for (const auto& value : details["viewpoint"])
-                text += fmt::format("{} ", value.is_number() ? value.get<double>() : 0.0);
-            text.pop_back();
-            return text;
-        }
+        if (info.notes.pcd) return fmt::format("{}", fmt::join(info.notes.pcd->viewpoint, " "));
         const glm::dvec3 at = info.stations.size() == 1 ? info.stations[0].position : glm::dvec3(0.0);
         return fmt::format("{} {} {} 1 0 0 0", at.x, at.y, at.z);
     }

@@ -4,7 +4,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -32,7 +31,7 @@ constexpr std::array<TypeWords, 8> kTypes = {{{ScalarType::i8, "char", "int8"},
 
 class HeaderParser {
  public:
-    HeaderParser(const std::shared_ptr<const InputFile>& file, bool salvage)
+    HeaderParser(const std::shared_ptr<const ByteSource>& file, bool salvage)
         : name_(file->path().string()),
           salvage_(salvage),
           size_(file->size()),
@@ -184,7 +183,7 @@ uint64_t Element::record_bytes() const {
     return bytes;
 }
 
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage) {
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage) {
     return HeaderParser(file, salvage).parse();
 }
 
@@ -200,14 +199,11 @@ std::string_view word_of(ScalarType type) {
     return {};
 }
 
-nlohmann::json to_details(const Header& header) {
-    nlohmann::json properties = nlohmann::json::array();
+PlyNotes notes_of(const Header& header) {
+    PlyNotes notes{{}, header.comments, header.infos};
     for (const Property& p : header.vertices().properties)
-        if (!p.count) properties.push_back({{"name", p.name}, {"type", word_of(p.type)}});
-    return {{"format", "ply"},
-            {"properties", properties},
-            {"comments", header.comments},
-            {"obj_info", header.infos}};
+        if (!p.count) notes.properties.push_back({p.name, p.type});
+    return notes;
 }
 
 }  // namespace lucarne::io::ply

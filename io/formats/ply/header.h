@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/files/file.h"
 #include "io/formats/common/remarks.h"
 
@@ -42,13 +40,13 @@ struct Header {
 
 /// Rejects a header that is malformed, larger than 1 MiB, or names no vertex element with x and y; without
 /// `salvage` also one that promises more than the file has bytes.
-Result<Header> read_header(const std::shared_ptr<const InputFile>& file, bool salvage = false);
+Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
 /// "uchar", "uint8"...; empty for unknown words.
 std::optional<ScalarType> type_of(std::string_view word);
 std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
 
-/// `info.details`: the properties and comments, for a later export.
-nlohmann::json to_details(const Header& header);
+/// The properties and comments, for a later export.
+PlyNotes notes_of(const Header& header);
 
 }  // namespace lucarne::io::ply

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
@@ -42,7 +41,7 @@ bool is_face(const Element& element) {
 
 class MeshLoader {
  public:
-    MeshLoader(const std::shared_ptr<const InputFile>& file, const Header& header, double color_white,
+    MeshLoader(const std::shared_ptr<const ByteSource>& file, const Header& header, double color_white,
                bool salvage)
         : file_(file),
           header_(header),
@@ -236,7 +235,7 @@ class MeshLoader {
         }
     }
 
-    const std::shared_ptr<const InputFile>& file_;
+    const std::shared_ptr<const ByteSource>& file_;
     const Header& header_;
     BufferedInput input_;
     mesh::Mesh mesh_;
@@ -257,7 +256,7 @@ bool has_faces(const Header& header) {
     return std::any_of(header.elements.begin(), header.elements.end(), is_face);
 }
 
-Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Header& header, ScanInfo info,
+Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header, ScanInfo info,
                         const ReadOptions& options) {
     MeshLoader loader(file, header, color_white(info.color_bits), options.salvage);
     LUCARNE_TRY(loader.load());
@@ -269,8 +268,8 @@ Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Head
     add_losses(info.losses, loader.vertex_losses());
     add_losses(info.losses, faces.losses);
     info.format += ", mesh";
-    const nlohmann::json details = {{"mesh", {{"faces", loader.faces()}}}};
-    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), details, loader.state(), options));
+    info.notes = {.mesh = MeshNotes{.faces = loader.faces()}};
+    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), loader.state(), options));
     return faces;
 }
 

@@ -16,7 +16,7 @@ struct Faces {
 /// or of vertices (s t, u v, texture_u texture_v), with the pictures that comments name ("TextureFile
 /// a.png"), as MeshLab writes them; normals of vertices. `info` is that of the vertices.
 /// With `options.salvage` the faces that are whole.
-Result<Faces> open_mesh(const std::shared_ptr<const InputFile>& file, const Header& header, ScanInfo info,
+Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Header& header, ScanInfo info,
                         const ReadOptions& options);
 
 }  // namespace lucarne::io::ply

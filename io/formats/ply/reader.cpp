@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
@@ -23,7 +22,7 @@ using namespace ply;
 
 class PlyReader final : public PointReader {
  public:
-    PlyReader(std::shared_ptr<const InputFile> file, const ply::Header& header, const ply::Layout& layout,
+    PlyReader(std::shared_ptr<const ByteSource> file, const ply::Header& header, const ply::Layout& layout,
               uint64_t offset, bool salvage)
         : input_(file, offset, file->size()),
           header_(header),
@@ -119,7 +118,7 @@ class PlyReader final : public PointReader {
 
 class PlySource final : public PointSource {
  public:
-    PlySource(std::shared_ptr<const InputFile> file, ply::Header header, bool salvage, bool faces_known)
+    PlySource(std::shared_ptr<const ByteSource> file, ply::Header header, bool salvage, bool faces_known)
         : file_(std::move(file)),
           header_(std::move(header)),
           salvage_(salvage),
@@ -141,9 +140,8 @@ class PlySource final : public PointSource {
         set_unit(info_, options, remarks.metres_per_unit);
         LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
-        nlohmann::json details = ply::to_details(header_);
-        details["color_bits"] = info_.color_bits;
-        info_.details = details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        info_.notes.ply = ply::notes_of(header_);
+        info_.notes.color_bits = info_.color_bits;
         return {};
     }
 
@@ -279,7 +277,7 @@ class PlySource final : public PointSource {
 
     static constexpr uint64_t kBlocks = 64, kBlockPoints = 256;  ///< of a sample
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     ply::Header header_;
     bool salvage_;
     bool faces_known_;  ///< another reads the mesh, and says what of it is lost
@@ -288,7 +286,7 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const InputFile> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
     LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);

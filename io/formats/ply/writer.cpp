@@ -5,7 +5,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/counted_writer.h"
 #include "io/formats/ply/layout.h"
@@ -20,22 +19,11 @@ struct Output {
     uint32_t offset = 0;
 };
 
-/// The columns that the source had, as `info.details` tells them; none where it was no PLY.
-std::vector<Layout::Column> source_columns(const std::string& details_text) {
-    const auto details = nlohmann::json::parse(details_text, nullptr, false);
-    if (!details.is_object() || details.value("format", nlohmann::json()) != "ply" ||
-        !details.contains("properties"))
-        return {};
+/// The columns that the source had; none where it was no PLY.
+std::vector<Layout::Column> source_columns(const FormatNotes& notes) {
+    if (!notes.ply) return {};
     std::vector<Property> properties;
-    for (const auto& p : details["properties"]) {
-        if (!p.is_object() || !p.contains("name") || !p["name"].is_string() || !p.contains("type") ||
-            !p["type"].is_string())
-            return {};
-        const auto type = type_of(p["type"].get<std::string>());
-        const auto name = p["name"].get<std::string>();
-        if (!type || name.empty() || name.find_first_of(" \t\r\n") != name.npos) return {};
-        properties.push_back({name, *type, std::nullopt});
-    }
+    for (const auto& p : notes.ply->properties) properties.push_back({p.name, p.type, std::nullopt});
     return make_layout(properties, Encoding::little_endian).columns;
 }
 
@@ -138,17 +126,15 @@ class PlyWriter final : public CountedWriter {
  private:
     /// The comments of a PLY source, but for those that are written anew.
     static std::string kept_lines(const ScanInfo& info) {
-        const auto details = nlohmann::json::parse(info.details, nullptr, false);
+        if (!info.notes.ply) return {};
         std::string lines;
-        for (const auto& [key, word] :
-             {std::pair("comments", "comment"), std::pair("obj_info", "obj_info")}) {
-            if (!details.is_object() || !details.contains(key) || !details[key].is_array()) continue;
-            for (const auto& entry : details[key]) {
-                const auto text = entry.is_string() ? entry.get<std::string>() : std::string();
+        const auto add = [&](std::string_view word, const std::vector<std::string>& texts) {
+            for (const std::string& text : texts)
                 if (!text.starts_with("lucarne ") && text.find_first_of("\r\n") == text.npos)
                     lines += fmt::format("{} {}\n", word, text);
-            }
-        }
+        };
+        add("comment", info.notes.ply->comments);
+        add("obj_info", info.notes.ply->infos);
         return lines;
     }
 
@@ -175,7 +161,7 @@ Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, c
                                             const ScanInfo& info, const WriteOptions& options) {
     LUCARNE_ASSIGN(auto file, OutputFile::create(path, options.overwrite));
     auto writer = std::make_unique<PlyWriter>(std::move(file), schema,
-                                              OutputPlan(schema).make(source_columns(info.details)));
+                                              OutputPlan(schema).make(source_columns(info.notes)));
     LUCARNE_TRY(writer->begin(info));
     return writer;
 }

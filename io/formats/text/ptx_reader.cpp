@@ -5,7 +5,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
@@ -51,7 +50,7 @@ class ScanFinder {
  public:
     /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that can
     /// be made out is left out.
-    ScanFinder(std::shared_ptr<const InputFile> file, char line_end, bool salvage)
+    ScanFinder(std::shared_ptr<const ByteSource> file, char line_end, bool salvage)
         : size_(file->size()), line_end_(line_end), salvage_(salvage), input_(std::move(file), 0, size_) {}
 
     Result<std::vector<Scan>> find() {
@@ -208,7 +207,7 @@ class ScanFinder {
 
 class PtxSource final : public PointSource {
  public:
-    PtxSource(std::shared_ptr<const InputFile> file, const std::vector<Scan>& scans, char line_end,
+    PtxSource(std::shared_ptr<const ByteSource> file, const std::vector<Scan>& scans, char line_end,
               const ReadOptions& options, bool lost_a_scan)
         : file_(std::move(file)), salvage_(options.salvage) {
         add_loss(info_.losses, lost::cut_scan, lost_a_scan);
@@ -217,7 +216,8 @@ class PtxSource final : public PointSource {
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
         set_unit(info_, options, 1.0);  // the format is in metres
-        info_.details = nlohmann::json{{"color_bits", info_.color_bits}, {kIntensityLimits, {0, 1}}}.dump();
+        info_.notes.color_bits = info_.color_bits;
+        info_.notes.intensity_limits = {0, 1, true};
         size_t values = 3;
         for (const Scan& scan : scans) values = std::max(values, scan.values);
         if (values >= 4) schema_.add(std::string(names::intensity), ScalarType::f32);
@@ -263,14 +263,14 @@ class PtxSource final : public PointSource {
         return {scan.begin, scan.end, std::move(layout), scan.rows, scan.first_line};
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     bool salvage_;
     Schema schema_;
     std::vector<Section> sections_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     std::array<std::byte, 4096> bytes{};
     LUCARNE_ASSIGN(const size_t got, file->read_some(0, bytes));

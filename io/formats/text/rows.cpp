@@ -324,7 +324,7 @@ class RowParser {
 
 class RowReader final : public PointReader {
  public:
-    RowReader(std::shared_ptr<const InputFile> file, const std::vector<Section>& sections)
+    RowReader(std::shared_ptr<const ByteSource> file, const std::vector<Section>& sections)
         : file_(std::move(file)), sections_(sections), pieces_(kPieces), next_(kPieces) {
         if (!sections_.empty()) begin_section();
     }
@@ -475,7 +475,7 @@ class RowReader final : public PointReader {
         return {};
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     const std::vector<Section>& sections_;
     size_t section_ = 0;
     uint64_t at_ = 0;  ///< in the file: what is read next
@@ -495,7 +495,7 @@ void parse_rows(const RowLayout& layout, std::string_view text, Piece& piece) {
     RowParser(layout, text, piece).parse();
 }
 
-std::unique_ptr<PointReader> read_rows(std::shared_ptr<const InputFile> file,
+std::unique_ptr<PointReader> read_rows(std::shared_ptr<const ByteSource> file,
                                        const std::vector<Section>& sections) {
     return std::make_unique<RowReader>(std::move(file), sections);
 }

@@ -77,7 +77,7 @@ void parse_rows(const RowLayout& layout, std::string_view text, Piece& piece);
 /// A pass over sections. They share the schema and outlive the reader. Holds a window of 4 MiB of text and
 /// its records, however large the file is. Errors, but for layouts with `salvage`: a row that does not fit
 /// the layout, fewer rows than promised.
-std::unique_ptr<PointReader> read_rows(std::shared_ptr<const InputFile> file,
+std::unique_ptr<PointReader> read_rows(std::shared_ptr<const ByteSource> file,
                                        const std::vector<Section>& sections);
 
 }  // namespace lucarne::io::text

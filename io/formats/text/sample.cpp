@@ -83,7 +83,7 @@ class Sampler {
 
 }  // namespace
 
-Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end, const RowLayout& layout,
+Result<Sampled> take_sample(const ByteSource& file, uint64_t begin, uint64_t end, const RowLayout& layout,
                             size_t columns) {
     const uint64_t bytes = end - begin;
     const bool whole = bytes <= kPlaces * kPlaceBytes;

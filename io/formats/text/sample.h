@@ -11,7 +11,7 @@ struct Sampled {
 
 /// Looks at rows of [begin, end), at 64 places of 64 KiB or at all of it where that is no more. `columns` is
 /// how many values a row has; other lines are left out.
-Result<Sampled> take_sample(const InputFile& file, uint64_t begin, uint64_t end, const RowLayout& layout,
+Result<Sampled> take_sample(const ByteSource& file, uint64_t begin, uint64_t end, const RowLayout& layout,
                             size_t columns);
 
 /// '\r' in files of old Macintoshes.

@@ -3,7 +3,6 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
@@ -43,7 +42,7 @@ std::string_view trimmed(std::string_view text) {
 
 class TextSource final : public PointSource {
  public:
-    explicit TextSource(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
+    explicit TextSource(std::shared_ptr<const ByteSource> file) : file_(std::move(file)) {}
 
     Result<void> describe(const ReadOptions& options) {
         const std::string extension = lower_extension(file_->path());
@@ -206,23 +205,22 @@ class TextSource final : public PointSource {
         info_.modified = file_->modified();
         if (schema().find(names::color))
             info_.color_bits = remarks.color_bits.value_or(color_bits(columns, sampled.sample));
-        nlohmann::json details{{"color_bits", info_.color_bits}};
+        info_.notes.color_bits = info_.color_bits;
         const Attribute* intensity = schema().find(names::intensity);
         if (name == "PTS" && intensity && intensity->type == ScalarType::i32)
-            details[kIntensityLimits] = {-2048, 2047};  // Leica's whole numbers of 12 bits
-        info_.details = details.dump();
+            info_.notes.intensity_limits = {-2048, 2047, true};  // Leica's whole numbers of 12 bits
         for (size_t i = 0; i < columns.size(); ++i)
             if (sections_[0].layout.fields[i].kind == Field::Kind::skip)
                 add_loss(info_.losses, "columns that are left out", 1);
     }
 
-    std::shared_ptr<const InputFile> file_;
+    std::shared_ptr<const ByteSource> file_;
     Head head_;
     std::vector<Section> sections_;
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const InputFile> file,
+Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const ByteSource> file,
                                                const ReadOptions& options) {
     auto source = std::make_unique<TextSource>(std::move(file));
     LUCARNE_TRY(source->describe(options));

@@ -75,14 +75,14 @@ TEST(HandlePool, OthersAreReadWhileOneFileIsSlowToOpen) {
     const TemporaryFolder folder;
     MeetingPoint others_read(3);  // two readers and the slow open
     std::atomic<bool> slow_waited{true};
-    const auto pool = std::make_shared<HandlePool>(2, [&](const std::filesystem::path& path) {
+    const auto pool = std::make_shared<HandlePool>(1, [&](const std::filesystem::path& path) {
         if (path.filename() == "slow") slow_waited = others_read.meet();
         return HandlePool::open_to_read(path);
     });
     const InputFile kept = InputFile::open(write(folder / "kept", "1111"), pool).value();
     const InputFile fresh = InputFile::open(write(folder / "fresh", "2222"), pool).value();
     const InputFile slow = InputFile::open(write(folder / "slow", "3333"), pool).value();
-    EXPECT_EQ(first_bytes(kept), "1111");
+    EXPECT_EQ(first_bytes(kept), "1111");  // and the pool has no handle of the slow file
     std::vector<std::thread> threads;
     threads.emplace_back([&] { EXPECT_EQ(first_bytes(slow), "3333"); });
     for (const InputFile* file : {&kept, &fresh})
@@ -92,7 +92,7 @@ TEST(HandlePool, OthersAreReadWhileOneFileIsSlowToOpen) {
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_TRUE(slow_waited) << "the readers waited for the slow file";
-    EXPECT_EQ(pool->open(), 2u);
+    EXPECT_EQ(pool->open(), 1u);
 }
 
 TEST(HandlePool, OneHandleIsKeptOfAFileThatTwoThreadsOpenAtOnce) {
@@ -119,6 +119,18 @@ TEST(HandlePool, OneHandleIsKeptOfAFileThatTwoThreadsOpenAtOnce) {
     EXPECT_EQ(handles[0], handles[1]);
     EXPECT_EQ(pool.open(), 1u);
     EXPECT_EQ(handles[0].use_count(), 3) << "the pool's and ours";
+}
+
+TEST(HandlePool, TheHandleByWhichAFileWasOpenedIsTheFirstOne) {
+    const TemporaryFolder folder;
+    std::atomic<int> opened{0};
+    const auto pool = std::make_shared<HandlePool>(2, [&](const std::filesystem::path& path) {
+        ++opened;
+        return HandlePool::open_to_read(path);
+    });
+    const InputFile file = InputFile::open(write(folder / "a", "1111"), pool).value();
+    EXPECT_EQ(first_bytes(file), "1111");
+    EXPECT_EQ(opened, 0);
 }
 
 TEST(HandlePool, FileThatWasReplacedIsNotReadAsTheOneOpened) {

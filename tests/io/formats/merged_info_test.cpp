@@ -2,7 +2,6 @@
 #include "io/formats/merged_info.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "io/formats/las/extras.h"
 #include "tests/io/io_testing.h"
@@ -85,7 +84,7 @@ class MergedInfo : public ::testing::Test {
 TEST_F(MergedInfo, ASystemThatAllScansHaveIsKept) {
     const std::array scans = {las("a.las", 2903), las("b.las", 2903)};
     EXPECT_EQ(different_systems(scans), "");
-    EXPECT_FALSE(merged_info(scans).details.find(kSystemNote) != std::string::npos);
+    EXPECT_EQ(merged_info(scans).notes.system_note, "");
     for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u);
 }
 
@@ -94,7 +93,7 @@ TEST_F(MergedInfo, SystemsThatDifferLeaveNoneAndAreNamedWithTheirFiles) {
     const std::string differ = different_systems(scans);
     for (const char* part : {"a.las", "b.las", "EPSG:2903", "EPSG:2904"})
         EXPECT_THAT(differ, HasSubstr(part));
-    EXPECT_THAT(merged_info(scans).details, HasSubstr(kSystemNote));
+    EXPECT_NE(merged_info(scans).notes.system_note, "");
     const ScanInfo merged = written(scans, "m.las");
     EXPECT_EQ(merged.epsg, 0u);
     EXPECT_DOUBLE_EQ(merged.metres_per_unit, 0.3048);  // the unit they agree in
@@ -106,7 +105,7 @@ TEST_F(MergedInfo, AScanThatSaysNothingTakesTheSystemOfTheOthersWithANote) {
         scans[1].metres_per_unit = 0.3048;  // as --unit ft
         if (first) std::swap(scans[0], scans[1]);
         EXPECT_EQ(different_systems(scans), "");
-        EXPECT_THAT(merged_info(scans).details, HasSubstr("b.xyz says no coordinate system"));
+        EXPECT_THAT(merged_info(scans).notes.system_note, HasSubstr("b.xyz says no coordinate system"));
         for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u) << first;
     }
 }
@@ -125,11 +124,11 @@ TEST_F(MergedInfo, AScanThatWasWrittenWithItsUnitAloneTakesTheSystemOfTheOthers)
 TEST_F(MergedInfo, TheSystemOfAnE57IsWellKnownTextInLas) {
     ScanInfo e57;
     e57.format = "E57 1.0, 1 scan";
-    e57.details = nlohmann::json{{"coordinate_system", system(25832)}}.dump();
+    e57.notes.e57 = {.coordinate_system = system(25832)};
     e57.metres_per_unit = 0.3048;
     const std::array one = {e57};
     for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(one, name).epsg, 25832u) << name;
-    e57.details = R"({"coordinate_system":"nothing that is well known"})";
+    e57.notes.e57->coordinate_system = "nothing that is well known";
     const std::array none = {e57};
     EXPECT_EQ(written(none, "m.las").epsg, 0u);
 }
@@ -150,24 +149,19 @@ TEST_F(MergedInfo, ExtraBytesThatAreScaledInTwoWaysAreNamedAndLeftAsTheyStand) {
          {std::vector{a, b}, {a, plain}, {plain, a}, {a, b, a}, {a, scaled("n.las", .01, 2)}}) {
         EXPECT_THAT(different_extras(scans), HasSubstr("'Amplitude' has another scale"));
         EXPECT_THAT(different_extras(scans), HasSubstr(scans[1].path));
-        EXPECT_THAT(merged_info(scans).details, HasSubstr(kExtrasNote));
+        EXPECT_NE(merged_info(scans).notes.extras_note, "");
         EXPECT_EQ(scale_of(scans), 0) << scans[1].path;
         EXPECT_EQ(las::scaled_extras(merged_info(scans), amplitude()), "");
     }
 }
 
 TEST_F(MergedInfo, LimitsOfIntensitiesHoldForAllScansOrForNone) {
-    const auto limits = [](const char* text) {
-        ScanInfo info;
-        info.details = text;
-        return info;
-    };
-    const std::array both = {limits(R"({"intensity_limits":[0,1]})"),
-                             limits(R"({"intensity_limits":[-5,0.5]})")};
-    EXPECT_EQ(nlohmann::json::parse(merged_info(both).details)["intensity_limits"],
-              nlohmann::json({-5.0, 1.0}));
-    const std::array one = {both[0], limits("{}")};
-    EXPECT_FALSE(nlohmann::json::parse(merged_info(one).details).contains("intensity_limits"));
+    std::array<ScanInfo, 2> scans;
+    scans[0].notes.intensity_limits = {0, 1, true};
+    scans[1].notes.intensity_limits = {-5, 0.5};
+    EXPECT_EQ(merged_info(scans).notes.intensity_limits, (IntensityLimits{-5, 1}));
+    scans[1].notes.intensity_limits.reset();
+    EXPECT_FALSE(merged_info(scans).notes.intensity_limits);
 }
 
 TEST_F(MergedInfo, StationsOfAllScansAreKept) {

@@ -2,7 +2,6 @@
 #include <map>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/io/io_testing.h"
 
@@ -69,7 +68,7 @@ TEST(RoundTrip, LasToLasKeepsEveryPointBitForBitAndTheWholeHeader) {
         ASSERT_TRUE(written) << written.error().line();
         const auto copy = opened(copy_path);
         EXPECT_EQ(copy->info().format, source->info().format);
-        EXPECT_EQ(copy->info().details, source->info().details) << path;
+        EXPECT_TRUE(copy->info().notes == source->info().notes) << path;
         EXPECT_EQ(copy->info().metres_per_unit, source->info().metres_per_unit);
         const size_t count = source->info().declared_points;
         EXPECT_TRUE(las_points(read_bytes(path), count) == las_points(read_bytes(copy_path), count)) << path;
@@ -86,11 +85,11 @@ TEST(RoundTrip, PlyToPlyKeepsEveryPropertyUnderItsNameAndType) {
         ASSERT_TRUE(written) << written.error().line();
         const auto copy = opened(copy_path);
         expect_same_scan(*source, *copy, path.string());
-        const auto before = nlohmann::json::parse(source->info().details),
-                   after = nlohmann::json::parse(copy->info().details);
-        const auto& old_properties = before["properties"];
-        for (size_t i = 0; i < old_properties.size(); ++i)
-            EXPECT_EQ(old_properties[i], after["properties"][i]) << path;
+        const auto &before = source->info().notes.ply, &after = copy->info().notes.ply;
+        if (!before) continue;  // a mesh
+        ASSERT_TRUE(after && after->properties.size() >= before->properties.size());
+        for (size_t i = 0; i < before->properties.size(); ++i)
+            EXPECT_TRUE(before->properties[i] == after->properties[i]) << path;
     }
 }
 

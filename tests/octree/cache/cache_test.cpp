@@ -11,6 +11,7 @@
 #include "io/core/random.h"
 #include "octree/convert/build.h"
 #include "octree/cache/file.h"
+#include "octree/open.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {
@@ -281,12 +282,25 @@ TEST_F(Cache, CompressedPayloadsThatLieAreRefusedOrHarmless) {
     EXPECT_GT(refused, 20u);
 }
 
+TEST_F(Cache, OutOfMemoryIsReadAsFromAFile) {
+    const auto memory = std::make_shared<const MemorySource>("memory.luc", std::as_bytes(std::span(bytes_)));
+    const auto a = open_octree(path()), b = open_octree(memory);
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ((*a)->nodes().size(), (*b)->nodes().size());
+    for (uint32_t node = 0; node < (*a)->nodes().size(); ++node)
+        EXPECT_EQ((*a)->load(node)->records, (*b)->load(node)->records);
+    EXPECT_EQ(verify_cache(memory, [](uint64_t) {})->points, 60'000u);
+    const auto short_of_one = std::as_bytes(std::span(bytes_)).first(bytes_.size() - 1);
+    EXPECT_FALSE(open_octree(std::make_shared<const MemorySource>("cut.luc", short_of_one)));
+}
+
 TEST_F(Cache, IsToldFromOtherFilesByItsContent) {
-    EXPECT_TRUE(is_cache(path()));
-    EXPECT_FALSE(is_cache(write("ply\n")));
-    EXPECT_FALSE(is_cache(write("")));
-    EXPECT_FALSE(is_cache(folder_.path()));
-    EXPECT_FALSE(is_cache(folder_ / "absent"));
+    EXPECT_TRUE(is_cache(*InputFile::open(path())));
+    EXPECT_FALSE(is_cache(*InputFile::open(write("ply\n"))));
+    EXPECT_FALSE(is_cache(*InputFile::open(write(""))));
+    EXPECT_TRUE(is_octree(path()));
+    EXPECT_FALSE(is_octree(folder_.path()));
+    EXPECT_FALSE(is_octree(folder_ / "absent"));
 }
 
 }  // namespace

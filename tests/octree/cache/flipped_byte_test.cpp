@@ -37,7 +37,7 @@ ComputedSource described_scan() {
     info.coordinate_system = "ETRS89 / UTM zone 32N";
     info.epsg = 25832;
     info.stations = {{1, {.5, .5, 2}}, {2, {.1, .9, 2}}};
-    info.details = R"({"history": ""})";
+    info.notes.ply = {{}, {""}, {}};
     info.losses = {{"points whose state is invalid", 12}};
     return source;
 }

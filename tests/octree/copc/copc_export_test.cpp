@@ -85,7 +85,7 @@ TEST_F(CopcExport, ItsNodesAreThoseOfTheCacheWithTheirPointsOnSeveralPages) {
     }
     EXPECT_EQ(copc_->header().min, cache_->header().min);
     EXPECT_EQ(copc_->header().max, cache_->header().max);
-    const auto file = io::copc::File::open(folder_ / "a.copc.laz", nullptr);
+    const auto file = io::copc::File::open(InputFile::open_shared(folder_ / "a.copc.laz").value());
     ASSERT_TRUE(file) << file.error().line();
     EXPECT_EQ(file->info().gps_low, 0.0);
     EXPECT_EQ(file->info().gps_high, 0.25 * 299'999);

@@ -114,7 +114,8 @@ TEST(JoinedSource, OneCutOverTwoHundredCachesKeepsToOneBudgetAndAFewHandles) {
     Sources parts;
     for (size_t i = 0; i < 200; ++i) {
         const glm::dvec3 corner(static_cast<double>(i % 20), static_cast<double>(i / 20), 0);
-        parts.push_back(open_cache(make_cache(folder, i, corner, 500, i % 2 == 0), handles).value());
+        const auto path = make_cache(folder, i, corner, 500, i % 2 == 0);
+        parts.push_back(open_cache(InputFile::open_shared(path, handles).value()).value());
     }
     const auto joined = join_sources(std::move(parts)).value();
     EXPECT_EQ(joined->header().points, 100'000u);

@@ -282,7 +282,7 @@ TEST_F(MeasuredCloud, TheCommandMeasuresWhatTheWindowSaved) {
     EXPECT_EQ(out.code, 0) << out.output;
     EXPECT_THAT(out.output, HasSubstr("length: 4.0000 US ft"));
     EXPECT_THAT(out.output, HasSubstr("1567890.123 245678.457 812.006"));
-    EXPECT_THAT(out.output, HasSubstr("classification=6 building"));
+    EXPECT_THAT(out.output, HasSubstr("classification=6 Building"));
     const std::string csv = test::bytes_of(scan_->folder / "section-1.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 61 * 2)
         << "three columns of each wall, and a head";

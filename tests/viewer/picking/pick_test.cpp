@@ -78,7 +78,7 @@ TEST_F(Pick, GivesTheVeryPointThatWasScannedWithItsLastDigitAndAllItsAttributes)
         EXPECT_EQ(point.coordinates[1], in_thousandths(200'000'000 + int64_t{integers.y}));
         EXPECT_EQ(point.coordinates[2], in_thousandths(integers.z));
         EXPECT_LE(glm::distance(point.position, position), 5e-10) << "a double's last bit at most";
-        EXPECT_EQ(field(point, "classification"), "6 building");
+        EXPECT_EQ(field(point, "classification"), "6 Building");
         EXPECT_EQ(field(point, "intensity"), std::to_string(number % 1000));
         EXPECT_EQ(field(point, "scan"), "walls.las");
         EXPECT_EQ(std::stod(field(point, "gps_time")), 300'000'000.125 + 1e-6 * static_cast<double>(number));
@@ -134,7 +134,7 @@ TEST_F(Pick, NeverTakesAPointThatIsClippedOrOfAHiddenClass) {
                 if (how.clip.active())
                     EXPECT_GT(point.position.y, MeasuredScan::kCorner.y + 1);
                 else
-                    EXPECT_EQ(field(point, "classification"), "2 ground");
+                    EXPECT_EQ(field(point, "classification"), "2 Ground");
             }
         EXPECT_GT(picks, 300);
     }

@@ -22,7 +22,7 @@ constexpr uint64_t kMostChunkBytes = uint64_t{1} << 30;
 constexpr uint64_t kLongestCode = 4;
 
 /// Reads at most what is there.
-Result<std::vector<std::byte>> read_up_to(const InputFile& file, uint64_t offset, uint64_t bytes) {
+Result<std::vector<std::byte>> read_up_to(const ByteSource& file, uint64_t offset, uint64_t bytes) {
     std::vector<std::byte> data(std::min(bytes, file.size() - std::min(offset, file.size())));
     LUCARNE_TRY(file.read_at(offset, data));
     return data;
@@ -30,7 +30,7 @@ Result<std::vector<std::byte>> read_up_to(const InputFile& file, uint64_t offset
 
 /// 0 where no table can be: the number before the points, or the last of the file where a writer could not go
 /// back.
-Result<uint64_t> table_offset(const InputFile& file, uint64_t points_offset) {
+Result<uint64_t> table_offset(const ByteSource& file, uint64_t points_offset) {
     const uint64_t first = points_offset + kOffsetBytes;
     if (file.size() < first + kTableHeader) return 0;
     for (const uint64_t place : {points_offset, file.size() - kOffsetBytes}) {
@@ -43,7 +43,7 @@ Result<uint64_t> table_offset(const InputFile& file, uint64_t points_offset) {
 }
 
 /// Empty where the table is none of this file.
-Result<std::vector<ChunkPlace>> parse_table(const InputFile& file, const las::Header& header,
+Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::Header& header,
                                             const Compression& compression, uint64_t table) {
     std::array<std::byte, kTableHeader> head{};
     LUCARNE_TRY(file.read_at(table, head));
@@ -77,7 +77,7 @@ Result<std::vector<ChunkPlace>> parse_table(const InputFile& file, const las::He
 /// Goes from chunk to chunk without a table: layered ones say how long they are, others are decoded.
 class Walk {
  public:
-    Walk(const InputFile& file, const las::Header& header, const Compression& compression)
+    Walk(const ByteSource& file, const las::Header& header, const Compression& compression)
         : file_(file), header_(header), compression_(compression), bounds_(header), name_(file.path().string()) {}
 
     Result<std::vector<ChunkPlace>> go(bool salvage) {
@@ -153,7 +153,7 @@ class Walk {
         return {};
     }
 
-    const InputFile& file_;
+    const ByteSource& file_;
     const las::Header& header_;
     const Compression& compression_;
     las::StatedBounds bounds_;
@@ -162,12 +162,12 @@ class Walk {
 
 }  // namespace
 
-Result<uint64_t> end_of_chunks(const InputFile& file, const las::Header& header) {
+Result<uint64_t> end_of_chunks(const ByteSource& file, const las::Header& header) {
     LUCARNE_ASSIGN(const uint64_t table, table_offset(file, header.points_offset));
     return table ? table : file.size();
 }
 
-Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
+Result<std::vector<ChunkPlace>> read_chunks(const ByteSource& file, const las::Header& header,
                                             const Compression& compression, bool salvage) {
     if (header.points == 0) return std::vector<ChunkPlace>();
     std::vector<ChunkPlace> chunks;

@@ -16,10 +16,10 @@ struct ChunkPlace {
 /// the end of the points. Errors: tables that do not fit the file or its number of points. With `salvage`
 /// chunks that are cut off or damaged, and those behind them that no table leads to, are no error: the chunks
 /// may then hold fewer points than the header promises, and the last of them may be cut off.
-Result<std::vector<ChunkPlace>> read_chunks(const InputFile& file, const las::Header& header,
+Result<std::vector<ChunkPlace>> read_chunks(const ByteSource& file, const las::Header& header,
                                             const Compression& compression, bool salvage = false);
 
 /// Where chunks end at the latest: where the chunk table begins, if there may be one, else with the file.
-Result<uint64_t> end_of_chunks(const InputFile& file, const las::Header& header);
+Result<uint64_t> end_of_chunks(const ByteSource& file, const las::Header& header);
 
 }  // namespace lucarne::io::laz

@@ -8,7 +8,7 @@ namespace lucarne::io::laz {
 
 /// A LAZ file's points: what is needed to decode any of its chunks.
 struct Points {
-    std::shared_ptr<const InputFile> file;
+    std::shared_ptr<const ByteSource> file;
     las::Header header;
     Compression compression;
     std::vector<ChunkPlace> chunks;

@@ -56,7 +56,7 @@ class Copc : public ::testing::Test {
     }
     Result<copc::File> open(const std::string& bytes) const {
         file_.set(bytes);
-        return copc::File::open(file_.path(), nullptr);
+        return copc::File::open(InputFile::open_shared(file_.path()).value());
     }
     std::string refusal(const std::string& bytes) const {
         const auto opened = open(bytes);
@@ -77,7 +77,7 @@ TEST_F(Copc, AllNodesOfAllPagesAreFound) {
     ASSERT_EQ(file->nodes().size(), 6u);
     EXPECT_EQ(file->info().page_bytes, 5 * copc::kEntryBytes) << "levels 0 to 3 and a reference";
     EXPECT_EQ(file->info().half_size, 8.0);
-    EXPECT_TRUE(copc::is_copc(file_.path()));
+    EXPECT_TRUE(copc::is_copc(*InputFile::open(file_.path())));
     for (size_t i = 0; i < 6; ++i) {
         const auto records = file->read(i);
         ASSERT_TRUE(records) << records.error().line();
@@ -122,7 +122,7 @@ TEST_F(Copc, AnInfoRecordWithoutACubeIsRefused) {
     EXPECT_THAT(refusal(with(377, 'x')), HasSubstr("no COPC"));
     testing::MemoryFile file;
     file.set(with(377, 'x'));
-    EXPECT_FALSE(copc::is_copc(file.path()));
+    EXPECT_FALSE(copc::is_copc(*InputFile::open(file.path())));
     EXPECT_TRUE(open_scan(file.path())) << "what is no COPC is LAZ all the same";
 }
 

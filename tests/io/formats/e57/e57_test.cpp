@@ -3,7 +3,6 @@
 #include <limits>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/random.h"
 #include "io/formats/e57/packets.h"
@@ -340,14 +339,9 @@ TEST_F(E57, ImagesAreListedAndNotRead) {
         "vectorChild>";
     const auto r = read(file);
     ASSERT_TRUE(r) << r.error().line();
-    const auto details = nlohmann::json::parse(source_->info().details);
-    EXPECT_EQ(details["images"][0], (nlohmann::json{{"name", "front"},
-                                                    {"representation", "spherical"},
-                                                    {"encoding", "jpeg"},
-                                                    {"bytes", 1504576},
-                                                    {"width", 3072},
-                                                    {"height", 2304}}));
-    EXPECT_EQ(details["scans"][0]["name"], "a <scan>");
+    const E57Notes& notes = *source_->info().notes.e57;
+    EXPECT_TRUE(notes.images.at(0) == (E57Notes::Image{"front", "spherical", "jpeg", 1504576, 3072, 2304}));
+    EXPECT_EQ(notes.scans.at(0).name, "a <scan>");
 }
 
 TEST_F(E57, AFileWithoutPointsIsEmpty) {

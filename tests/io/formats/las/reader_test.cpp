@@ -4,9 +4,9 @@
 #include <map>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/random.h"
+#include "io/formats/notes_json.h"
 #include "tests/io/io_testing.h"
 #include "io/formats/las/bounds.h"
 #include "tests/io/formats/las/las_builder.h"
@@ -205,7 +205,7 @@ TEST_F(Las, ColourOf8BitsIn16IsToldFromFullColour) {
     file.records[998].replace(22, 2, raw<uint16_t>(256));
     const auto full = open(file);
     EXPECT_EQ(full->info().color_bits, 16u);
-    EXPECT_EQ(nlohmann::json::parse(full->info().details)["color_bits"], 16);
+    EXPECT_EQ(full->info().notes.color_bits, 16);
     EXPECT_EQ(value(*full, names::color, 1, 998), 256);
 }
 
@@ -295,7 +295,7 @@ TEST_F(Las, WavePacketsAreSkippedAndTheBytesBehindThemAreNot) {
         EXPECT_EQ((*a)->schema(), (*b)->schema());
         EXPECT_EQ(testing::read_all(**a)->bytes, testing::read_all(**b)->bytes) << format;
         EXPECT_EQ((*b)->info().format, "LAS 1.4, point format " + std::to_string(format));
-        EXPECT_EQ((*b)->info().details.find("100"), std::string::npos) << "the wave's description is kept";
+        EXPECT_EQ(notes_text((*b)->info().notes).find("100"), std::string::npos) << "the wave's description is kept";
     }
     LasFile small;
     small.minor = 4;

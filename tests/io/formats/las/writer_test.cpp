@@ -3,8 +3,8 @@
 #include <limits>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
+#include "io/formats/notes_json.h"
 #include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
 
@@ -174,7 +174,7 @@ TEST_F(Writers, NoExtraOfALasFileIsCalledLikeAFieldAndAllComeBackUnderTheirNames
     points.set("gps_time", int64_t{-5});
     points.set("red", int64_t{3});
     ScanInfo info;
-    info.details = R"({"intensity_limits":[0.5,1.0]})";
+    info.notes.intensity_limits = {0.5, 1.0};
     for (const char* name : {"a.las", "a.laz"}) {
         const auto source = written(name, points, info);
         EXPECT_THAT(
@@ -517,7 +517,7 @@ TEST_F(Writers, DamagedDetailsAreAnErrorOrIgnoredButNeverACrash) {
           R"({"format":"ply","properties":[{"name":"x","type":"quux"}]})",
           R"({"format":"ply","properties":[{"name":"a b\n","type":"int"}],"comments":[3,"x\ny"]})"}) {
         ScanInfo info;
-        info.details = details;
+        info.notes = notes_of_text(details);
         WriteOptions options;
         options.overwrite = true;
         const auto las = write("a.las", points, info, options);
@@ -561,7 +561,7 @@ TEST_F(Writers, HeadersOfEveryLasVersionComeBack) {
         ASSERT_TRUE(writer && (*writer)->write(all->bytes) && (*writer)->finish());
         const auto copy = open_scan(folder_ / "b.las");
         ASSERT_TRUE(copy) << copy.error().line();
-        EXPECT_EQ((*copy)->info().details, (*source)->info().details) << minor;
+        EXPECT_TRUE((*copy)->info().notes == (*source)->info().notes) << minor;
         EXPECT_TRUE(read_all(**copy)->bytes == all->bytes) << minor;
     }
 }

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/random.h"
 #include "io/formats/mesh/source.h"
@@ -75,7 +74,7 @@ class MeshSalvage : public testing::TextScan {
     }
     bool is_mesh() const { return source_->info().format.ends_with("mesh"); }
     uint64_t triangles() const {
-        return nlohmann::json::parse(source_->info().details)["mesh"]["triangles"].get<uint64_t>();
+        return source_->info().notes.mesh->triangles;
     }
     /// The line of a file that is rejected as usual.
     std::string refusal(std::string_view bytes) {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "io/core/parallel.h"
 #include "io/core/random.h"
@@ -70,7 +69,7 @@ class MeshScan : public testing::TextScan {
     glm::dvec3 triple(size_t i, std::string_view name) const {
         return {value(i, name, 0), value(i, name, 1), value(i, name, 2)};
     }
-    nlohmann::json details() const { return nlohmann::json::parse(source_->info().details)["mesh"]; }
+    const MeshNotes& notes() const { return *source_->info().notes.mesh; }
 
     /// A folder with an OBJ or PLY file and what it names.
     void read_folder(const std::string& name, const ReadOptions& options) {
@@ -332,7 +331,7 @@ TEST_F(MeshScan, PolygonsAreCutAlongTheirOutline) {
         std::string text = "v 0 0 0\nv 2 0 2\nv 2 1 2\nv 1 1 1\nv 1 2 1\nv 0 2 0\n";
         text += backwards ? "f 6 5 4 3 2 1\n" : "f 1 2 3 4 5 6\n";
         read(text, every(0.05));
-        EXPECT_NEAR(details()["area_m2"].get<double>(), 3 * std::sqrt(2.0), 1e-9);
+        EXPECT_NEAR(notes().samples->area_m2, 3 * std::sqrt(2.0), 1e-9);
         for (size_t i = 0; i < points(); ++i) {
             const glm::dvec3 p = position(i);
             ASSERT_FALSE(p.x > 1.001 && p.y > 1.001) << "outside";
@@ -343,9 +342,9 @@ TEST_F(MeshScan, PolygonsAreCutAlongTheirOutline) {
 
 TEST_F(MeshScan, FacesWithoutAreaAreLeftOutAndCounted) {
     read(kSquare + "f 1 1 2\nf 1 2\nv 2 0 0\nf 1 2 5\nv nan 0 0\nf 1 2 6\n", every(0.05));
-    EXPECT_EQ(details()["triangles"], 2);
-    EXPECT_EQ(details()["left_out_without_area"], 3);
-    EXPECT_EQ(details()["left_out_not_finite"], 1);
+    EXPECT_EQ(notes().triangles, 2u);
+    EXPECT_EQ(notes().without_area, 3u);
+    EXPECT_EQ(notes().not_finite, 1u);
     EXPECT_NEAR(static_cast<double>(points()), 400, 40);
     read("v 0 0 0\nv 1 0 0\nf 1 1 2\n");
     EXPECT_EQ(points(), 2u) << "without a single face its vertices are what there is";
@@ -377,7 +376,7 @@ TEST_F(MeshScan, TextureCoordinatesAndNormalsThatAreNotThereAreNone) {
     read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1/1/2 2/2/1 3/-3/0\n", every(0.05));
     EXPECT_NEAR(static_cast<double>(points()), 200, 30);
     for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
-    EXPECT_EQ(details()["coordinates_and_normals_not_there"], 5);
+    EXPECT_EQ(notes().missing_corners, 5u);
 }
 
 TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
@@ -387,7 +386,7 @@ TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
         EXPECT_EQ(triple(i, "normal"), glm::dvec3(1, 0, 0));
         EXPECT_LE(position(i).x + position(i).y, 1.0001);
     }
-    EXPECT_FALSE(details().contains("coordinates_and_normals_not_there"));
+    EXPECT_EQ(notes().missing_corners, 0u);
     // Indices from the end count from where the face stands, and its material is that of its place.
     put("m.mtl", "newmtl first\nKd 1 0 0\nnewmtl second\nKd 0 0 1\n");
     put("a.obj", "mtllib m.mtl\nusemtl first\nv 0 0 0\nf -1 2 3\nusemtl second\nv 1 0 0\nv 0 1 0\n");
@@ -427,7 +426,7 @@ TEST_F(MeshScan, TheNumberOfSamplesCanBeAskedForUpToACap) {
     EXPECT_EQ(error_of(kSquare, about(2'000'000'000)).kind, ErrorKind::arguments);
     // By default a thousandth of the diagonal; and never more than 20 million, however large the area.
     source_ = std::move(open_scan(file_.path(), {"", true}).value());
-    EXPECT_NEAR(details()["spacing_m"].get<double>(), std::sqrt(2.0) / 1000, 1e-9);
+    EXPECT_NEAR(notes().samples->spacing_m, std::sqrt(2.0) / 1000, 1e-9);
     std::string sheets;
     for (int i = 0; i < 100; ++i)
         sheets += fmt::format("v 0 0 {0}\nv 1e20 0 {0}\nv 1e20 1e20 {0}\nv 0 1e20 {0}\nf -4 -3 -2 -1\n", i);
@@ -456,13 +455,13 @@ TEST_F(MeshScan, NothingOutsideTheMeshsFolderIsOpened) {
     put("inner/a.obj", "mtllib ../secret.mtl\nmtllib m.mtl m.mtl " + (folder_ / "secret.mtl").string() +
                            "\n" + "vt 0 0\nusemtl m\n" + kSquare);
     read_folder("inner/a.obj", every(0.1));
-    EXPECT_EQ(details()["textures"], 0);
+    EXPECT_EQ(notes().textures, 0u);
     EXPECT_EQ(schema().find("color"), nullptr);
     // A path of the machine where it was written: the file stands beside the mesh now.
     put_picture("inner/p.png");
     put("inner/m.mtl", "newmtl m\nmap_Kd C:\\work\\textures\\p.png\n");
     read_folder("inner/a.obj", every(0.1));
-    EXPECT_EQ(details()["textures"], 1);
+    EXPECT_EQ(notes().textures, 1u);
 }
 
 TEST_F(MeshScan, ATextureThatIsNoneIsDoneWithout) {
@@ -572,7 +571,7 @@ TEST_F(SharedMeshes, TheStatueOfTheSharedDataIsSampledNearItsVertices) {
         places.push_back(position_of((*vertices)->schema(), &cloud->bytes[i * (*vertices)->schema().stride]));
     source_ = std::move(open_scan(path, about(35'000)).value());
     records_ = testing::read_all(*source_).value();
-    EXPECT_EQ(details()["triangles"].get<int>() + details()["left_out_without_area"].get<int>(), 69636);
+    EXPECT_EQ(notes().triangles + notes().without_area, 69636u);
     EXPECT_NEAR(static_cast<double>(points()), 35'000, 1'750);
     const Neighbours near(places, 0.1);
     for (size_t i = 0; i < points(); i += 50) ASSERT_LT(near.nearest(position(i), places.size()), 0.1);

@@ -1,4 +1,4 @@
-#include "io/formats/las/base64.h"
+#include "io/formats/common/base64.h"
 
 #include <cstdint>
 

@@ -9,7 +9,7 @@
 
 namespace lucarne::io {
 
-/// RFC 4648, section 4, with padding: how `ScanInfo::details` holds bytes.
+/// RFC 4648, section 4, with padding: how a cache holds bytes in JSON.
 std::string to_base64(std::span<const std::byte> data);
 std::optional<std::vector<std::byte>> from_base64(std::string_view text);  ///< empty where it is none
 

@@ -1,0 +1,18 @@
+#include "io/files/user_folder.h"
+
+#include <cstdlib>
+
+namespace lucarne {
+
+std::filesystem::path absolute_folder(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
+}
+
+std::filesystem::path user_folder(const char* variable, const char* below_home) {
+    if (const auto given = absolute_folder(variable); !given.empty()) return given / "lucarne";
+    if (const auto home = absolute_folder("HOME"); !home.empty()) return home / below_home / "lucarne";
+    return {};
+}
+
+}  // namespace lucarne
