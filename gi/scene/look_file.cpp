@@ -102,20 +102,20 @@ Result<void> read_colours(JsonObject& object, Look& look) {
     return {};
 }
 
-json vector(const dvec3& v) {
+json vector_json(const dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
 json write_clip(const Clip& clip) {
     json written = json::object();
     for (const ClipBox& box : clip.boxes) {
-        json object = {{"min", vector(box.min)}, {"max", vector(box.max)}};
+        json object = {{"min", vector_json(box.min)}, {"max", vector_json(box.max)}};
         if (box.rotation != 0) object["rotation"] = degrees_of(box.rotation);
         if (box.inverted) object["inverted"] = true;
         written["boxes"].push_back(object);
     }
     for (const ClipPlane& plane : clip.planes) {
-        json object = {{"position", vector(plane.position)}, {"normal", vector(plane.normal)}};
+        json object = {{"position", vector_json(plane.position)}, {"normal", vector_json(plane.normal)}};
         if (plane.inverted) object["inverted"] = true;
         written["planes"].push_back(object);
     }
@@ -193,9 +193,9 @@ json write_look(const Look& look) {
     put("shading_strength", look.unlit.strength, plain.unlit.strength);
     put("eye_dome_pixels", look.unlit.eye_dome_pixels, plain.unlit.eye_dome_pixels);
     put("occlusion_reach", look.unlit.occlusion_reach, plain.unlit.occlusion_reach);
-    if (look.backdrop.kind != Backdrop::Kind::scene) written["backdrop"]["top"] = vector(look.backdrop.top);
+    if (look.backdrop.kind != Backdrop::Kind::scene) written["backdrop"]["top"] = vector_json(look.backdrop.top);
     if (look.backdrop.kind == Backdrop::Kind::gradient)
-        written["backdrop"]["bottom"] = vector(look.backdrop.bottom);
+        written["backdrop"]["bottom"] = vector_json(look.backdrop.bottom);
     if (look.clip != plain.clip) written["clip"] = write_clip(look.clip);
     put("legend", look.legend, plain.legend);
     put("axes", look.axes, plain.axes);

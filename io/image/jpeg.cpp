@@ -14,10 +14,10 @@
 namespace lucarne::io {
 namespace {
 
-constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+constexpr uint64_t kLargestJpeg = uint64_t{1} << 30;
 /// A block of 8x8 pixels takes a bit at least of Huffman's code: 512 pixels a byte. Arithmetic codes, which
 /// hardly anything writes, may take less.
-constexpr uint64_t kMostPixelsPerByte = 1024;
+constexpr uint64_t kMostPixelsPerJpegByte = 1024;
 
 struct Destroy {
     void operator()(void* handle) const { tjDestroy(handle); }
@@ -28,7 +28,7 @@ struct Destroy {
 Result<Image8> read_jpeg(const std::filesystem::path& path, uint64_t most_pixels) {
     const std::string name = path.string();
     LUCARNE_ASSIGN(const auto file, InputFile::open(path));
-    if (file.size() > kLargestFile) return rejected(name, "is too large for a JPEG picture");
+    if (file.size() > kLargestJpeg) return rejected(name, "is too large for a JPEG picture");
     std::vector<unsigned char> encoded(static_cast<size_t>(file.size()));
     LUCARNE_TRY(file.read_at(0, std::as_writable_bytes(std::span(encoded))));
     const std::unique_ptr<void, Destroy> decoder(tjInitDecompress());
@@ -40,7 +40,7 @@ Result<Image8> read_jpeg(const std::filesystem::path& path, uint64_t most_pixels
     const auto w = static_cast<uint32_t>(width), h = static_cast<uint32_t>(height);
     if (width < 1 || height < 1 || w > kLargestSide || h > kLargestSide || uint64_t{w} * h > most_pixels)
         return rejected(name, fmt::format("is too large: {}x{} pixels", width, height));
-    if (uint64_t{w} * h / kMostPixelsPerByte > file.size())
+    if (uint64_t{w} * h / kMostPixelsPerJpegByte > file.size())
         return rejected(name, fmt::format("is shorter than its {}x{} pixels", width, height));
     Image8 image{w, h, std::vector<uint8_t>(size_t{3} * w * h)};
     // Scans upon scans of a progressive picture would cost hours: libjpeg-turbo allows 500.

@@ -12,10 +12,10 @@
 namespace lucarne::io {
 namespace {
 
-constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+constexpr uint64_t kLargestPng = uint64_t{1} << 30;
 /// A byte of a deflate stream gives 1032 at most (zlib, "Technical details"), each of eight pixels of one
 /// bit.
-constexpr uint64_t kMostPixelsPerByte = 8 * 1032;
+constexpr uint64_t kMostPixelsPerPngByte = 8 * 1032;
 
 struct PngFree {
     void operator()(png_image* image) const { png_image_free(image); }
@@ -56,7 +56,7 @@ Result<void> write_png(const std::filesystem::path& path, const Image8& image, b
 Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels) {
     const std::string name = path.string();
     LUCARNE_ASSIGN(const auto file, InputFile::open(path));
-    if (file.size() > kLargestFile) return rejected(name, "is too large for a PNG picture");
+    if (file.size() > kLargestPng) return rejected(name, "is too large for a PNG picture");
     std::vector<std::byte> encoded(static_cast<size_t>(file.size()));
     LUCARNE_TRY(file.read_at(0, encoded));
     png_image png{};
@@ -67,7 +67,7 @@ Result<Image8> read_png(const std::filesystem::path& path, uint64_t most_pixels)
     if (png.width > kLargestSide || png.height > kLargestSide ||
         uint64_t{png.width} * png.height > most_pixels)
         return rejected(name, fmt::format("is too large: {}x{} pixels", png.width, png.height));
-    if (uint64_t{png.width} * png.height / kMostPixelsPerByte > file.size())
+    if (uint64_t{png.width} * png.height / kMostPixelsPerPngByte > file.size())
         return rejected(name, fmt::format("is shorter than its {}x{} pixels", png.width, png.height));
     png.format = PNG_FORMAT_RGB;
     Image8 image{png.width, png.height, std::vector<uint8_t>(size_t{3} * png.width * png.height)};

@@ -26,7 +26,7 @@
 namespace lucarne::viewer {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
     std::vector<std::string> inputs;
@@ -37,25 +37,25 @@ struct InfoOptions {
 };
 
 /// File names need not be UTF-8: what is not becomes U+FFFD.
-std::string text_of(const json& value) {
-    return value.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string text_of(const Json& value) {
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-json describe_octree(const octree::NodeSource& cache, const char* kind) {
+Json describe_octree(const octree::NodeSource& cache, const char* kind) {
     const auto& header = cache.header();
-    json levels = json::array();
+    Json levels = Json::array();
     for (const auto& node : cache.nodes()) {
         while (levels.size() <= node.key.level) levels.push_back({{"nodes", 0}, {"points", 0}});
         auto& level = levels[node.key.level];
         level["nodes"] = level["nodes"].get<uint64_t>() + 1;
         level["points"] = level["points"].get<uint64_t>() + node.count;
     }
-    json scans = json::array();
+    Json scans = Json::array();
     for (const auto& scan : header.scans)
         scans.push_back({{"path", scan.path},
                          {"format", scan.format},
                          {"coordinate_system", scan.coordinate_system},
-                         {"epsg", scan.epsg ? json(scan.epsg) : json()},
+                         {"epsg", scan.epsg ? Json(scan.epsg) : Json()},
                          {"stations", scan.stations.size()},
                          {"left_out", losses_json(scan.losses)}});
     return {{"kind", kind},
@@ -72,7 +72,7 @@ json describe_octree(const octree::NodeSource& cache, const char* kind) {
             {"scans", std::move(scans)}};
 }
 
-Result<json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {
+Result<Json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(std::move(file), options.read));
     // A mesh of a few bytes may have millions of samples.
@@ -86,15 +86,15 @@ Result<json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOpt
     return scan_json(scan->info(), scan->schema(), &contents);
 }
 
-Result<json> describe(const std::string& path, const InfoOptions& options) {
+Result<Json> describe(const std::string& path, const InfoOptions& options) {
     LUCARNE_ASSIGN(const std::shared_ptr<const ByteSource> file, InputFile::open_shared(path));
     const octree::OctreeKind kind = octree::octree_kind(*file);
     if (kind == octree::OctreeKind::none) return describe_scan(file, options);
     LUCARNE_ASSIGN(const auto source, octree::open_octree(file));
     if (kind == octree::OctreeKind::cache) return describe_octree(*source, "cache");
     // Its octree knows only the box that the header states.
-    json described = describe_octree(*source, "copc");
-    LUCARNE_ASSIGN(const json scan, describe_scan(file, options));
+    Json described = describe_octree(*source, "copc");
+    LUCARNE_ASSIGN(const Json scan, describe_scan(file, options));
     for (const char* key : {"min", "max"}) described.erase(key);
     for (const char* key : {"min", "max", "stated_min", "stated_max", "left_out"})
         if (scan.contains(key)) described[key] = scan[key];
@@ -102,14 +102,14 @@ Result<json> describe(const std::string& path, const InfoOptions& options) {
 }
 
 /// What a double has beyond 15 digits are no digits of the file.
-std::string coordinates_text(const json& vector) {
+std::string coordinates_text(const Json& vector) {
     std::string text;
-    for (const json& value : vector)
+    for (const Json& value : vector)
         text += fmt::format("{}{:.15g}", text.empty() ? "" : " ", value.get<double>());
     return text;
 }
 
-void print(const json& described) {
+void print(const Json& described) {
     const bool assumed = !described.value("unit_stated", true);
     for (const auto& [name, value] : described.items()) {
         if (name == "unit_stated") continue;
@@ -135,7 +135,7 @@ Result<void> info(const InfoOptions& options) {
     LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, list.files));
     const bool several = list.files.size() + list.problems.size() > 1;
     SetAside aside(list, options.read);
-    json all = json::array();
+    Json all = Json::array();
     for (const std::string& input : list.files) {
         auto described = describe(input, options);
         if (described) {

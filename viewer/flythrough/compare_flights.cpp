@@ -12,7 +12,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr size_t kMostFlights = 100, kMostFrames = 1'000'000;
+constexpr size_t kMostFlights = 100, kMostReportFrames = 1'000'000;
 constexpr size_t kResamples = 2000;
 constexpr double kConfidence = 0.95;
 constexpr double kLeastMs = 1e-6;  ///< below it a clock said nothing; keeps ratios finite
@@ -98,7 +98,7 @@ Result<FlownReport> read_flight(JsonObject& object) {
     if (start) {
         LUCARNE_ASSIGN(report.cold, start->boolean("cold", false));
     }
-    LUCARNE_ASSIGN(auto frames, object.objects("each_frame", kMostFrames));
+    LUCARNE_ASSIGN(auto frames, object.objects("each_frame", kMostReportFrames));
     for (JsonObject& frame : frames) {
         LUCARNE_ASSIGN(const double time, frame.number("time", {0, 1e9}));
         LUCARNE_ASSIGN(const double ms, frame.number("ms", {0, 1e9}));

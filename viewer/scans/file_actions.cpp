@@ -10,7 +10,7 @@
 namespace lucarne::viewer {
 namespace {
 
-void open(ViewModel& model) {
+void open_file(ViewModel& model) {
     model.shell.want_file = true;
 }
 void close_scans(ViewModel& model) {
@@ -53,7 +53,7 @@ void close(ViewModel& model) {
 
 std::span<const Action> file_actions() {
     static constexpr std::array kActions = {
-        Action{{GLFW_KEY_O, GLFW_MOD_CONTROL}, "File", "Open scans...", open},
+        Action{{GLFW_KEY_O, GLFW_MOD_CONTROL}, "File", "Open scans...", open_file},
         Action{{GLFW_KEY_W, GLFW_MOD_CONTROL}, "File", "Close all scans", close_scans, has_scans},
         Action{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
         Action{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Go on with conversions", go_on, is_stopped},

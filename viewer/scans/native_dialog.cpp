@@ -64,7 +64,7 @@ std::vector<std::string> NativeDialog::chosen(const std::string& output) {
 }
 
 NativeDialog::~NativeDialog() {
-    if (pipe_ >= 0) close(pipe_);
+    if (pipe_ >= 0) ::close(pipe_);
     if (pid_ <= 0) return;
     kill(pid_, SIGTERM);
     waitpid(pid_, nullptr, 0);
@@ -79,9 +79,9 @@ bool NativeDialog::start(const std::vector<std::string>& command) {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
     const int failure = spawn(command, actions, pid_);
     posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
+    ::close(ends[1]);
     if (failure != 0) {
-        close(ends[0]);
+        ::close(ends[0]);
         pid_ = -1;
         return false;
     }
@@ -98,7 +98,7 @@ std::optional<std::vector<std::string>> NativeDialog::poll() {
         if (n < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
         if (n > 0 && output_.size() < kMostOutput) output_.append(buffer.data(), static_cast<size_t>(n));
         if (n > 0) continue;
-        close(pipe_);
+        ::close(pipe_);
         pipe_ = -1;
     }
     if (waitpid(pid_, nullptr, WNOHANG) == 0) return std::nullopt;

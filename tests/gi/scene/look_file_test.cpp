@@ -15,7 +15,7 @@ Result<Look> parse(const std::string& look) {
     return scene.look;
 }
 
-constexpr const char* kWhole = R"({
+constexpr const char* kWholeLook = R"({
   "colour": "attribute", "attribute": "gps_time", "map": "cool-warm", "reversed": true,
   "range": {"low": 1.5, "high": -2}, "hidden_classes": [7, 18], "point_size": 2, "point_pixels": 3,
   "shading": "occlusion", "shading_strength": 0.5, "eye_dome_pixels": 3, "occlusion_reach": 6,
@@ -26,7 +26,7 @@ constexpr const char* kWhole = R"({
 })";
 
 TEST(LookFile, EveryKeyIsReadAndWrittenBackTheSame) {
-    const auto look = parse(kWhole);
+    const auto look = parse(kWholeLook);
     ASSERT_TRUE(look) << look.error().line();
     EXPECT_EQ(look->colour, ColourBy::attribute);
     EXPECT_EQ(look->attribute, "gps_time");

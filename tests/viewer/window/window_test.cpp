@@ -213,7 +213,7 @@ TEST_F(ViewerWindow, AFlythroughIsMadePlayedSavedAndRenderedByKeys) {
 }
 
 TEST(Viewer, WithoutADisplayItSaysSoInOneLine) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string cache = make_cornell(folder, "2k");
     const Outcome outcome = shell("env -u DISPLAY -u WAYLAND_DISPLAY " LUCARNE_BINARY " view " + cache);
     EXPECT_EQ(outcome.code, 1);

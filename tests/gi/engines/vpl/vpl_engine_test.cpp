@@ -16,7 +16,6 @@ namespace {
 
 using scenes::AnalyticScene, scenes::add_rectangle, scenes::look, scenes::material, scenes::spot;
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 const glm::vec3 kWhite(.7f), kRed(.6f, .1f, .1f), kGreen(.1f, .5f, .1f);
 
 /// A room of 2 m, open in front (y = 0), with a block on the floor and a spot under the ceiling.

@@ -12,7 +12,7 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr float kAlbedo = .5f, kSide = 2, kExponent = 400;
+constexpr float kAlbedo = .5f, kRoomSide = 2, kLobeExponent = 400;
 const glm::vec3 kIncident(.6f, 0, .8f);
 
 class VplRedistribution : public OnDevice {
@@ -29,14 +29,14 @@ class VplRedistribution : public OnDevice {
             VplLight light = kDeadLight;
             const float x = .1f + 1.8f * static_cast<float>(i % 16) / 15,
                         y = .1f + 1.8f * static_cast<float>(i / 16) / 15;
-            light.position = {x, y, 0, kSide * kSide / kCount};
+            light.position = {x, y, 0, kRoomSide * kRoomSide / kCount};
             light.normal = {0, 0, 1, .02f};
             light.flux = {1, 1, 1, 1};
-            light.diffuse = glm::vec4(glm::vec3(specular > 0 ? 0 : kAlbedo / 3.14159265f), kExponent);
+            light.diffuse = glm::vec4(glm::vec3(specular > 0 ? 0 : kAlbedo / 3.14159265f), kLobeExponent);
             light.incident = glm::vec4(kIncident, specular);
             step.before.push_back(light);
         }
-        const SurfelCloud cloud(scenes::closed_box(kSide, 150, glm::vec3(kAlbedo)));
+        const SurfelCloud cloud(scenes::closed_box(kRoomSide, 150, glm::vec3(kAlbedo)));
         auto loaded = load_cloud(*device, cloud);
         EXPECT_TRUE(loaded);
         const std::vector<Material> white = {{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)}};
@@ -82,9 +82,9 @@ TEST_F(VplRedistribution, inAClosedBoxAllReflectedFluxLands) {
 TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
     size_t on_the_floor = 0;
     for (const VplLight& l : redistributed(1).after) {
-        const glm::vec3 p(l.position), n(l.normal), middle(kSide / 2);
+        const glm::vec3 p(l.position), n(l.normal), middle(kRoomSide / 2);
         const glm::vec3 off = glm::abs(p - middle);
-        EXPECT_NEAR(std::max({off.x, off.y, off.z}), kSide / 2, 1e-3);
+        EXPECT_NEAR(std::max({off.x, off.y, off.z}), kRoomSide / 2, 1e-3);
         EXPECT_GT(glm::dot(n, middle - p), .9f);
         on_the_floor += p.z < 1e-3f;
     }
@@ -94,7 +94,7 @@ TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
 TEST_F(VplRedistribution, theLightOfALobeLandsWhereTheLobePoints) {
     const Step step = redistributed(5, false, .5f);
     // The modified Phong lobe returns its share times the cosine of the mirror direction.
-    const double lobe = .5 * kIncident.z * (kExponent + 2) / (kExponent + 1);
+    const double lobe = .5 * kIncident.z * (kLobeExponent + 2) / (kLobeExponent + 1);
     EXPECT_NEAR(sum_of_flux(step.after) / sum_of_flux(step.before) / lobe, 1, .02);
     const glm::vec3 mirrored(-kIncident.x, -kIncident.y, kIncident.z);
     double off = 0, far = 0;
@@ -103,14 +103,14 @@ TEST_F(VplRedistribution, theLightOfALobeLandsWhereTheLobePoints) {
         off += 1 - glm::dot(-glm::vec3(step.after[i].incident), mirrored);
         ++far;
     }
-    EXPECT_GT(off / far, .8 / (kExponent + 1));  // the mean of 1 - cos over the lobe is 1 / (n + 1)
-    EXPECT_LT(off / far, 3 / (kExponent + 1));   // and footprints and texels widen it
+    EXPECT_GT(off / far, .8 / (kLobeExponent + 1));  // the mean of 1 - cos over the lobe is 1 / (n + 1)
+    EXPECT_LT(off / far, 3 / (kLobeExponent + 1));   // and footprints and texels widen it
 }
 
 TEST_F(VplRedistribution, footprintsShareOutTheSurfaceThatIsLit) {
     double area = 0;
     for (const VplLight& l : redistributed(2).after) area += l.position.w;
-    EXPECT_NEAR(area / (5 * kSide * kSide), 1,
+    EXPECT_NEAR(area / (5 * kRoomSide * kRoomSide), 1,
                 .25);  // 1 / density, a noisy estimate of the walls and the ceiling
 }
 
@@ -130,7 +130,7 @@ TEST_F(VplRedistribution, theBestCandidateClumpsWhereTheRaceSpreads) {
     const auto spread = [](const Step& step) {
         double sum = 0;
         for (const VplLight& l : step.after)
-            sum += glm::length(glm::vec3(l.position) - glm::vec3(kSide / 2, kSide / 2, kSide));
+            sum += glm::length(glm::vec3(l.position) - glm::vec3(kRoomSide / 2, kRoomSide / 2, kRoomSide));
         return sum / static_cast<double>(step.after.size());
     };
     double strayed = 0;

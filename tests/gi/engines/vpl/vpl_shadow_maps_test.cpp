@@ -13,7 +13,6 @@ namespace lucarne::gi::vpl {
 namespace {
 
 constexpr uint32_t kEmpty = 0xffffffffu;
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
 /// The maps on the host, read as parabolic.glsl writes them.
 struct Maps {

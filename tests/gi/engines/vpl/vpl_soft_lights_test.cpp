@@ -22,7 +22,6 @@ namespace {
 using scenes::AnalyticScene;
 using VplSoftLights = OnDevice;
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 
 /// A room of 2 m, without its ceiling where the sky shall come in, with a block in it, seen from within.
 AnalyticScene room(bool open) {
