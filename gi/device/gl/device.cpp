@@ -149,6 +149,20 @@ Result<Buffer> Device::texels(size_t bytes, std::string_view what) {
     return make(bytes, state_->info.max_texel_bytes, what);
 }
 
+Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
+    const bool fits = bytes <= state_->cap - std::min(state_->cap, state_->used);
+    state_->refused |= !fits;
+    if (!fits)
+        return failed(std::string(what),
+                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB", bytes >> 20,
+                                  state_->used >> 20, state_->cap >> 20),
+                      kMemoryTodo);
+    state_->used += bytes;
+    return {};
+}
+
+void Device::give_memory_back(uint64_t bytes) { state_->used -= bytes; }
+
 Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) {
     constexpr size_t kGrain = 16;  // a storage block ends on a vec4
     const std::string name(what);
@@ -158,21 +172,17 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
                                   state_->info.renderer, most >> 20),
                       kMemoryTodo);
     bytes = std::max((bytes + kGrain - 1) / kGrain * kGrain, kGrain);
-    state_->refused |= bytes > state_->cap - std::min(state_->cap, state_->used);
-    if (bytes > state_->cap - std::min(state_->cap, state_->used))
-        return failed(name,
-                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
-                                  bytes >> 20, state_->used >> 20, state_->cap >> 20),
-                      kMemoryTodo);
+    LUCARNE_TRY(take_memory(bytes, what));
     clear_errors();
     Buffer made;
     glCreateBuffers(1, &made.id_);
     glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
-    if (glGetError() != GL_NO_ERROR)  // no share of the budget was taken yet: device_ is empty
+    if (glGetError() != GL_NO_ERROR) {  // `made` has no share of the budget: its device_ is empty
+        give_memory_back(bytes);
         return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
+    }
     made.device_ = this;
     made.bytes_ = bytes;
-    state_->used += bytes;
     return made;
 }
 

@@ -129,6 +129,10 @@ class Device {
     /// Whether the cap refused a buffer since this was last asked.
     bool take_refusal();
 
+    /// Counts memory that another device takes, under the same cap. Errors: over the cap.
+    Result<void> take_memory(uint64_t bytes, std::string_view what);
+    void give_memory_back(uint64_t bytes);
+
     /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
     Result<Buffer> buffer(size_t bytes, std::string_view what);
     /// The same for what shaders only read as texels of four words; up to max_texel_bytes.

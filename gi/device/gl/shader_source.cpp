@@ -10,7 +10,7 @@ namespace {
 
 class Assembler {
  public:
-    explicit Assembler(const std::vector<ShaderText>& texts) : texts_(texts) {}
+    Assembler(const std::vector<ShaderText>& texts, ShaderLanguage language) : texts_(texts), language_(language) {}
 
     Result<void> add(std::string_view path) {
         if (std::find(source.files.begin(), source.files.end(), path) != source.files.end()) return {};
@@ -21,7 +21,7 @@ class Assembler {
                           "it is a fault of the program");
         const size_t index = source.files.size();
         source.files.emplace_back(path);
-        source.text += fmt::format("#line 1 {}\n", index);
+        add_place(1, index);
         size_t number = 1;
         for (std::string_view rest = file->text; !rest.empty(); ++number) {
             const size_t end = std::min(rest.find('\n'), rest.size() - 1);
@@ -45,19 +45,30 @@ class Assembler {
         const size_t open = line.find('"'), close = line.find('"', open + 1);
         if (open != std::string_view::npos && close != std::string_view::npos)
             LUCARNE_TRY(add(line.substr(open + 1, close - open - 1)));
-        source.text += fmt::format("#line {} {}\n", number + 1, file);
+        add_place(number + 1, file);
         return {};
     }
 
+    /// OpenCL's compilers take names of files, GLSL's numbers.
+    void add_place(size_t line, size_t file) {
+        if (language_ == ShaderLanguage::opencl)
+            source.text += fmt::format("#line {} \"{}\"\n", line, source.files[file]);
+        else
+            source.text += fmt::format("#line {} {}\n", line, file);
+    }
+
     const std::vector<ShaderText>& texts_;
+    ShaderLanguage language_;
 };
 
 }  // namespace
 
 Result<ShaderSource> shader_source(std::string_view path, const Defines& defines,
-                                   const std::vector<ShaderText>& texts) {
-    Assembler assembler(texts);
-    assembler.source.text = "#version 450 core\n";
+                                   const std::vector<ShaderText>& texts, ShaderLanguage language) {
+    Assembler assembler(texts, language);
+    // Without contraction a result is the same on every device that computes in the same order.
+    assembler.source.text =
+        language == ShaderLanguage::glsl ? "#version 450 core\n" : "#pragma OPENCL FP_CONTRACT OFF\n";
     for (const auto& [name, value] : defines)
         assembler.source.text += fmt::format("#define {} {}\n", name, value);
     LUCARNE_TRY(assembler.add(path));

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "gi/device/gl/device.h"
+#include "gi/device/gl/shader_texts.h"
+#include "io/core/error.h"
+
+// OpenCL's own handles, so that its headers stay in cl_device.cpp.
+struct _cl_context;
+struct _cl_command_queue;
+struct _cl_device_id;
+struct _cl_kernel;
+struct _cl_mem;
+struct _cl_program;
+
+namespace lucarne::gi {
+
+class ClDevice;
+
+/// Memory of an OpenCL device, counted under the cap of the OpenGL device beside it.
+class ClBuffer {
+ public:
+    ClBuffer() = default;
+    ClBuffer(ClBuffer&& other) noexcept { *this = std::move(other); }
+    ClBuffer& operator=(ClBuffer&& other) noexcept;
+    ~ClBuffer();
+
+    size_t bytes() const { return bytes_; }
+    explicit operator bool() const { return memory_ != nullptr; }
+    /// Both wait for the device. Errors: the device failed.
+    Result<void> upload(size_t offset, std::span<const std::byte> data);
+    Result<void> download(size_t offset, std::span<std::byte> out) const;
+
+ private:
+    friend class ClDevice;
+    friend class ClKernel;
+    ClDevice* device_ = nullptr;
+    _cl_mem* memory_ = nullptr;
+    size_t bytes_ = 0;
+};
+
+/// A function of a compiled OpenCL program; owned by the device's cache.
+class ClKernel {
+ public:
+    ~ClKernel();
+    ClKernel(const ClKernel&) = delete;
+    ClKernel& operator=(const ClKernel&) = delete;
+    /// Sets the arguments in their order, and runs `items` work-items in groups of `group` (0: the driver chooses).
+    /// `items` is rounded up to whole groups. Arguments: ClBuffers and plain values (uint32_t, float).
+    /// Errors: an argument does not fit; the device failed.
+    template <class... Arguments>
+    Result<void> run(size_t items, size_t group, const Arguments&... arguments) const {
+        uint32_t index = 0;
+        Result<void> done;
+        ((done = done ? set(index++, arguments) : done), ...);
+        return done ? enqueue(items, group) : done;
+    }
+
+ private:
+    friend class ClDevice;
+    ClKernel(ClDevice& device, _cl_program* program, _cl_kernel* kernel, std::string name)
+        : device_(&device), program_(program), kernel_(kernel), name_(std::move(name)) {}
+    Result<void> set(uint32_t index, const ClBuffer& buffer) const;
+    Result<void> set(uint32_t index, uint32_t value) const { return set_bytes(index, &value, sizeof value); }
+    Result<void> set(uint32_t index, float value) const { return set_bytes(index, &value, sizeof value); }
+    Result<void> set_bytes(uint32_t index, const void* value, size_t bytes) const;
+    Result<void> enqueue(size_t items, size_t group) const;
+
+    ClDevice* device_;
+    _cl_program* program_;
+    _cl_kernel* kernel_;
+    std::string name_;
+};
+
+struct ClDeviceInfo {
+    std::string name, platform, driver;
+    uint32_t units = 0;
+    uint64_t memory = 0, max_buffer_bytes = 0;
+    bool is_gpu = false;
+};
+
+/// One OpenCL device with one queue in order; used from the OpenGL device's thread. Engines that need it open it in
+/// Engine::prepare: starting OpenCL takes most of a second.
+class ClDevice {
+ public:
+    /// The first GPU, else the first processor. `budget`: its memory cap holds for both, and it outlives this. Errors:
+    /// there is none; the message says what to install.
+    static Result<std::unique_ptr<ClDevice>> open(Device& budget);
+    ~ClDevice();
+    ClDevice(const ClDevice&) = delete;
+    ClDevice& operator=(const ClDevice&) = delete;
+
+    const ClDeviceInfo& info() const { return info_; }
+    /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
+    Result<ClBuffer> buffer(size_t bytes, std::string_view what);
+    /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
+    Result<void> reserve(ClBuffer& buffer, size_t bytes, std::string_view what);
+    /// The function `name` of an embedded source ("gi/gather/micro_buffer.cl"), compiled once for each set of defines.
+    /// Includes are resolved as those of shaders are. The driver keeps the binaries (PoCL in POCL_CACHE_DIR). Errors
+    /// carry the compiler's first message with file and line.
+    Result<const ClKernel*> kernel(std::string_view path, std::string_view name, const Defines& defines = {},
+                                   const std::vector<ShaderText>& texts = shader_texts());
+    /// Waits until all work is done. Errors: the device failed.
+    Result<void> finish();
+
+ private:
+    friend class ClBuffer;
+    friend class ClKernel;
+    explicit ClDevice(Device& budget) : budget_(budget) {}
+    Error device_error(std::string_view what, int code) const;
+
+    Device& budget_;
+    ClDeviceInfo info_;
+    _cl_device_id* id_ = nullptr;
+    _cl_context* context_ = nullptr;
+    _cl_command_queue* queue_ = nullptr;
+    std::map<std::tuple<std::string, std::string, Defines>, std::unique_ptr<ClKernel>> kernels_;
+};
+
+}  // namespace lucarne::gi

@@ -1,0 +1,27 @@
+// A surfel of a cut with its footprint, decoded: for C++, GLSL and OpenCL C alike.
+#ifndef LUCARNE_GI_SHARED_FLAT_SURFEL_H
+#define LUCARNE_GI_SHARED_FLAT_SURFEL_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace lucarne::gi {
+using uint = uint32_t;
+#endif
+#ifdef __OPENCL_VERSION__
+typedef struct FlatSurfel FlatSurfel;
+#endif
+
+struct FlatSurfel {
+    float x, y, z;  // m, relative to the local origin
+    float radius;   // m; 0: no surfel is here, or it is not drawn
+    float area;     // m^2, its share of the surface
+    uint normal;    // octahedral
+    uint albedo;    // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
+    uint material;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(FlatSurfel) == 32);
+}  // namespace lucarne::gi
+#endif
+#endif

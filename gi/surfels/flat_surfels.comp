@@ -1,0 +1,23 @@
+// Decodes the surfels of a cut with their footprints, in the order of their ids; gaps have radius and area 0.
+layout(local_size_x = 256) in;
+
+#include "gi/shared/cut.glsl"
+#include "gi/shared/flat_surfel.h"
+#include "gi/shared/many_threads.glsl"
+
+layout(std430, binding = 5) writeonly buffer Flat { FlatSurfel flat_surfels[]; };
+uniform uint ids;
+
+void main() {
+    uint id = thread_number();
+    if (id >= ids) return;
+    uint item;
+    PackedSurfel surfel;
+    FlatSurfel decoded = FlatSurfel(0.0, 0.0, 0.0, 0.0, 0.0, 0u, 0u, 0u);
+    if (cut_surfel(id, item, surfel)) {
+        vec3 position = surfel_position(item, surfel);
+        decoded = FlatSurfel(position.x, position.y, position.z, cut_surfel_radius(item, surfel),
+                             cut_surfel_area(item, surfel), surfel.c, surfel.d, surfel_material(surfel.b));
+    }
+    flat_surfels[id] = decoded;
+}

@@ -1,0 +1,160 @@
+// OpenCL beside OpenGL: surfels of a frame go there by copy and give the same sums.
+#include "gi/device/cl/cl_device.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gi/device/exchange/exchange.h"
+#include "gi/registry.h"
+#include "gi/surfels/flat_surfels.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
+
+namespace lucarne::gi {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kSum = R"(#include "gi/shared/flat_surfel.h"
+// Sums of `run` surfels an item, in their order.
+kernel void sum(global const FlatSurfel* surfels, uint count, uint run, global float* areas) {
+    uint part = get_global_id(0);
+    uint first = part * run;
+    if (first >= count) return;
+    float area = 0;
+    for (uint i = first; i < min(first + run, count); ++i) area += surfels[i].area;
+    areas[part] = area;
+}
+)";
+
+/// The program's own texts and one more.
+std::vector<ShaderText> texts_with(const char* text) {
+    std::vector<ShaderText> texts = shader_texts();
+    texts.push_back({"test.cl", text});
+    return texts;
+}
+
+class ClDeviceTest : public OnDevice {
+ protected:
+    void SetUp() override {
+        OnDevice::SetUp();
+        if (!device) return;
+        auto opened = ClDevice::open(*device);
+        ASSERT_TRUE(opened) << opened.error().line();
+        opencl = std::move(*opened);
+    }
+    void TearDown() override {
+        opencl.reset();
+        OnDevice::TearDown();
+    }
+    std::unique_ptr<ClDevice> opencl;
+};
+
+TEST_F(ClDeviceTest, SaysWhatItIs) {
+    EXPECT_FALSE(opencl->info().name.empty());
+    EXPECT_GT(opencl->info().units, 0u);
+    EXPECT_GT(opencl->info().max_buffer_bytes, uint64_t{1} << 20);
+}
+
+TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
+    const SurfelCloud cloud(scenes::closed_box(4, 100, glm::vec3(.5f)));
+    const auto scene = load_cloud(*device, cloud);
+    ASSERT_TRUE(scene) << scene.error().line();
+    const DeviceCut& cut = (*scene)->cut;
+    const size_t count = flat_count(cut);
+    Buffer flat;
+    ASSERT_TRUE(flatten(*device, cut, flat));
+    ClBuffer surfels, areas;
+    const auto copied = copy_to_cl(flat, count * sizeof(FlatSurfel), *opencl, surfels, "flat surfels");
+    ASSERT_TRUE(copied) << copied.error().line();
+
+    constexpr uint32_t kRun = 100;
+    const uint32_t parts = (static_cast<uint32_t>(count) + kRun - 1) / kRun;
+    ASSERT_TRUE(opencl->reserve(areas, parts * sizeof(float), "sums"));
+    const auto kernel = opencl->kernel("test.cl", "sum", {}, texts_with(kSum));
+    ASSERT_TRUE(kernel) << kernel.error().line();
+    const auto ran = (*kernel)->run(parts, 64, surfels, static_cast<uint32_t>(count), kRun, areas);
+    ASSERT_TRUE(ran) << ran.error().line();
+    std::vector<float> sums(parts);
+    ASSERT_TRUE(areas.download(0, std::as_writable_bytes(std::span(sums))));
+
+    const auto on_host = flat.download_all<FlatSurfel>(count);
+    double all = 0;
+    for (uint32_t part = 0; part < parts; ++part) {
+        float expected = 0;
+        for (size_t i = size_t{part} * kRun; i < std::min<size_t>(count, (size_t{part} + 1) * kRun); ++i)
+            expected += on_host[i].area;
+        ASSERT_EQ(sums[part], expected) << part;
+        all += expected;
+    }
+    // And both are the surface: six faces of 4 m by 4 m, as the pool's own decoding has them.
+    const auto decoded = (*scene)->pool.download(cut);
+    const double truth = std::accumulate(decoded.begin(), decoded.end(), 0.0,
+                                         [](double sum, const Surfel& surfel) { return sum + double(surfel.area); });
+    EXPECT_NEAR(all, truth, 1e-4 * truth);
+    EXPECT_NEAR(all, 96, 8);
+}
+
+TEST_F(ClDeviceTest, BuffersGoThereAndBackUnchanged) {
+    auto there = device->buffer(1 << 20, "words");
+    ASSERT_TRUE(there);
+    std::vector<uint32_t> words(1 << 18);
+    std::iota(words.begin(), words.end(), 7u);
+    there->upload_all(words);
+    ClBuffer between;
+    Buffer back;
+    ASSERT_TRUE(copy_to_cl(*there, 1 << 20, *opencl, between, "words"));
+    ASSERT_TRUE(copy_to_gl(between, 1 << 20, *device, back, "words"));
+    EXPECT_EQ(back.download_all<uint32_t>(words.size()), words);
+}
+
+TEST_F(ClDeviceTest, ErrorsOfKernelsNameFileAndLine) {
+    const auto broken = opencl->kernel("test.cl", "sum", {}, texts_with("#include \"gi/shared/flat_surfel.h\"\n\nkernel void sum() {\n  none();\n}\n"));
+    ASSERT_FALSE(broken);
+    EXPECT_THAT(broken.error().why, HasSubstr("test.cl:4:"));
+    const auto missing = opencl->kernel("test.cl", "none", {}, texts_with(kSum));
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().what, "kernel none of test.cl");
+    EXPECT_FALSE(opencl->kernel("nowhere.cl", "sum"));
+}
+
+TEST_F(ClDeviceTest, MemoryCountsUnderTheCapOfBoth) {
+    const uint64_t before = device->memory_used();
+    device->set_memory_cap(before + (uint64_t{3} << 20));
+    {
+        auto first = opencl->buffer(2 << 20, "first");
+        ASSERT_TRUE(first);
+        EXPECT_EQ(device->memory_used(), before + (2u << 20));
+        const auto second = opencl->buffer(2 << 20, "second");
+        ASSERT_FALSE(second);
+        EXPECT_EQ(second.error().what, "second");
+        EXPECT_FALSE(device->buffer(2 << 20, "third")) << "OpenGL has no more either";
+        std::vector<std::byte> bytes((2 << 20) + 1);
+        EXPECT_FALSE(first->upload(0, bytes));
+        EXPECT_FALSE(first->download(1, std::span(bytes).first(2 << 20)));
+    }
+    EXPECT_EQ(device->memory_used(), before);
+}
+
+/// What OpenGL draws is the same before and after OpenCL has started in the same process: both use LLVM on processors.
+using OpenClBesideOpenGl = OnDevice;
+TEST_F(OpenClBesideOpenGl, ChangesNoPicture) {
+    const SurfelCloud cloud(scenes::closed_box(4, 60, glm::vec3(.5f)));
+    const CameraView camera = look({2, 1, 2}, {2, 4, 2}, 48, 48);
+    LitOptions options;
+    options.lights = {make_spot({2, 1, 2}, {2, 4, 2}, 0.6f, 10)};
+    const auto picture = [&] { return light_up(*device, **make_engine("direct"), cloud, camera, options).radiance; };
+    const auto before = picture();
+    auto opened = ClDevice::open(*device);
+    ASSERT_TRUE(opened) << opened.error().line();
+    ASSERT_TRUE((*opened)->kernel("test.cl", "sum", {}, texts_with(kSum)));
+    EXPECT_TRUE(picture() == before);
+}
+
+}  // namespace
+}  // namespace lucarne::gi
