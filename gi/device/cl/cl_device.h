@@ -104,7 +104,7 @@ class ClDevice {
     Result<ClBuffer> buffer(size_t bytes, std::string_view what);
     /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
     Result<void> reserve(ClBuffer& buffer, size_t bytes, std::string_view what);
-    /// The function `name` of an embedded source ("gi/gather/micro_buffer.cl"), compiled once for each set of defines.
+    /// The function `name` of an embedded source ("gi/engines/micro/gather.cl"), compiled once for each set of defines.
     /// Includes are resolved as those of shaders are. The driver keeps the binaries (PoCL in POCL_CACHE_DIR). Errors
     /// carry the compiler's first message with file and line.
     Result<const ClKernel*> kernel(std::string_view path, std::string_view name, const Defines& defines = {},
