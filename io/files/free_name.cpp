@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace lucarne::viewer {
+namespace lucarne {
 
 std::filesystem::path free_name(const std::filesystem::path& folder, std::string_view stem,
                                 std::initializer_list<std::string_view> extensions) {
@@ -22,4 +22,4 @@ std::filesystem::path free_name(const std::filesystem::path& folder, std::string
     return folder / std::string(stem);
 }
 
-}  // namespace lucarne::viewer
+}  // namespace lucarne
