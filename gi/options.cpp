@@ -10,8 +10,9 @@
 namespace lucarne::gi {
 namespace {
 
+/// The whole text is the number.
 template <class T>
-bool parse_whole(std::string_view text, T& value) {
+bool parse_all(std::string_view text, T& value) {
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     return problem == std::errc() && end == text.data() + text.size();
 }
@@ -20,7 +21,7 @@ bool parse_whole(std::string_view text, T& value) {
 bool parse_colour(std::string_view text, glm::dvec3& colour) {
     for (int i = 0; i < 3; ++i) {
         const size_t comma = text.find(',');
-        if ((comma == text.npos) != (i == 2) || !parse_whole(text.substr(0, comma), colour[i])) return false;
+        if ((comma == text.npos) != (i == 2) || !parse_all(text.substr(0, comma), colour[i])) return false;
         if (!(colour[i] >= 0 && colour[i] <= 1)) return false;
         if (i < 2) text.remove_prefix(comma + 1);
     }
@@ -84,7 +85,7 @@ Result<OptionValue> parse_option(const OptionInfo& option, std::string_view text
             return wrong();
         case OptionKind::integer: {
             int64_t value = 0;
-            if (!parse_whole(text, value)) return wrong();
+            if (!parse_all(text, value)) return wrong();
             const bool allowed = option.values.empty()
                                      ? double(value) >= option.least && double(value) <= option.most
                                      : std::ranges::find(option.values, value) != option.values.end();
@@ -93,7 +94,7 @@ Result<OptionValue> parse_option(const OptionInfo& option, std::string_view text
         }
         case OptionKind::number: {
             double value = 0;
-            if (!parse_whole(text, value) || !(value >= option.least && value <= option.most)) return wrong();
+            if (!parse_all(text, value) || !(value >= option.least && value <= option.most)) return wrong();
             return value;
         }
         case OptionKind::choice: {

@@ -89,7 +89,6 @@ class EngineSettings {
     const OptionValue& get(const OptionInfo& option) const;
     void set(const OptionInfo& option, OptionValue value);
     bool has(const OptionInfo& option) const { return values_.contains(option.key); }
-    bool empty() const { return values_.empty(); }
     /// Takes every value that `over` has.
     void override_with(const EngineSettings& over);
     /// Takes every value that `under` has and this has not.

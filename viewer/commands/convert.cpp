@@ -239,7 +239,7 @@ void add_convert(CommandLine& line) {
     command
         .choice<NeighbourSearch>("--neighbours-search", options->build.neighbour_search,
                                  {{"leaf", NeighbourSearch::leaf}, {"flann", NeighbourSearch::flann}},
-                                 "How these are found: leaf is fast, flann is PCL over FLANN, to compare with")
+                                 "How these are found: leaf is fast, flann is the kd-tree that PCL takes by default, to compare with")
         .show_default("leaf");
     command.flag(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },

@@ -169,6 +169,8 @@ Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::No
         const auto cameras = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
         if (scene.cameras.empty()) scene.cameras = cameras;
+        if (scene.comparison && scene.comparison->engine.empty())
+            scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     }
     if (options.exposure) scene.exposure_ev = options.exposure;
     LUCARNE_TRY(apply(options.look, scene.look));

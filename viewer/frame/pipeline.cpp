@@ -236,8 +236,7 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              budgets,
                              glm::distance(bulk[0], bulk[1]),
                              &scene.look.clip};
-    const auto cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
-    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), cost});
+    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), [](const auto& node) { return pool_bytes(node.count); }});
     local = local_frame(request.camera.position, source->header().metres_per_unit);
     camera = camera_view(request.camera, request.size, local);
     cuts_stale = true;
@@ -557,8 +556,6 @@ void Pipeline::set_budgets(const CutBudgets& budgets) {
 Result<void> Pipeline::set_scene(gi::Scene scene) {
     std::erase_if(scene.lights, [](const gi::SceneLight& light) { return !gi::shines(light); });
     if (!scene.environment_on) scene.environment.reset();
-    if (scene.comparison && scene.comparison->engine.empty())
-        scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     if (!scene.comparison) {
         state_->other.reset();
         state_->other_sample = {}, state_->other_mean = {}, state_->other_picture = {};

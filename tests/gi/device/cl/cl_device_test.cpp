@@ -80,6 +80,7 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
     ASSERT_TRUE(kernel) << kernel.error().line();
     const auto ran = (*kernel)->run(parts, 64, surfels, static_cast<uint32_t>(count), kRun, areas);
     ASSERT_TRUE(ran) << ran.error().line();
+    EXPECT_TRUE(opencl->finish());
     std::vector<float> sums(parts);
     ASSERT_TRUE(areas.download(0, std::as_writable_bytes(std::span(sums))));
 
