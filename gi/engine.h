@@ -53,9 +53,9 @@ struct Frame {
     PassTimes& times;
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
-    bool moving = false;  ///< one of a motion: what the frame before knew may serve
-    Progress* progress = nullptr;                    ///< of engines that report it; or none
-    Unlit unlit{};                                   ///< of the engine without light
+    bool moving = false;           ///< one of a motion: what the frame before knew may serve
+    Progress* progress = nullptr;  ///< of engines that report it; or none
+    Unlit unlit{};                 ///< of the engine without light
 };
 
 /// What others need to know of an engine, without building it. One constant, in the engine's folder.
@@ -66,7 +66,8 @@ struct EngineInfo {
     /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
     std::span<const std::string_view> layers = {};
     bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
-    bool unlit = false;  ///< knows no light: its colours are shown as they are, without exposure or tone curve
+    /// Knows no light: its colours are shown as they are, without exposure or tone curve.
+    bool unlit = false;
     bool direct_only = false;   ///< no light from surface to surface: what the others add shows beside it
     bool is_reference = false;  ///< converges to the truth: what the others are compared with
 };

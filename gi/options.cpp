@@ -47,7 +47,9 @@ const OptionValue& EngineSettings::get(const OptionInfo& option) const {
     return found != values_.end() ? found->second : option.defaults[size_t(Effort::interactive)];
 }
 
-void EngineSettings::set(const OptionInfo& option, OptionValue value) { values_[option.key] = value; }
+void EngineSettings::set(const OptionInfo& option, OptionValue value) {
+    values_[option.key] = value;
+}
 
 void EngineSettings::override_with(const EngineSettings& over) {
     for (const auto& [key, value] : over.values_) values_[key] = value;
@@ -113,26 +115,33 @@ Result<OptionValue> parse_option(const OptionInfo& option, std::string_view text
 
 std::string range_text(const OptionInfo& option) {
     switch (option.kind) {
-        case OptionKind::flag: return "on or off";
+        case OptionKind::flag:
+            return "on or off";
         case OptionKind::integer:
             if (!option.values.empty()) return fmt::format("{}", fmt::join(option.values, ", "));
             return fmt::format("{:.0f} to {:.0f}", option.least, option.most);
-        case OptionKind::number: return fmt::format("{:g} to {:g}", option.least, option.most);
-        case OptionKind::choice: return fmt::format("{}", fmt::join(option.choices, ", "));
-        case OptionKind::colour: return "R,G,B of 0 to 1";
+        case OptionKind::number:
+            return fmt::format("{:g} to {:g}", option.least, option.most);
+        case OptionKind::choice:
+            return fmt::format("{}", fmt::join(option.choices, ", "));
+        case OptionKind::colour:
+            return "R,G,B of 0 to 1";
     }
     return {};
 }
 
 std::string option_text(const OptionInfo& option, const OptionValue& value) {
     switch (option.kind) {
-        case OptionKind::flag: return std::get<bool>(value) ? "on" : "off";
+        case OptionKind::flag:
+            return std::get<bool>(value) ? "on" : "off";
         case OptionKind::integer:
             if (!option.unset.empty() && double(std::get<int64_t>(value)) < option.least)
                 return std::string(option.unset);
             return fmt::format("{}", std::get<int64_t>(value));
-        case OptionKind::number: return fmt::format("{:g}", std::get<double>(value));
-        case OptionKind::choice: return std::string(option.choices[static_cast<size_t>(std::get<int64_t>(value))]);
+        case OptionKind::number:
+            return fmt::format("{:g}", std::get<double>(value));
+        case OptionKind::choice:
+            return std::string(option.choices[static_cast<size_t>(std::get<int64_t>(value))]);
         case OptionKind::colour: {
             const auto& c = std::get<glm::dvec3>(value);
             return fmt::format("{:g},{:g},{:g}", c.x, c.y, c.z);

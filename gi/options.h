@@ -13,8 +13,8 @@
 
 #include "io/core/error.h"
 
-// What engines let the user set. An engine declares each of its options once, in its own folder; the command line,
-// scene files, presets, the window, reports and the documents are made from that.
+// What engines let the user set. An engine declares each of its options once, in its own folder; the command
+// line, scene files, presets, the window, reports and the documents are made from that.
 namespace lucarne::gi {
 
 /// How much is spent on a picture: the presets of the viewer, cheapest first.
@@ -35,17 +35,18 @@ struct SliderRange {
 /// An option as all its users see it. Texts and lists are constants that outlive everything.
 struct OptionInfo {
     OptionKind kind = OptionKind::flag;
-    std::string_view key;    ///< in scene files and reports; on the command line with - for _
-    std::string_view label;  ///< in the window
-    std::string_view help;   ///< one line
-    std::string_view cost;   ///< what more of it costs: the tooltip in the window
-    std::string_view placeholder = "N";  ///< in the help of the command line
-    double least = 0, most = 0;                      ///< of numbers
-    std::span<const int64_t> values = {};            ///< where there are any, a whole number is one of these
+    std::string_view key;                  ///< in scene files and reports; on the command line with - for _
+    std::string_view label;                ///< in the window
+    std::string_view help;                 ///< one line
+    std::string_view cost;                 ///< what more of it costs: the tooltip in the window
+    std::string_view placeholder = "N";    ///< in the help of the command line
+    double least = 0, most = 0;            ///< of numbers
+    std::span<const int64_t> values = {};  ///< where there are any, a whole number is one of these
     std::span<const std::string_view> choices = {};  ///< names of the values of a choice
-    /// Where it is not empty, a whole number can be unset: it then is `least` - 1, which no file or option can say.
+    /// Where it is not empty, a whole number can be unset: it then is `least` - 1, which no file or option
+    /// can say.
     std::string_view unset = {};
-    SliderRange slider = {};  ///< both ends 0: not in the window
+    SliderRange slider = {};                          ///< both ends 0: not in the window
     std::array<OptionValue, kEfforts> defaults = {};  ///< by preset
     /// Choosing a preset leaves it alone: it says what is seen, not how much is spent.
     bool keeps = false;
@@ -54,14 +55,16 @@ struct OptionInfo {
 
     /// "--light-resolution"; of switches that are usually on "--no-reuse".
     std::string flag_name() const;
-    /// Whether the window has a control for it: where it has a label, and a slider's range where it takes one.
+    /// Whether the window has a control for it: where it has a label, and a slider's range where it takes
+    /// one.
     bool in_window() const {
         const bool slides = kind == OptionKind::integer || kind == OptionKind::number;
         return !label.empty() && (!slides || slider.least != slider.most);
     }
 };
 
-/// An option whose values are read as T: bool, an integer type, double, glm::dvec3, or an enumeration for a choice.
+/// An option whose values are read as T: bool, an integer type, double, glm::dvec3, or an enumeration for a
+/// choice.
 template <class T>
 struct Option {
     OptionInfo info;
@@ -111,8 +114,8 @@ EngineSettings default_settings(Effort effort);
 /// A whole number or a number; 0 of other values.
 double number_of(const OptionValue& value);
 
-/// A value as the command line gives it: "4", "1.5", "name", "0.2,0.4,1". Errors (ErrorKind::arguments): it is none, or
-/// out of range; the message lists what is allowed.
+/// A value as the command line gives it: "4", "1.5", "name", "0.2,0.4,1". Errors (ErrorKind::arguments): it
+/// is none, or out of range; the message lists what is allowed.
 Result<OptionValue> parse_option(const OptionInfo& option, std::string_view text);
 /// "1 to 64", "1, 2, 4", "flat, occlusion", "on or off", "R,G,B of 0 to 1".
 std::string range_text(const OptionInfo& option);

@@ -3,14 +3,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-// What a scan file says besides its points and what every format has (ScanInfo): what a writer needs to give the same
-// format back, and what `info` shows. A cache keeps it as JSON text: io/formats/notes_json.h.
+#include <glm/vec3.hpp>
+
+// What a scan file says besides its points and what every format has (ScanInfo): what a writer needs to give
+// the same format back, and what `info` shows. A cache keeps it as JSON text: io/formats/notes_json.h.
 namespace lucarne::io {
 
 enum class ScalarType : uint8_t;  // io/points.h
@@ -65,11 +66,11 @@ struct E57Notes {
         std::string name, guid;
         uint64_t points = 0;
         std::vector<std::string> fields;
-        std::optional<glm::dvec3> position;                    ///< of its pose
-        std::optional<std::array<glm::dvec3, 3>> rotation;     ///< of its pose, row by row
+        std::optional<glm::dvec3> position;                 ///< of its pose
+        std::optional<std::array<glm::dvec3, 3>> rotation;  ///< of its pose, row by row
         std::optional<std::array<double, 2>> intensity_limits;
         std::optional<double> color_maximum;
-        std::optional<glm::dvec3> stated_min, stated_max;      ///< in its own frame, true or not
+        std::optional<glm::dvec3> stated_min, stated_max;  ///< in its own frame, true or not
         bool operator==(const Scan&) const = default;
     };
     struct Image {
@@ -94,7 +95,7 @@ struct MeshNotes {
         bool operator==(const Samples&) const = default;
     };
     uint64_t faces = 0, vertices = 0, triangles = 0, textures = 0;
-    uint64_t without_area = 0, not_finite = 0;       ///< triangles that are left out
+    uint64_t without_area = 0, not_finite = 0;           ///< triangles that are left out
     uint64_t other_statements = 0, missing_corners = 0;  ///< of OBJ: see obj_reader.cpp
     std::optional<Samples> samples;
     bool operator==(const MeshNotes&) const = default;
@@ -120,9 +121,11 @@ struct FormatNotes {
     std::optional<uint32_t> color_bits;
 
     // What merged_info finds out of several scans.
-    std::optional<std::vector<LasRecord>> projection;  ///< of their coordinate system; empty: they differ in it
-    std::optional<std::vector<LasRecord>> extras;      ///< the record that describes the extra bytes of all LAS files
-    std::string system_note, extras_note;              ///< what a user has to know of these
+    std::optional<std::vector<LasRecord>>
+        projection;  ///< of their coordinate system; empty: they differ in it
+    std::optional<std::vector<LasRecord>>
+        extras;                            ///< the record that describes the extra bytes of all LAS files
+    std::string system_note, extras_note;  ///< what a user has to know of these
 
     bool operator==(const FormatNotes&) const = default;
 };

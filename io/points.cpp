@@ -7,7 +7,8 @@
 namespace lucarne::io {
 namespace {
 
-constexpr std::array<std::string_view, 11> kNames = {"", "u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"};
+constexpr std::array<std::string_view, 11> kNames = {"",    "u8",  "i8",  "u16", "i16", "u32",
+                                                     "i32", "u64", "i64", "f32", "f64"};
 
 template <class T>
 void store_rounded(std::byte* at, double value) {
@@ -22,7 +23,9 @@ void store_rounded(std::byte* at, double value) {
 
 }  // namespace
 
-std::string_view scalar_name(ScalarType type) { return kNames[static_cast<size_t>(type)]; }
+std::string_view scalar_name(ScalarType type) {
+    return kNames[static_cast<size_t>(type)];
+}
 
 std::optional<ScalarType> scalar_type(std::string_view name) {
     const auto found = std::find(kNames.begin() + 1, kNames.end(), name);
@@ -38,44 +41,66 @@ void Schema::add(std::string name, ScalarType type, uint32_t components) {
 }
 
 const Attribute* Schema::find(std::string_view name) const {
-    const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
+    const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                    [&](const Attribute& a) { return a.name == name; });
     return found == attributes.end() ? nullptr : &*found;
 }
 
 double scalar_at(ScalarType type, const std::byte* at) {
     switch (type) {
-        case ScalarType::u8: return load<uint8_t>(at);
-        case ScalarType::i8: return load<int8_t>(at);
-        case ScalarType::u16: return load<uint16_t>(at);
-        case ScalarType::i16: return load<int16_t>(at);
-        case ScalarType::u32: return load<uint32_t>(at);
-        case ScalarType::i32: return load<int32_t>(at);
-        case ScalarType::u64: return static_cast<double>(load<uint64_t>(at));
-        case ScalarType::i64: return static_cast<double>(load<int64_t>(at));
-        case ScalarType::f32: return load<float>(at);
-        case ScalarType::f64: break;
+        case ScalarType::u8:
+            return load<uint8_t>(at);
+        case ScalarType::i8:
+            return load<int8_t>(at);
+        case ScalarType::u16:
+            return load<uint16_t>(at);
+        case ScalarType::i16:
+            return load<int16_t>(at);
+        case ScalarType::u32:
+            return load<uint32_t>(at);
+        case ScalarType::i32:
+            return load<int32_t>(at);
+        case ScalarType::u64:
+            return static_cast<double>(load<uint64_t>(at));
+        case ScalarType::i64:
+            return static_cast<double>(load<int64_t>(at));
+        case ScalarType::f32:
+            return load<float>(at);
+        case ScalarType::f64:
+            break;
     }
     return load<double>(at);
 }
 
 void store_scalar(ScalarType type, std::byte* at, double value) {
     switch (type) {
-        case ScalarType::u8: return store_rounded<uint8_t>(at, value);
-        case ScalarType::i8: return store_rounded<int8_t>(at, value);
-        case ScalarType::u16: return store_rounded<uint16_t>(at, value);
-        case ScalarType::i16: return store_rounded<int16_t>(at, value);
-        case ScalarType::u32: return store_rounded<uint32_t>(at, value);
-        case ScalarType::i32: return store_rounded<int32_t>(at, value);
-        case ScalarType::u64: return store_rounded<uint64_t>(at, value);
-        case ScalarType::i64: return store_rounded<int64_t>(at, value);
-        case ScalarType::f32: return store(at, static_cast<float>(value));
-        case ScalarType::f64: return store(at, value);
+        case ScalarType::u8:
+            return store_rounded<uint8_t>(at, value);
+        case ScalarType::i8:
+            return store_rounded<int8_t>(at, value);
+        case ScalarType::u16:
+            return store_rounded<uint16_t>(at, value);
+        case ScalarType::i16:
+            return store_rounded<int16_t>(at, value);
+        case ScalarType::u32:
+            return store_rounded<uint32_t>(at, value);
+        case ScalarType::i32:
+            return store_rounded<int32_t>(at, value);
+        case ScalarType::u64:
+            return store_rounded<uint64_t>(at, value);
+        case ScalarType::i64:
+            return store_rounded<int64_t>(at, value);
+        case ScalarType::f32:
+            return store(at, static_cast<float>(value));
+        case ScalarType::f64:
+            return store(at, value);
     }
 }
 
 void add_loss(Losses& losses, std::string_view what, uint64_t count) {
     if (count == 0) return;
-    const auto known = std::find_if(losses.begin(), losses.end(), [&](const Loss& l) { return l.what == what; });
+    const auto known =
+        std::find_if(losses.begin(), losses.end(), [&](const Loss& l) { return l.what == what; });
     if (known == losses.end())
         losses.push_back({std::string(what), count});
     else

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,18 +11,31 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "io/core/error.h"
 #include "io/notes.h"
 
 namespace lucarne::io {
 
 /// The numbers are part of the cache format (octree/FORMAT.md).
-enum class ScalarType : uint8_t { u8 = 1, i8 = 2, u16 = 3, i16 = 4, u32 = 5, i32 = 6, u64 = 7, i64 = 8, f32 = 9, f64 = 10 };
+enum class ScalarType : uint8_t {
+    u8 = 1,
+    i8 = 2,
+    u16 = 3,
+    i16 = 4,
+    u32 = 5,
+    i32 = 6,
+    u64 = 7,
+    i64 = 8,
+    f32 = 9,
+    f64 = 10
+};
 constexpr size_t scalar_bytes(ScalarType type) {
     constexpr std::array<uint8_t, 11> kBytes = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
     return kBytes[static_cast<size_t>(type)];
 }
-std::string_view scalar_name(ScalarType type);                       ///< "u8" ... "f64"
+std::string_view scalar_name(ScalarType type);  ///< "u8" ... "f64"
 std::optional<ScalarType> scalar_type(std::string_view name);
 
 /// How a record stores its three coordinates: exactly as the file did.
@@ -32,7 +44,9 @@ enum class PositionType : uint8_t {
     f32 = 2,
     f64 = 3,
 };
-constexpr size_t position_bytes(PositionType type) { return type == PositionType::f64 ? 24 : 12; }
+constexpr size_t position_bytes(PositionType type) {
+    return type == PositionType::f64 ? 24 : 12;
+}
 
 struct Attribute {
     std::string name;
@@ -45,26 +59,28 @@ struct Attribute {
 
 /// Names every folder agrees on; formats may add any others.
 namespace names {
-inline constexpr std::string_view color = "color";            ///< u8, u16 or f32 x3, sRGB; see color_white
-inline constexpr std::string_view normal = "normal";          ///< f32 or f64 x3, as the file had it; (0,0,0) = none
-inline constexpr std::string_view normal_oct = "normal_oct";  ///< u8 x3, estimated; see octree/tree/attributes.h
-inline constexpr std::string_view area = "area";              ///< u16, surface share at full resolution; ditto
+inline constexpr std::string_view color = "color";    ///< u8, u16 or f32 x3, sRGB; see color_white
+inline constexpr std::string_view normal = "normal";  ///< f32 or f64 x3, as the file had it; (0,0,0) = none
+inline constexpr std::string_view normal_oct =
+    "normal_oct";                                 ///< u8 x3, estimated; see octree/tree/attributes.h
+inline constexpr std::string_view area = "area";  ///< u16, surface share at full resolution; ditto
 inline constexpr std::string_view intensity = "intensity";
 inline constexpr std::string_view classification = "classification";  ///< u8
 inline constexpr std::string_view scan = "scan";  ///< u16: index of the input file; only with several inputs
 // LAS, each as the LAS specification defines it (flags: bit 0 synthetic, 1 key point, 2 withheld, 3 overlap):
-inline constexpr std::string_view return_number = "return_number";          // u8
-inline constexpr std::string_view number_of_returns = "number_of_returns";  // u8
-inline constexpr std::string_view scan_direction = "scan_direction";        // u8
+inline constexpr std::string_view return_number = "return_number";              // u8
+inline constexpr std::string_view number_of_returns = "number_of_returns";      // u8
+inline constexpr std::string_view scan_direction = "scan_direction";            // u8
 inline constexpr std::string_view edge_of_flight_line = "edge_of_flight_line";  // u8
-inline constexpr std::string_view class_flags = "class_flags";              // u8
-inline constexpr std::string_view scanner_channel = "scanner_channel";      // u8
-inline constexpr std::string_view scan_angle_rank = "scan_angle_rank";      // i8, degrees (formats 0-3)
-inline constexpr std::string_view scan_angle = "scan_angle";                // i16, 0.006 degrees (formats 6-8)
-inline constexpr std::string_view user_data = "user_data";                  // u8
-inline constexpr std::string_view point_source_id = "point_source_id";      // u16; the station where poses are known
-inline constexpr std::string_view gps_time = "gps_time";                    // f64
-inline constexpr std::string_view nir = "nir";                              // u16
+inline constexpr std::string_view class_flags = "class_flags";                  // u8
+inline constexpr std::string_view scanner_channel = "scanner_channel";          // u8
+inline constexpr std::string_view scan_angle_rank = "scan_angle_rank";          // i8, degrees (formats 0-3)
+inline constexpr std::string_view scan_angle = "scan_angle";  // i16, 0.006 degrees (formats 6-8)
+inline constexpr std::string_view user_data = "user_data";    // u8
+inline constexpr std::string_view point_source_id =
+    "point_source_id";                                    // u16; the station where poses are known
+inline constexpr std::string_view gps_time = "gps_time";  // f64
+inline constexpr std::string_view nir = "nir";            // u16
 }  // namespace names
 
 /// The layout of one point record: the position first, then the attributes packed in order, no padding.
@@ -102,12 +118,14 @@ void store(std::byte* at, T value) {
 inline glm::dvec3 position_of(const Schema& schema, const std::byte* record) {
     switch (schema.position) {
         case PositionType::i32_scaled: {
-            const glm::dvec3 integers(load<int32_t>(record), load<int32_t>(record + 4), load<int32_t>(record + 8));
+            const glm::dvec3 integers(load<int32_t>(record), load<int32_t>(record + 4),
+                                      load<int32_t>(record + 8));
             return integers * schema.scale + schema.offset;
         }
         case PositionType::f32:
             return {load<float>(record), load<float>(record + 4), load<float>(record + 8)};
-        case PositionType::f64: break;
+        case PositionType::f64:
+            break;
     }
     return {load<double>(record), load<double>(record + 8), load<double>(record + 16)};
 }
@@ -123,8 +141,8 @@ struct Station {
     glm::dvec3 position{0.0};
 };
 
-/// What a file has, or should have, that is not among the points read from it, and why. `what` follows the count:
-/// "points whose state is invalid".
+/// What a file has, or should have, that is not among the points read from it, and why. `what` follows the
+/// count: "points whose state is invalid".
 struct Loss {
     std::string what;
     uint64_t count = 0;
@@ -144,22 +162,23 @@ inline constexpr std::string_view no_number = "points with a coordinate that is 
 /// What a file says besides its points.
 struct ScanInfo {
     std::string path;
-    std::string format;                 ///< "LAS 1.2, point format 3"
-    uint64_t declared_points = 0;       ///< what the header says; the truth is what read() gives
-    uint64_t file_bytes = 0;            ///< with `modified`: which state of the file this is; 0: no file
-    int64_t modified = 0;               ///< of the file, ns since 1970
+    std::string format;            ///< "LAS 1.2, point format 3"
+    uint64_t declared_points = 0;  ///< what the header says; the truth is what read() gives
+    uint64_t file_bytes = 0;       ///< with `modified`: which state of the file this is; 0: no file
+    int64_t modified = 0;          ///< of the file, ns since 1970
     double metres_per_unit = 1.0;
-    bool unit_stated = false;           ///< by the file, its format or the user; else metres are assumed
+    bool unit_stated = false;  ///< by the file, its format or the user; else metres are assumed
     /// How many bits of a component of `color` are in use: 8 or 16 (many 16-bit fields hold 0-255; the
     /// attribute stays as the file had it), 0 for floats from 0 to 1.
     uint32_t color_bits = 8;
     std::vector<Station> stations;
-    FormatNotes notes;                  ///< what export needs to write the same format again
-    std::string coordinate_system;      ///< its name, as the file has it; empty where it says nothing
-    uint32_t epsg = 0;                  ///< its code in the EPSG registry; 0 where the file says none
-    /// The box that the header of a LAS, LAZ or COPC file states, true or not: the least, the largest. Not of caches.
+    FormatNotes notes;              ///< what export needs to write the same format again
+    std::string coordinate_system;  ///< its name, as the file has it; empty where it says nothing
+    uint32_t epsg = 0;              ///< its code in the EPSG registry; 0 where the file says none
+    /// The box that the header of a LAS, LAZ or COPC file states, true or not: the least, the largest. Not of
+    /// caches.
     std::optional<std::array<glm::dvec3, 2>> stated_box;
-    Losses losses;                      ///< what is known before a pass; a cache's: all that its build left out
+    Losses losses;  ///< what is known before a pass; a cache's: all that its build left out
 };
 
 /// The value of a colour component that means full intensity: 255, 65535, or 1 for 0 bits.
@@ -171,7 +190,8 @@ constexpr double color_white(uint32_t color_bits) {
 class PointReader {
  public:
     virtual ~PointReader() = default;
-    /// Replaces `batch` by up to `most` points; 0 at the end. Points with a non-finite coordinate are dropped.
+    /// Replaces `batch` by up to `most` points; 0 at the end. Points with a non-finite coordinate are
+    /// dropped.
     virtual Result<size_t> read(PointBatch& batch, size_t most) = 0;
     virtual uint64_t dropped() const = 0;  ///< how many so far; who made the pass tells the user
     /// What the pass left out so far, dropped points among it, besides the losses of the scan's info.
@@ -187,8 +207,8 @@ class PointSource {
     virtual Result<std::unique_ptr<PointReader>> open() const = 0;
     /// Whether pick() reaches any point without reading those before it.
     virtual bool seekable() const { return false; }
-    /// Replaces `batch` by the points of these indices, ascending and below info().declared_points; those with a
-    /// non-finite coordinate are left out. Thread-safe. Errors: unreadable; not seekable.
+    /// Replaces `batch` by the points of these indices, ascending and below info().declared_points; those
+    /// with a non-finite coordinate are left out. Thread-safe. Errors: unreadable; not seekable.
     virtual Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const;
 };
 

@@ -12,13 +12,16 @@ int main(int argc, char** argv) {
     // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     handle_interrupts();
-    const auto complain = [](const std::string& line) { std::fprintf(stderr, "lucarne: %s\n", line.c_str()); };
+    const auto complain = [](const std::string& line) {
+        std::fprintf(stderr, "lucarne: %s\n", line.c_str());
+    };
     const auto fail = [&](const Error& error) {
         complain(error.line());
         return static_cast<int>(error.kind);
     };
     try {
-        viewer::CommandLine line("lucarne", "Lucarne: point clouds of any size in the light of their own surfaces.");
+        viewer::CommandLine line("lucarne",
+                                 "Lucarne: point clouds of any size in the light of their own surfaces.");
         for (const auto add : viewer::commands()) add(line);
         const auto action = line.parse(argc, argv);
         if (!action) return fail(action.error());

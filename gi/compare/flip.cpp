@@ -1,5 +1,6 @@
-// Based on: Andersson et al. 2020, "FLIP: a difference evaluator for alternating images", sec. 4: a colour pipeline and
-// a feature pipeline, constants and names as there. All of its filters are sums of separable ones, and applied as such.
+// Based on: Andersson et al. 2020, "FLIP: a difference evaluator for alternating images", sec. 4: a colour
+// pipeline and a feature pipeline, constants and names as there. All of its filters are sums of separable
+// ones, and applied as such.
 #include "gi/compare/flip.h"
 
 #include <algorithm>

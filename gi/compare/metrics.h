@@ -53,7 +53,9 @@ Result<HalvesError> compare_with_halves(std::span<const glm::vec4> picture, std:
 Result<void> check_radiance(std::span<const glm::vec4> pixels, uint32_t width, const std::string& name);
 
 /// Rec. 709.
-inline double luminance(const glm::vec4& pixel) { return luminance(glm::dvec3(pixel)); }
+inline double luminance(const glm::vec4& pixel) {
+    return luminance(glm::dvec3(pixel));
+}
 /// Mean luminance of a picture; 0 of an empty one.
 double mean_luminance(std::span<const glm::vec4> picture);
 

@@ -10,8 +10,9 @@ namespace lucarne::gi {
 /// The direct light of a picture, in parts that engines put together. `materials` is what upload_materials
 /// made; all of them work on frame.radiance. Errors: the shader's, no device memory.
 
-/// As many materials as a surfel can name (LUCARNE_DEVICE_MATERIALS). Surfels packed for an earlier scene may name some
-/// that no longer exist: these become the default material, or a white diffuse one where `materials` is empty.
+/// As many materials as a surfel can name (LUCARNE_DEVICE_MATERIALS). Surfels packed for an earlier scene may
+/// name some that no longer exist: these become the default material, or a white diffuse one where
+/// `materials` is empty.
 std::vector<Material> device_materials(std::vector<Material> materials);
 
 /// Uploads device_materials().

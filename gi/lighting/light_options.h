@@ -31,7 +31,8 @@ inline constexpr Option<uint32_t> kLightSamples{{
     .key = "light_samples",
     .label = "light samples",
     .help = "Views a frame of the lights that have a size, and of the sky",
-    .cost = "every view is one more picture from a light: time grows with them, and soft shadows converge sooner",
+    .cost =
+        "every view is one more picture from a light: time grows with them, and soft shadows converge sooner",
     .least = 1,
     .most = 1024,
     .defaults = {int64_t{4}, int64_t{8}, int64_t{32}},

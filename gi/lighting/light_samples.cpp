@@ -6,9 +6,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "gi/shared/brdf.h"
 #include "gi/bounce_options.h"
 #include "gi/lighting/light_options.h"
+#include "gi/shared/brdf.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {

@@ -4,8 +4,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "gi/raster/gbuffer.h"
 #include "gi/lighting/light_options.h"
+#include "gi/raster/gbuffer.h"
 
 namespace lucarne::gi {
 namespace {

@@ -50,8 +50,8 @@ SkyDirections::SkyDirections(std::shared_ptr<const Environment> environment)
 double SkyDirections::weight(uint32_t x, uint32_t y) const {
     const double step = M_PI / environment_->height;
     const double heights = std::cos(y * step) - std::cos((y + 1.0) * step);
-    return luminance(glm::dvec3(environment_->texels[size_t{y} * environment_->width + x])) * heights * 2 * M_PI /
-           environment_->width;
+    return luminance(glm::dvec3(environment_->texels[size_t{y} * environment_->width + x])) * heights * 2 *
+           M_PI / environment_->width;
 }
 
 double SkyDirections::row_weight(uint32_t first_x, uint32_t end_x, uint32_t y) const {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "gi/device/gl/device.h"
-#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
+#include "gi/surfels/surfel_pool.h"
 
 namespace lucarne::gi {
 

@@ -31,8 +31,8 @@ struct Environment {
 /// No more texels than this: 8192 x 4096 take 384 MiB.
 inline constexpr uint64_t kMostEnvironmentTexels = uint64_t{1} << 25;
 
-/// Reads an .exr or .hdr picture (by its name) and scales it; negative values, which filters leave in pictures, become 0. Errors:
-/// the reader's; too large; a texel that is no number or infinite.
+/// Reads an .exr or .hdr picture (by its name) and scales it; negative values, which filters leave in
+/// pictures, become 0. Errors: the reader's; too large; a texel that is no number or infinite.
 Result<Environment> load_environment(const std::filesystem::path& path, const glm::dvec3& scale,
                                      double rotation);
 

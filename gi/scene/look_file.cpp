@@ -193,7 +193,8 @@ json write_look(const Look& look) {
     put("shading_strength", look.unlit.strength, plain.unlit.strength);
     put("eye_dome_pixels", look.unlit.eye_dome_pixels, plain.unlit.eye_dome_pixels);
     put("occlusion_reach", look.unlit.occlusion_reach, plain.unlit.occlusion_reach);
-    if (look.backdrop.kind != Backdrop::Kind::scene) written["backdrop"]["top"] = vector_json(look.backdrop.top);
+    if (look.backdrop.kind != Backdrop::Kind::scene)
+        written["backdrop"]["top"] = vector_json(look.backdrop.top);
     if (look.backdrop.kind == Backdrop::Kind::gradient)
         written["backdrop"]["bottom"] = vector_json(look.backdrop.bottom);
     if (look.clip != plain.clip) written["clip"] = write_clip(look.clip);

@@ -36,7 +36,8 @@ Result<OptionValue> read_option(JsonObject& object, const OptionInfo& option) {
             LUCARNE_ASSIGN(const size_t index, object.choice(key, names));
             return static_cast<int64_t>(index);
         }
-        case OptionKind::colour: break;
+        case OptionKind::colour:
+            break;
     }
     LUCARNE_ASSIGN(const glm::dvec3 colour, object.vector(key, {0, 1}));
     return colour;
@@ -46,11 +47,16 @@ Result<OptionValue> read_option(JsonObject& object, const OptionInfo& option) {
 
 nlohmann::ordered_json option_json(const OptionInfo& option, const OptionValue& value) {
     switch (option.kind) {
-        case OptionKind::flag: return std::get<bool>(value);
-        case OptionKind::integer: return std::get<int64_t>(value);
-        case OptionKind::number: return std::get<double>(value);
-        case OptionKind::choice: return std::string(option.choices[static_cast<size_t>(std::get<int64_t>(value))]);
-        case OptionKind::colour: break;
+        case OptionKind::flag:
+            return std::get<bool>(value);
+        case OptionKind::integer:
+            return std::get<int64_t>(value);
+        case OptionKind::number:
+            return std::get<double>(value);
+        case OptionKind::choice:
+            return std::string(option.choices[static_cast<size_t>(std::get<int64_t>(value))]);
+        case OptionKind::colour:
+            break;
     }
     const auto& colour = std::get<glm::dvec3>(value);
     return {colour.x, colour.y, colour.z};

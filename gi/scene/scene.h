@@ -81,9 +81,9 @@ enum class ToneMap { filmic, reinhard, none, false_colour };
 struct Comparison {
     enum class Show : uint8_t { split, signed_difference, absolute_difference };
     Show show = Show::split;
-    std::string engine;  ///< the other one; empty: the reference
-    double border = 0.5;               ///< share of the width that is left of it: the picture's own engine
-    double range = 1;  ///< differences of the exposed luminance that have the last colours
+    std::string engine;   ///< the other one; empty: the reference
+    double border = 0.5;  ///< share of the width that is left of it: the picture's own engine
+    double range = 1;     ///< differences of the exposed luminance that have the last colours
 
     bool operator==(const Comparison&) const = default;
 };
@@ -98,7 +98,7 @@ struct Scene {
     std::optional<double> exposure_ev;  ///< stops; radiance is multiplied by 2^ev. Empty: automatic
     ToneMap tone_map = ToneMap::filmic;
     std::optional<ValueRange> luminance;  ///< cd/m^2, of false colours; empty: about the exposure's middle
-    glm::dvec3 background{0.0};  ///< radiance where no surfel is; seen by the camera only
+    glm::dvec3 background{0.0};           ///< radiance where no surfel is; seen by the camera only
     std::shared_ptr<const Environment>
         environment;  ///< lights, and is seen in the place of `background`; or none
     bool environment_on = true;

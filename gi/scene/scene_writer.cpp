@@ -173,7 +173,8 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
 }
 
 Result<void> save_scene(const Scene& scene, const std::filesystem::path& path, bool overwrite) {
-    return write_file(path, write_scene(scene, path.parent_path().empty() ? "." : path.parent_path()), overwrite);
+    return write_file(path, write_scene(scene, path.parent_path().empty() ? "." : path.parent_path()),
+                      overwrite);
 }
 
 }  // namespace lucarne::gi

@@ -10,7 +10,8 @@ namespace lucarne::gi {
 #endif
 
 const float kPi = 3.14159265f;
-const float kLargestAlbedo = 0.95f;  // no scanned surface returns more; a closed white room would never darken
+// No scanned surface returns more; a closed white room would never darken.
+const float kLargestAlbedo = 0.95f;
 
 // What is needed of a material and the scan's colour to reflect light: kd + ks <= 1 in every channel.
 struct Reflectance {
@@ -28,9 +29,9 @@ LUCARNE_FN Reflectance make_reflectance(Material material, vec3 albedo) {
     return r;
 }
 
-// The specular lobe alone, 1/sr: ks (n+2)/(2 pi) cos^n of the angle between `to` and the mirror direction of `from`
-// (Lafortune & Willems 1994, "Using the modified Phong reflectance model for physically based rendering", eq. 7).
-// All directions are unit and point away from the surface.
+// The specular lobe alone, 1/sr: ks (n+2)/(2 pi) cos^n of the angle between `to` and the mirror direction of
+// `from` (Lafortune & Willems 1994, "Using the modified Phong reflectance model for physically based
+// rendering", eq. 7). All directions are unit and point away from the surface.
 LUCARNE_FN float specular_brdf(Reflectance r, vec3 normal, vec3 from, vec3 to) {
     if (r.ks <= 0.0f) return 0.0f;
     float cosine = dot(2.0f * dot(normal, from) * normal - from, to);

@@ -22,9 +22,13 @@ const uint kClipUntold = 0u;
 const uint kClipInNone = 1u;  // of the boxes that keep what is inside
 const uint kClipInOne = 2u;
 const uint kClipGone = 3u;
-LUCARNE_FN bool clip_kept(uint known) { return known == kClipUntold || known == kClipInOne; }
+LUCARNE_FN bool clip_kept(uint known) {
+    return known == kClipUntold || known == kClipInOne;
+}
 
-LUCARNE_FN float clip_place(vec3 p, vec4 axis) { return dot(vec3(axis.x, axis.y, axis.z), p) + axis.w; }
+LUCARNE_FN float clip_place(vec3 p, vec4 axis) {
+    return dot(vec3(axis.x, axis.y, axis.z), p) + axis.w;
+}
 LUCARNE_FN uint clip_fold(uint known, vec3 p, vec4 x, vec4 y, vec4 z, float kind) {
     float along = clip_place(p, x);
     if (kind == kClipPlane) return along >= 0.0f ? known : kClipGone;

@@ -10,9 +10,9 @@ namespace lucarne::gi {
 using glm::acos, glm::atan, glm::fract;
 #endif
 
-// Where the unit direction stands in an equirectangular picture, both in [0, 1), from its upper left corner: the
-// zenith (+z) on top, +y in the middle, +x to the right of it. `rotation` turns the picture about z, radians,
-// counterclockwise seen from above.
+// Where the unit direction stands in an equirectangular picture, both in [0, 1), from its upper left corner:
+// the zenith (+z) on top, +y in the middle, +x to the right of it. `rotation` turns the picture about z,
+// radians, counterclockwise seen from above.
 LUCARNE_FN vec2 environment_place(vec3 direction, float rotation) {
     float turns = direction.x == 0.0f && direction.y == 0.0f ? 0.0f : atan(direction.x, direction.y);
     float u = fract(0.5f + (turns + rotation) / 6.28318531f);

@@ -1,11 +1,12 @@
-// Lets one text be both C++ and GLSL 4.50: the names that GLSL has built in, for C++ from glm. Functions are marked
-// LUCARNE_FN, their results LUCARNE_OUT(type); numbers carry the suffix f, which both languages take.
+// Lets one text be both C++ and GLSL 4.50: the names that GLSL has built in, for C++ from glm. Functions are
+// marked LUCARNE_FN, their results LUCARNE_OUT(type); numbers carry the suffix f, which both languages take.
 #ifndef LUCARNE_GI_SHARED_LANGUAGE_H
 #define LUCARNE_GI_SHARED_LANGUAGE_H
 
 #ifdef __cplusplus
 #include <cmath>
 #include <cstdint>
+
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
@@ -18,9 +19,10 @@
 
 namespace lucarne::gi {
 using uint = uint32_t;
-using glm::vec2, glm::vec3, glm::vec4, glm::uvec2;
-using glm::abs, glm::clamp, glm::cross, glm::dot, glm::exp2, glm::inversesqrt, glm::max, glm::min, glm::mix, glm::normalize;
+using glm::abs, glm::clamp, glm::cross, glm::dot, glm::exp2, glm::inversesqrt, glm::max, glm::min, glm::mix,
+    glm::normalize;
 using glm::packSnorm2x16, glm::pow, glm::sqrt, glm::unpackSnorm2x16;
+using glm::vec2, glm::vec3, glm::vec4, glm::uvec2;
 }  // namespace lucarne::gi
 #else
 #define LUCARNE_FN

@@ -1,7 +1,7 @@
 // Lights as the devices hold them (std430), and what they send where, for C++ and GLSL alike.
 //
-// Lights are no surfaces: no camera sees one, none blocks light. What they send is counted where it is first reflected
-// (bounce 0). Surfaces that shine by themselves are surfels with an emission (Material).
+// Lights are no surfaces: no camera sees one, none blocks light. What they send is counted where it is first
+// reflected (bounce 0). Surfaces that shine by themselves are surfels with an emission (Material).
 #ifndef LUCARNE_GI_SHARED_LIGHT_H
 #define LUCARNE_GI_SHARED_LIGHT_H
 
@@ -16,17 +16,22 @@ const uint kPointLight = 1u;        // from a point, everywhere
 const uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
 const uint kRectangleLight = 3u;    // from one side of a rectangle, the same radiance in all directions
 const uint kDiscLight = 4u;         // from one side of a disc, likewise
-const uint kCosineLight = 5u;       // from a point of a rectangle or disc, as the cosine: what those are sampled by
+// From a point of a rectangle or disc, as the cosine: what those are sampled by.
+const uint kCosineLight = 5u;
 
 // What a field holds by kind; fields that a kind does not name are unused.
-//   position   spot, point, cosine, rectangle, disc: m, relative to the local origin (the middle); w: spot: cos_outer
-//   direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the side that shines);
+//   position   spot, point, cosine, rectangle, disc: m, relative to the local origin (the middle); w: spot:
+//   cos_outer direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the side that
+//   shines);
 //              w: spot: cos_inner; directional: angular radius of the cap, 0 to pi/2
-//   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal); directional: irradiance of a
+//   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal); directional:
+//   irradiance of a
 //              surface that faces it, W/m^2; rectangle, disc: radiance, W/(sr m^2)
-//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w: radius, m;
+//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w:
+//   radius, m;
 //              cosine: unit, across the normal: where its faces part
-// A spot's intensity falls from 1 at cos_inner to 0 at cos_outer (half the full angle) as smoothstep of the cosine.
+// A spot's intensity falls from 1 at cos_inner to 0 at cos_outer (half the full angle) as smoothstep of the
+// cosine.
 struct Light {
     vec4 position;
     vec4 direction;
@@ -58,8 +63,8 @@ LUCARNE_FN uint cube_face(vec3 offset) {
     return offset.z > 0.0f ? 4u : 5u;
 }
 
-// The face of a light that an offset from it goes through: one of six of a point light's cube, of four of a cosine
-// light's half space (the quarters about its normal), else 0.
+// The face of a light that an offset from it goes through: one of six of a point light's cube, of four of a
+// cosine light's half space (the quarters about its normal), else 0.
 LUCARNE_FN uint light_face(Light light, vec3 offset) {
     if (light.kind == kPointLight) return cube_face(offset);
     if (light.kind != kCosineLight) return 0u;
@@ -68,9 +73,9 @@ LUCARNE_FN uint light_face(Light light, vec3 offset) {
     return (dot(offset, side) < 0.0f ? 1u : 0u) + (dot(offset, cross(normal, side)) < 0.0f ? 2u : 0u);
 }
 
-// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, point, cosine or directional light, the last as if
-// all of it came from the middle of its cap; `to_light` receives the unit direction to the light. Zero behind the
-// surface and at the light itself.
+// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, point, cosine or directional light,
+// the last as if all of it came from the middle of its cap; `to_light` receives the unit direction to the
+// light. Zero behind the surface and at the light itself.
 LUCARNE_FN vec3 light_irradiance(Light light, vec3 position, vec3 normal, LUCARNE_OUT(vec3) to_light) {
     if (light.kind == kDirectionalLight) {
         to_light = vec3(-light.direction.x, -light.direction.y, -light.direction.z);

@@ -8,10 +8,14 @@
 namespace lucarne::gi {
 #endif
 
-LUCARNE_FN float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
+LUCARNE_FN float luminance(vec3 rgb) {
+    return dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
 #ifdef __cplusplus
-inline double luminance(const glm::dvec3& rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+inline double luminance(const glm::dvec3& rgb) {
+    return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
 }  // namespace lucarne::gi
 #endif
 #endif

@@ -4,6 +4,7 @@
 
 #ifdef __cplusplus
 #include <cstdint>
+
 #include <glm/vec4.hpp>
 namespace lucarne::gi {
 using uint = uint32_t;

@@ -28,14 +28,17 @@ const uint kSurfelHasNormal = 0x40000000u;
 struct CutItem {
     vec3 origin;
     float size;
-    uint clip;         // place behind the items of the shapes that its surfels are tested against, see clip.h; 0: none
-    uint count;        // prefix in use
+    uint clip;   // place behind the items of the shapes that its surfels are tested against, see clip.h; 0:
+                 // none
+    uint count;  // prefix in use
     float area_floor;  // m^2, at that prefix
     uint inner;        // 1: some octant is to be looked up, 0: area_floor holds for all its surfels
     int child[8];      // the cut's item in each octant, or one of the two below
 };
-const int kCoarseOctant = -1;  // the item's floor holds: its child there is not in the cut, or no more is known
-const int kWholeOctant = -2;   // the source has no child there and the item is drawn whole: full resolution, floor 0
+// The item's floor holds: its child there is not in the cut, or no more is known.
+const int kCoarseOctant = -1;
+// The source has no child there and the item is drawn whole: full resolution, floor 0.
+const int kWholeOctant = -2;
 
 // Surfels are processed in blocks of up to kBlockSurfels, each of one item.
 // A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone,
@@ -46,9 +49,10 @@ struct CutBlock {
     uint count;
     uint lod;  // areas at its ends, see below
 };
-// What a surfel would stand for if no finer ones were drawn: the surface's share of each point when the levels of
-// detail down to it are drawn, and its own node up to it. Along a block it falls from `lod & 0xffff` to `lod >> 16`,
-// codes of an area of 2^(code / 512 - 64) m^2; its inverse, the density, rises evenly.
+// What a surfel would stand for if no finer ones were drawn: the surface's share of each point when the
+// levels of detail down to it are drawn, and its own node up to it. Along a block it falls from `lod &
+// 0xffff` to `lod >> 16`, codes of an area of 2^(code / 512 - 64) m^2; its inverse, the density, rises
+// evenly.
 const uint kBlockSurfels = 256u;
 const uint kNoSurfel = 0xffffffffu;
 

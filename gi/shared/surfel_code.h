@@ -9,12 +9,13 @@
 namespace lucarne::gi {
 #endif
 
-// Octahedral unit vectors (Meyer et al. 2010, "On floating-point normal vectors"), two signed 16-bit fractions: the
-// largest error is .004 degrees.
+// Octahedral unit vectors (Meyer et al. 2010, "On floating-point normal vectors"), two signed 16-bit
+// fractions: the largest error is .004 degrees.
 LUCARNE_FN uint encode_octahedral(vec3 n) {
     vec2 p = vec2(n.x, n.y) / (abs(n.x) + abs(n.y) + abs(n.z));
     if (n.z < 0.0f)
-        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
+        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
+                 (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
     return packSnorm2x16(p);
 }
 LUCARNE_FN vec3 decode_octahedral(uint code) {
@@ -36,7 +37,8 @@ LUCARNE_FN float linear_to_srgb(float v) {
 
 // Linear Rec. 709 of the 3 x 10 bits of PackedSurfel.d.
 LUCARNE_FN vec3 decode_albedo(uint code) {
-    return vec3(srgb_to_linear(float(code & 1023u) / 1023.0f), srgb_to_linear(float(code >> 10 & 1023u) / 1023.0f),
+    return vec3(srgb_to_linear(float(code & 1023u) / 1023.0f),
+                srgb_to_linear(float(code >> 10 & 1023u) / 1023.0f),
                 srgb_to_linear(float(code >> 20 & 1023u) / 1023.0f));
 }
 
@@ -64,7 +66,9 @@ LUCARNE_FN float surfel_own_area(uint b, float size) {
     uint code = b >> 16 & 255u;
     return code == kUnknownArea ? 0.0f : size * size * exp2(-0.125f * float(code));
 }
-LUCARNE_FN uint surfel_material(uint b) { return b >> 24; }
+LUCARNE_FN uint surfel_material(uint b) {
+    return b >> 24;
+}
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi

@@ -9,7 +9,8 @@
 namespace lucarne::gi {
 #endif
 
-// Narkowicz 2015, "ACES filmic tone mapping curve": a fit of the ACES reference transform, channel by channel.
+// Narkowicz 2015, "ACES filmic tone mapping curve": a fit of the ACES reference transform, channel by
+// channel.
 LUCARNE_FN vec3 filmic_curve(vec3 x) {
     return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
 }
@@ -19,8 +20,8 @@ LUCARNE_FN vec3 reinhard_curve(vec3 x) {
     return x / (1.0f + luminance(x));
 }
 
-// Exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none). What is no
-// number becomes black.
+// Exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none). What is
+// no number becomes black.
 LUCARNE_FN vec3 tone_curve(vec3 x, uint curve) {
     // Beyond 10^4 every curve is white; the bound keeps infinity out of the quotients.
     for (int i = 0; i < 3; ++i) x[i] = x[i] > 0.0f ? min(x[i], 1e4f) : 0.0f;

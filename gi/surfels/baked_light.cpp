@@ -7,9 +7,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/surfel_pool.h"
 #include "octree/tree/bulk.h"
 
 namespace lucarne::gi {

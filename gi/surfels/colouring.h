@@ -48,8 +48,8 @@ class Colouring {
 /// What a look shows of a source, measured on its coarsest nodes, which are an even sample. The same on every
 /// run.
 struct ShownValues {
-    /// The look's; or the 1st and the 99th percentile, of elevations in the source's unit. Empty where no point
-    /// has the attribute, or where the look needs no range.
+    /// The look's; or the 1st and the 99th percentile, of elevations in the source's unit. Empty where no
+    /// point has the attribute, or where the look needs no range.
     std::optional<ValueRange> range;
     std::bitset<256> numbers;  ///< that classes, return numbers or scans have
     std::bitset<256> classes;  ///< that there are, whatever is shown

@@ -4,10 +4,10 @@
 
 #include <glm/vector_relational.hpp>
 
+#include "gi/shared/surfel_code.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
 #include "gi/surfels/surfel_pool.h"
-#include "gi/shared/surfel_code.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/point_normals.h"
 

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include <tl/expected.hpp>
 
 namespace lucarne {
 
 /// Three kinds of error, three ways:
-///  - a broken invariant of our own code: `assert` (or std::logic_error where a release build must stop as well);
+///  - a broken invariant of our own code: `assert` (or std::logic_error where a release build must stop as
+///  well);
 ///  - bad input, a full disk, a missing device: a `Result` that carries an `Error`;
 ///  - only viewer/main.cpp prints an `Error` and turns it into an exit code.
 /// The enumerators are the exit codes of `lucarne`.
@@ -26,7 +28,8 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> failure(ErrorKind kind, std::string what, std::string why, std::string todo = {}) {
+inline tl::unexpected<Error> failure(ErrorKind kind, std::string what, std::string why,
+                                     std::string todo = {}) {
     return tl::make_unexpected(Error{kind, std::move(what), std::move(why), std::move(todo)});
 }
 /// The machine or the disk does not do it (exit 1).
@@ -48,15 +51,15 @@ inline auto rejected(std::string what, std::string why, std::string todo = {}) {
 #define LUCARNE_JOIN(a, b) LUCARNE_JOIN_(a, b)
 
 /// Returns the error of a `Result<void>` expression from the enclosing function.
-#define LUCARNE_TRY(expression)                                                          \
-    do {                                                                                 \
-        if (auto lucarne_result = (expression); !lucarne_result)                         \
-            return tl::make_unexpected(std::move(lucarne_result).error());               \
+#define LUCARNE_TRY(expression)                                            \
+    do {                                                                   \
+        if (auto lucarne_result = (expression); !lucarne_result)           \
+            return tl::make_unexpected(std::move(lucarne_result).error()); \
     } while (false)
 
 /// `LUCARNE_ASSIGN(auto file, InputFile::open(path))`: declares or assigns the value, or returns the error.
-#define LUCARNE_ASSIGN(target, expression)                                               \
-    auto LUCARNE_JOIN(lucarne_result_, __LINE__) = (expression);                         \
-    if (!LUCARNE_JOIN(lucarne_result_, __LINE__))                                        \
+#define LUCARNE_ASSIGN(target, expression)                                                      \
+    auto LUCARNE_JOIN(lucarne_result_, __LINE__) = (expression);                                \
+    if (!LUCARNE_JOIN(lucarne_result_, __LINE__))                                               \
         return tl::make_unexpected(std::move(LUCARNE_JOIN(lucarne_result_, __LINE__)).error()); \
     target = std::move(*LUCARNE_JOIN(lucarne_result_, __LINE__))

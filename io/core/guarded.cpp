@@ -11,7 +11,8 @@ Error described(std::string_view what) {
     try {
         throw;
     } catch (const std::bad_alloc&) {
-        return {ErrorKind::failed, std::move(subject), "there is not enough memory", "close something and try again"};
+        return {ErrorKind::failed, std::move(subject), "there is not enough memory",
+                "close something and try again"};
     } catch (const std::exception& problem) {
         return {ErrorKind::failed, std::move(subject), problem.what(), ""};
     } catch (...) {
@@ -25,7 +26,8 @@ Error caught(std::string_view what) {
     try {
         return described(what);
     } catch (const std::bad_alloc&) {
-        return {ErrorKind::failed, "", "out of memory", ""};  // short enough for strings that allocate nothing
+        return {ErrorKind::failed, "", "out of memory",
+                ""};  // short enough for strings that allocate nothing
     }
 }
 

@@ -7,12 +7,13 @@
 
 namespace lucarne {
 
-/// The exception that is being handled as an error about `what`; to be called inside a catch block. Needs no memory
-/// where there is none left.
+/// The exception that is being handled as an error about `what`; to be called inside a catch block. Needs no
+/// memory where there is none left.
 Error caught(std::string_view what);
 
-/// Returns what `work` returns, a Result or nothing, and an error about `what` for anything it throws. Whatever runs
-/// at the top of a thread goes through this: an exception that leaves a thread ends the program.
+/// Returns what `work` returns, a Result or nothing, and an error about `what` for anything it throws.
+/// Whatever runs at the top of a thread goes through this: an exception that leaves a thread ends the
+/// program.
 template <class Work>
 auto guarded(std::string_view what, Work&& work) {
     using Returned = std::invoke_result_t<Work&>;

@@ -23,8 +23,8 @@ void forget_interrupt(const std::filesystem::path& unfinished);
 /// they are blocked.
 void handle_interrupts();
 
-/// Takes the first of the signals instead of ending the program: requested() reports it, so that a window can save its
-/// work and close. A second signal ends the program as usual. Only one object may exist at a time.
+/// Takes the first of the signals instead of ending the program: requested() reports it, so that a window can
+/// save its work and close. A second signal ends the program as usual. Only one object may exist at a time.
 class InterruptRequest {
  public:
     InterruptRequest();

@@ -21,8 +21,8 @@ class JobQueue {
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
-    /// Runs `work` on the thread and then, there, `done` with the Result that it returns. What `work` throws (memory
-    /// runs out) becomes an error about `what`: so `done` always comes.
+    /// Runs `work` on the thread and then, there, `done` with the Result that it returns. What `work` throws
+    /// (memory runs out) becomes an error about `what`: so `done` always comes.
     template <class Work, class Done>
     void push(std::string what, Work work, Done done) {
         push_job([what = std::move(what), work = std::move(work), done = std::move(done)]() mutable {

@@ -35,8 +35,8 @@ std::shared_ptr<Said>& said_by_thread() {
 
 spdlog::logger& logger() {
     static const auto instance = [] {
-        auto made =
-            std::make_shared<spdlog::logger>("lucarne", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        auto made = std::make_shared<spdlog::logger>("lucarne",
+                                                     std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
         made->set_pattern("lucarne: %^%v%$");
         return made;
     }();

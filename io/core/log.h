@@ -1,10 +1,10 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <memory>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace lucarne::log {
 
@@ -15,9 +15,9 @@ void info(std::string_view text);
 void warn(std::string_view text);
 void set_quiet(bool quiet);  ///< drops `info`, keeps `warn`
 
-/// What warnings belong to: a command, or the opening of a scan with all that is done with it. The same warning is said
-/// once in an operation, however often a file is read in it, and again in the next one. Outside of all operations
-/// every warning is said. Copies are the same operation.
+/// What warnings belong to: a command, or the opening of a scan with all that is done with it. The same
+/// warning is said once in an operation, however often a file is read in it, and again in the next one.
+/// Outside of all operations every warning is said. Copies are the same operation.
 class Operation {
  public:
     Operation();
@@ -42,13 +42,11 @@ class Operation {
 };
 
 template <class... Args>
-    requires(sizeof...(Args) > 0)
-void info(fmt::format_string<Args...> text, Args&&... args) {
+requires(sizeof...(Args) > 0) void info(fmt::format_string<Args...> text, Args&&... args) {
     info(std::string_view(fmt::format(text, std::forward<Args>(args)...)));
 }
 template <class... Args>
-    requires(sizeof...(Args) > 0)
-void warn(fmt::format_string<Args...> text, Args&&... args) {
+requires(sizeof...(Args) > 0) void warn(fmt::format_string<Args...> text, Args&&... args) {
     warn(std::string_view(fmt::format(text, std::forward<Args>(args)...)));
 }
 

@@ -1,10 +1,10 @@
 #include "io/core/options.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
 #include <string>
+
+#include <fmt/format.h>
 
 namespace lucarne {
 
@@ -16,9 +16,11 @@ Result<uint64_t> parse_bytes(std::string_view option, std::string_view text) {
     double factor = 0;
     if (unit.empty() || unit == "B") {
         factor = 1;
-    } else if (const auto at = kPrefixes.find(static_cast<char>(unit[0] & ~0x20)); at != std::string_view::npos) {
+    } else if (const auto at = kPrefixes.find(static_cast<char>(unit[0] & ~0x20));
+               at != std::string_view::npos) {
         const auto rest = unit.substr(1);
-        if (rest.empty() || rest == "B" || rest == "iB") factor = std::pow(1024.0, static_cast<double>(at + 1));
+        if (rest.empty() || rest == "B" || rest == "iB")
+            factor = std::pow(1024.0, static_cast<double>(at + 1));
     }
     const double bytes = number * factor;
     if (code != std::errc{} || factor == 0 || !(bytes >= 0) || bytes > 9e15)
@@ -34,7 +36,8 @@ Result<uint64_t> parse_count(std::string_view option, std::string_view text) {
     double factor = 0;
     if (unit.empty()) factor = 1;
     if (unit.size() == 1)
-        if (const auto at = std::string_view("KMG").find(static_cast<char>(unit[0] & ~0x20)); at != std::string_view::npos)
+        if (const auto at = std::string_view("KMG").find(static_cast<char>(unit[0] & ~0x20));
+            at != std::string_view::npos)
             factor = std::pow(1000.0, static_cast<double>(at + 1));
     const double count = std::round(number * factor);
     if (code != std::errc{} || factor == 0 || !(count >= 0) || count > 0x1p53)

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <cstddef>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include "io/core/error.h"
 #include "io/core/log.h"
@@ -20,13 +20,17 @@
 
 namespace lucarne {
 
-/// What one thread did before give() happens before what another does after take(). TBB sees to that; but its library
-/// is not built for ThreadSanitizer, which has to be told. Nothing in other builds.
+/// What one thread did before give() happens before what another does after take(). TBB sees to that; but its
+/// library is not built for ThreadSanitizer, which has to be told. Nothing in other builds.
 class HandOver {
  public:
 #ifdef __SANITIZE_THREAD__
-    void give() { __tsan_release(this); }
-    void take() { __tsan_acquire(this); }
+    void give() {
+        __tsan_release(this);
+    }
+    void take() {
+        __tsan_acquire(this);
+    }
 #else
     void give() {}
     void take() {}
@@ -57,8 +61,8 @@ class ThreadLimit {
 };
 
 /// body(first, last) over [0, count) in pieces of at most `grain`, in parallel. The pieces do not depend on
-/// the number of threads, so a body that depends on nothing but its piece gives the same result every run. Its warnings
-/// belong to the caller's operation, and what it throws is thrown here.
+/// the number of threads, so a body that depends on nothing but its piece gives the same result every run.
+/// Its warnings belong to the caller's operation, and what it throws is thrown here.
 template <class Body>
 void parallel_ranges(size_t count, size_t grain, const Body& body) {
     const size_t pieces = (count + grain - 1) / grain;

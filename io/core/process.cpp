@@ -21,15 +21,16 @@ uint64_t resident_memory() {
 }
 
 void give_way() {
-    // Linux keeps niceness by thread (setpriority(2), "C library/kernel differences"); five steps weigh a third.
-    // From the main thread's, so that who calls twice gives way once.
+    // Linux keeps niceness by thread (setpriority(2), "C library/kernel differences"); five steps weigh a
+    // third. From the main thread's, so that who calls twice gives way once.
     constexpr int kStep = 5;
     const int usual = getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), usual + kStep);
 }
 
 double seconds_since_start() {
-    std::ifstream stat("/proc/self/stat");  // pid (name) state ...: the 22nd is the start, ticks since boot (proc(5))
+    std::ifstream stat(
+        "/proc/self/stat");  // pid (name) state ...: the 22nd is the start, ticks since boot (proc(5))
     std::string text;
     std::getline(stat, text);
     const size_t name_end = text.rfind(')');

@@ -21,8 +21,8 @@ double seconds_since_start();
 /// Whether a program of this name can be run from one of the folders in $PATH.
 bool program_installed(const std::string& program);
 
-/// Starts `words[0]`, looked for in $PATH, with the other words as its arguments and no signal blocked. Returns 0 or
-/// an errno; `pid` is the new process.
+/// Starts `words[0]`, looked for in $PATH, with the other words as its arguments and no signal blocked.
+/// Returns 0 or an errno; `pid` is the new process.
 int spawn(const std::vector<std::string>& words, const posix_spawn_file_actions_t& actions, pid_t& pid);
 
 }  // namespace lucarne

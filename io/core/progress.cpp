@@ -1,12 +1,12 @@
 #include "io/core/progress.h"
 
-#include "io/core/terminal.h"
+#include <algorithm>
+#include <cstdio>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdio>
+#include "io/core/terminal.h"
 
 namespace lucarne {
 namespace {
@@ -26,14 +26,21 @@ std::string count_text(double n) {
 }  // namespace
 
 Progress::Progress(std::string label, uint64_t total, std::string unit)
-    : label_(shown(label)), unit_(std::move(unit)), total_(total),
-      start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {
+    : label_(shown(label)),
+      unit_(std::move(unit)),
+      total_(total),
+      start_(std::chrono::steady_clock::now()),
+      terminal_(isatty(STDERR_FILENO) == 1) {
     next_print_ms_ = terminal_ ? 100 : 10'000;
 }
 
-Progress::~Progress() { print(true); }
+Progress::~Progress() {
+    print(true);
+}
 
-void Progress::set_silent(bool silent) { silent_flag() = silent; }
+void Progress::set_silent(bool silent) {
+    silent_flag() = silent;
+}
 
 double Progress::seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -56,19 +63,22 @@ void Progress::print(bool last) {
     const char *start = terminal_ ? "\r" : "", *end = terminal_ ? "\x1b[K" : "\n";
     std::string line;
     if (last) {
-        line = fmt::format("{}lucarne: {}: {} {} in {:.1f} s ({}/s){}\n", start, label_, count_text(done), unit_, elapsed,
-                           count_text(rate), terminal_ ? end : "");
+        line = fmt::format("{}lucarne: {}: {} {} in {:.1f} s ({}/s){}\n", start, label_, count_text(done),
+                           unit_, elapsed, count_text(rate), terminal_ ? end : "");
     } else if (total_ == 0) {
-        line = fmt::format("{}lucarne: {}: {} {}, {}/s{}", start, label_, count_text(done), unit_, count_text(rate), end);
+        line = fmt::format("{}lucarne: {}: {} {}, {}/s{}", start, label_, count_text(done), unit_,
+                           count_text(rate), end);
     } else {
         const double share = std::min(1.0, done / static_cast<double>(total_));
         const double left = rate > 0 ? (static_cast<double>(total_) - done) / rate : 0;
         const auto filled = static_cast<size_t>(share * 20);
-        const std::string bar = terminal_ ? fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", 20 - filled) : "";
-        line = fmt::format("{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", start, label_, bar, share * 100,
-                           count_text(rate), unit_, std::max(0.0, left), end);
+        const std::string bar =
+            terminal_ ? fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", 20 - filled) : "";
+        line = fmt::format("{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", start, label_, bar,
+                           share * 100, count_text(rate), unit_, std::max(0.0, left), end);
     }
-    // fmt::print would throw where stderr cannot be written (a log on a full disk): no reason to stop the work.
+    // fmt::print would throw where stderr cannot be written (a log on a full disk): no reason to stop the
+    // work.
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }

@@ -13,10 +13,14 @@ constexpr uint64_t mix64(uint64_t x) {
     return x ^ (x >> 31);
 }
 
-constexpr uint64_t mix64(uint64_t seed, uint64_t index) { return mix64(mix64(seed) ^ index); }
+constexpr uint64_t mix64(uint64_t seed, uint64_t index) {
+    return mix64(mix64(seed) ^ index);
+}
 
 /// Uniform in [0, 1): the upper 53 bits of a mixed word.
-constexpr double unit_double(uint64_t mixed) { return static_cast<double>(mixed >> 11) * 0x1.0p-53; }
+constexpr double unit_double(uint64_t mixed) {
+    return static_cast<double>(mixed >> 11) * 0x1.0p-53;
+}
 
 /// A small sequential generator over mix64: the stream of (seed, stream id).
 class Random {

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/files/file_io.h"
 #include "io/core/interrupt.h"
+#include "io/files/file_io.h"
 #include "io/files/private_file.h"
 
 namespace lucarne {
@@ -45,7 +45,8 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared
     // Without O_NONBLOCK a FIFO would hang us.
     auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (handle->fd() < 0)
-        return rejected(path.empty() ? "''" : path.string(), fmt::format("cannot be opened ({})", reason(errno)));
+        return rejected(path.empty() ? "''" : path.string(),
+                        fmt::format("cannot be opened ({})", reason(errno)));
     struct stat status {};
     if (::fstat(handle->fd(), &status) != 0 || !S_ISREG(status.st_mode))
         return rejected(path.string(), "is not a regular file");

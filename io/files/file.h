@@ -13,8 +13,8 @@
 
 namespace lucarne {
 
-/// A regular file opened for reading at any offset (pread). Directories, devices, missing and unreadable files are
-/// rejected with their reason. Its size and time are those of when it was opened.
+/// A regular file opened for reading at any offset (pread). Directories, devices, missing and unreadable
+/// files are rejected with their reason. Its size and time are those of when it was opened.
 class InputFile final : public ByteSource {
  public:
     /// With `pool` the handle is one of a bounded number, and the file must keep its name while it is read.
@@ -52,7 +52,8 @@ class OutputFile {
     OutputFile& operator=(OutputFile&& other) noexcept;
     ~OutputFile();
 
-    Result<void> append(std::span<const std::byte> data);  ///< at position(); unbuffered: hand over large pieces
+    Result<void> append(
+        std::span<const std::byte> data);  ///< at position(); unbuffered: hand over large pieces
     Result<void> append(std::string_view text);
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;

@@ -77,8 +77,10 @@ Result<void> sync_name(const std::filesystem::path& path) {
     const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const int error = folder < 0 ? errno : sync_error(folder);
     if (folder >= 0) ::close(folder);
-    // fsync(2): EINVAL, EROFS and ENOTSUP mean "no sync here"; some network file systems say EBADF of folders.
-    const bool unsupported = folder >= 0 && (error == EINVAL || error == EROFS || error == ENOTSUP || error == EBADF);
+    // fsync(2): EINVAL, EROFS and ENOTSUP mean "no sync here"; some network file systems say EBADF of
+    // folders.
+    const bool unsupported =
+        folder >= 0 && (error == EINVAL || error == EROFS || error == ENOTSUP || error == EBADF);
     const bool unreadable = folder < 0 && (error == EACCES || error == EPERM);
     if (error == 0 || unsupported || unreadable) return {};
     return failed(path.string(), fmt::format("is written, but its name cannot be synced ({})", reason(error)),

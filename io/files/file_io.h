@@ -22,8 +22,8 @@ Result<void> read_exactly(int fd, uint64_t offset, std::span<std::byte> out,
 /// Waits until what was written is on the disk. `path` only names the file in errors.
 Result<void> sync(int fd, const std::filesystem::path& path);
 /// Waits until the name of `path`, new or replaced, is on the disk. Does nothing on a file system that cannot
-/// sync folders, or for a folder that may be written but not read. Any other error (EIO, ENOSPC, EDQUOT) means
-/// that the name may be lost when the power fails.
+/// sync folders, or for a folder that may be written but not read. Any other error (EIO, ENOSPC, EDQUOT)
+/// means that the name may be lost when the power fails.
 Result<void> sync_name(const std::filesystem::path& path);
 /// Syncs a file that another program has written as `part`, gives it its final `name` in the same folder,
 /// where it replaces what is there, and syncs that.

@@ -43,7 +43,8 @@ class HandlePool {
     /// Opens a file for reading: a file descriptor, or -1 and errno.
     using Opener = std::function<int(const std::filesystem::path&)>;
 
-    explicit HandlePool(size_t most, Opener opener = open_to_read) : most_(most), opener_(std::move(opener)) {}
+    explicit HandlePool(size_t most, Opener opener = open_to_read)
+        : most_(most), opener_(std::move(opener)) {}
     static int open_to_read(const std::filesystem::path& path);
 
     /// A number for a file that will be asked for again; `handle` where it is open.

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "io/files/file.h"
 #include "io/core/terminal.h"
+#include "io/files/file.h"
 
 namespace lucarne {
 namespace {
@@ -30,7 +30,8 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
     bool end_object() override { return true; }
     bool start_array(size_t) override { return true; }
     bool end_array() override { return true; }
-    bool parse_error(size_t position, const std::string& token, const nlohmann::json::exception& error) override {
+    bool parse_error(size_t position, const std::string& token,
+                     const nlohmann::json::exception& error) override {
         constexpr size_t kMostQuoted = 40;
         constexpr std::string_view kExpected = "; expected ";  // the end of the library's reason
         const bool too_large = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;

@@ -20,7 +20,8 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
 Result<std::string> load_text(const std::filesystem::path& path);
 Result<nlohmann::json> load_json(const std::filesystem::path& path);
 
-/// As a file holds it: indented, with a final line end. Bytes that are no UTF-8, as in names of files, become U+FFFD.
+/// As a file holds it: indented, with a final line end. Bytes that are no UTF-8, as in names of files, become
+/// U+FFFD.
 template <class Json>
 std::string json_text(const Json& value) {
     return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

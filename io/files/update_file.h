@@ -16,7 +16,8 @@ class UpdateFile {
  public:
     /// Errors: missing, unwritable or no regular file; locked by somebody else, who `busy` says it is.
     static Result<UpdateFile> open(const std::filesystem::path& path, const char* busy);
-    /// The same of a file in a private folder (private_file.h); makes it where there is none, if it is to `create`.
+    /// The same of a file in a private folder (private_file.h); makes it where there is none, if it is to
+    /// `create`.
     static Result<UpdateFile> open_private(const std::filesystem::path& path, bool create, const char* busy);
     UpdateFile(UpdateFile&& other) noexcept;
     UpdateFile& operator=(UpdateFile&& other) noexcept;

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/common/value_range.h"
 #include "io/formats/las/crs.h"
 #include "io/formats/las/extras.h"
-#include "io/formats/common/value_range.h"
 
 namespace lucarne::io {
 namespace {
@@ -69,8 +69,8 @@ void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
         return scan.declared_points > 0 && !says_system(scan);
     });
     if (silent != scans.end())
-        notes.system_note = fmt::format("{} says no coordinate system and is taken to be in that of {}", silent->path,
-                                        giver->path);
+        notes.system_note = fmt::format("{} says no coordinate system and is taken to be in that of {}",
+                                        silent->path, giver->path);
 }
 
 }  // namespace

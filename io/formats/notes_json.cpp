@@ -48,7 +48,8 @@ void add_las(const LasNotes& h, json& to) {
 
 void add_ply(const PlyNotes& ply, json& to) {
     json properties = json::array();
-    for (const auto& p : ply.properties) properties.push_back({{"name", p.name}, {"type", ply::word_of(p.type)}});
+    for (const auto& p : ply.properties)
+        properties.push_back({{"name", p.name}, {"type", ply::word_of(p.type)}});
     to["properties"] = std::move(properties);
     to["comments"] = ply.comments;
     to["obj_info"] = ply.infos;
@@ -268,12 +269,14 @@ std::optional<E57Notes> e57_of(const json& from) {
     for (const char* key : {"library", "coordinate_system", "scans", "images", "image_count"})
         any = any || from.contains(key);
     if (!any) return std::nullopt;
-    E57Notes e57{text_at(from, "guid"), text_at(from, "library"), text_at(from, "coordinate_system"), {}, {},
-                 whole_at(from, "image_count")};
+    E57Notes e57{
+        text_at(from, "guid"),        text_at(from, "library"), text_at(from, "coordinate_system"), {}, {},
+        whole_at(from, "image_count")};
     for (const json& scan : list_at(from, "scans")) e57.scans.push_back(scan_of(scan));
     for (const json& image : list_at(from, "images"))
-        e57.images.push_back({text_at(image, "name"), text_at(image, "representation"), text_at(image, "encoding"),
-                              whole_at(image, "bytes"), whole_at(image, "width"), whole_at(image, "height")});
+        e57.images.push_back({text_at(image, "name"), text_at(image, "representation"),
+                              text_at(image, "encoding"), whole_at(image, "bytes"), whole_at(image, "width"),
+                              whole_at(image, "height")});
     return e57;
 }
 
@@ -299,7 +302,9 @@ std::optional<IntensityLimits> limits_of(const json* from) {
     const auto numbers = numbers_of<2>(from);
     if (!numbers) return std::nullopt;
     constexpr double kMostWhole = 0x1p53;  // doubles hold every integer up to here
-    const auto whole = [&](size_t i) { return (*from)[i].is_number_integer() && std::abs((*numbers)[i]) <= kMostWhole; };
+    const auto whole = [&](size_t i) {
+        return (*from)[i].is_number_integer() && std::abs((*numbers)[i]) <= kMostWhole;
+    };
     return IntensityLimits{(*numbers)[0], (*numbers)[1], whole(0) && whole(1)};
 }
 

@@ -7,18 +7,18 @@
 
 #include "io/core/log.h"
 #include "io/core/terminal.h"
-#include "io/formats/copc/copc.h"
 #include "io/formats/common/format.h"
-#include "io/formats/las/extras.h"
 #include "io/formats/common/text.h"
+#include "io/formats/copc/copc.h"
+#include "io/formats/las/extras.h"
 
 namespace lucarne::io {
 namespace {
 
 // Text comes last: other formats are text as well.
 auto formats() {
-    return std::array{&las_format(), &laz_format(), &ply_format(), &e57_format(),
-                      &pcd_format(), &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
+    return std::array{&las_format(), &laz_format(), &ply_format(),  &e57_format(), &pcd_format(),
+                      &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
 }
 
 /// What a file is that we do not read, for a better message than "unknown".
@@ -36,7 +36,8 @@ Result<std::unique_ptr<PointSource>> open_scan(const std::filesystem::path& path
     return open_scan(std::move(file), options);
 }
 
-Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource> file,
+                                               const ReadOptions& options) {
     const std::filesystem::path& path = file->path();
     if (file->size() == 0) return rejected(path.string(), "is empty");
     std::array<std::byte, kHeadBytes> bytes{};
@@ -99,9 +100,9 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
                       scaled);
         return format->create(path, schema, info, options);
     }
-    return bad_arguments(path.string(),
-                         fmt::format("the extension '{}' names no format that can be written", extension),
-                         "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
+    return bad_arguments(
+        path.string(), fmt::format("the extension '{}' names no format that can be written", extension),
+        "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
 }
 
 void set_unit(ScanInfo& info, const ReadOptions& options, std::optional<double> stated) {

@@ -54,8 +54,9 @@ namespace {
 std::optional<std::string> savable(const PointSource& scan) {
     const ScanInfo& info = scan.info();
     const auto damaged = [](const Losses& losses) {
-        constexpr std::array kDamage = {lost::cut_off,       lost::damaged,  lost::cut_scan,     mesh::kCutFaces,
-                                        mesh::kDamagedFaces, mesh::kCutLine, mesh::kDamagedLines};
+        constexpr std::array kDamage = {lost::cut_off,      lost::damaged,       lost::cut_scan,
+                                        mesh::kCutFaces,    mesh::kDamagedFaces, mesh::kCutLine,
+                                        mesh::kDamagedLines};
         return std::ranges::any_of(
             losses, [&](const Loss& loss) { return std::ranges::find(kDamage, loss.what) != kDamage.end(); });
     };
@@ -75,7 +76,8 @@ std::optional<std::string> savable(const PointSource& scan) {
 }  // namespace
 
 Error with_salvage_advice(Error error, const std::filesystem::path& path, const ReadOptions& options) {
-    if (error.kind != ErrorKind::input_rejected || options.salvage || error.what != path.string()) return error;
+    if (error.kind != ErrorKind::input_rejected || options.salvage || error.what != path.string())
+        return error;
     ReadOptions salvaging = options;
     salvaging.salvage = salvaging.quiet = true;
     const auto scan = open_scan(path, salvaging);

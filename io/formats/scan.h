@@ -16,9 +16,9 @@ namespace lucarne::io {
 
 /// How a mesh becomes points. `spacing` goes before `samples`; neither: by the mesh's size and vertices.
 struct MeshOptions {
-    double spacing = 0;        ///< mean distance of samples, metres
-    uint64_t samples = 0;      ///< about so many
-    bool vertices = false;     ///< its vertices are the points, and its faces are nothing
+    double spacing = 0;     ///< mean distance of samples, metres
+    uint64_t samples = 0;   ///< about so many
+    bool vertices = false;  ///< its vertices are the points, and its faces are nothing
 };
 
 /// What a user knows better than the file.
@@ -70,9 +70,9 @@ struct WriteOptions {
     std::function<Result<void>(const std::function<bool(std::span<const std::byte>)>& visit)> preview{};
 };
 
-/// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file appears when `finish`
-/// succeeds. `info.notes` of a source of the same format restores its header (version, point format, VLRs,
-/// types).
+/// A writer for the format that `path`'s extension names (.las, .laz, .ply, .pcd, .csv, .txt, .xyz); the file
+/// appears when `finish` succeeds. `info.notes` of a source of the same format restores its header (version,
+/// point format, VLRs, types).
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options);
 

@@ -14,8 +14,8 @@
 #include <ImfOutputFile.h>
 #include <fmt/format.h>
 
-#include "io/files/file.h"
 #include "io/core/terminal.h"
+#include "io/files/file.h"
 #include "io/image/exr_header.h"
 #include "io/image/image.h"
 
@@ -60,7 +60,7 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
-constexpr size_t kMostReason = 120;  ///< bytes of what the library says
+constexpr size_t kMostReason = 120;    ///< bytes of what the library says
 constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
 
 /// Lines from `line` on into `pixels`, the channels of these names into its components.
@@ -154,7 +154,8 @@ Result<Image> read_exr(const std::filesystem::path& path, uint64_t most_pixels) 
     try {
         return decode(file, most_pixels);
     } catch (const std::exception& error) {
-        return rejected(path.string(), fmt::format("is no usable EXR picture ({})", shown(error.what(), kMostReason)));
+        return rejected(path.string(),
+                        fmt::format("is no usable EXR picture ({})", shown(error.what(), kMostReason)));
     }
 }
 

@@ -36,7 +36,8 @@ std::vector<uint8_t> interleaved(const Image8& image) {
 Result<void> write_png(const std::filesystem::path& path, const Image8& image, bool overwrite) {
     const std::string name = path.string();
     const size_t count = size_t{image.width} * image.height;
-    if (count == 0 || image.bytes.size() != 3 * count || (!image.alpha.empty() && image.alpha.size() != count))
+    if (count == 0 || image.bytes.size() != 3 * count ||
+        (!image.alpha.empty() && image.alpha.size() != count))
         return failed(name, fmt::format("no picture of {}x{} can be written", image.width, image.height));
     png_image png{};
     png.version = PNG_IMAGE_VERSION;

@@ -226,8 +226,7 @@ void Controller::Reader::run() {
     const auto ended = guarded("6-DoF controller", [&] { read_reports(told); });
     if (told) libusb_hotplug_deregister_callback(usb, callback);
     close();
-    if (!ended)
-        set(ControllerStatus{ControllerStatus::Kind::refused, ended.error().what, ended.error().why});
+    if (!ended) set(ControllerStatus{ControllerStatus::Kind::refused, ended.error().what, ended.error().why});
 }
 
 /// Until it is told to end; `told`: libusb tells of new devices.

@@ -33,7 +33,7 @@ constexpr double kTreeStep = 14, kTreeRadius = 2.2, kTreeHeight = 5,
 constexpr double kBallStep = 35, kBallRadius = .8;
 constexpr double kWildShare = 2e-6, kWildRange = 1500;
 constexpr double kCameraNoise = 3, kChannelNoise = 1.5;  ///< of 8-bit codes, standard deviations
-constexpr double kReturning = .787;    ///< about the share of beams that come back, for the number of points
+constexpr double kReturning = .787;   ///< about the share of beams that come back, for the number of points
 constexpr double kProfileToBeam = 4;  ///< profiles stand this many times as far apart as beams 10 m away
 constexpr uint64_t kPieceBeams = 8192;
 

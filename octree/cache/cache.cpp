@@ -188,8 +188,8 @@ Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeI
 
 Result<NodeData> CacheFile::load(uint32_t node) const {
     const Layout& layout = layouts_[payloads_[node].layout];
-    LUCARNE_ASSIGN(NodeData data,
-                   load_payload(*file_, node, nodes_[node], payloads_[node], *layout.decoders, layout.stride));
+    LUCARNE_ASSIGN(NodeData data, load_payload(*file_, node, nodes_[node], payloads_[node], *layout.decoders,
+                                               layout.stride));
     if (!layout.to_schema) return data;
     NodeData converted{data.count, {}};
     layout.to_schema->convert(data.records.data(), data.count, converted.records);

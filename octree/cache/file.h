@@ -9,9 +9,9 @@
 
 #include "io/files/file.h"
 #include "octree/cache/format.h"
-#include "octree/codec/decoder_pool.h"
 #include "octree/cache/metadata.h"
 #include "octree/cache/record_map.h"
+#include "octree/codec/decoder_pool.h"
 
 namespace lucarne::octree {
 
@@ -23,7 +23,8 @@ struct StoredPayload {
     uint64_t offset = 0, checksum = 0;
     uint8_t codec = format::kCodecRaw, layout = 0;
 };
-/// Reads, checks and decodes a node's points, in the layout that they are stored in. Its sizes were checked against the file before.
+/// Reads, checks and decodes a node's points, in the layout that they are stored in. Its sizes were checked
+/// against the file before.
 Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
 

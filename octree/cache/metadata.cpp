@@ -97,14 +97,14 @@ json scan_json(const io::ScanInfo& scan) {
     for (const auto& s : scan.stations)
         stations.push_back({{"id", s.id}, {"position", vector_json(s.position)}});
     json result{{"path", scan.path},
-            {"format", scan.format},
-            {"declared_points", scan.declared_points},
-            {"file_bytes", scan.file_bytes},
-            {"modified", scan.modified},
-            {"metres_per_unit", scan.metres_per_unit},
-            {"color_bits", scan.color_bits},
-            {"stations", std::move(stations)},
-            {"details", io::notes_text(scan.notes)}};
+                {"format", scan.format},
+                {"declared_points", scan.declared_points},
+                {"file_bytes", scan.file_bytes},
+                {"modified", scan.modified},
+                {"metres_per_unit", scan.metres_per_unit},
+                {"color_bits", scan.color_bits},
+                {"stations", std::move(stations)},
+                {"details", io::notes_text(scan.notes)}};
     if (!scan.coordinate_system.empty()) result["coordinate_system"] = scan.coordinate_system;
     if (scan.epsg) result["epsg"] = scan.epsg;
     for (const auto& loss : scan.losses)

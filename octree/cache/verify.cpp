@@ -65,11 +65,13 @@ Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
         return rejected(name, "its bounds are not those of its points");
     report.nodes = nodes.size();
     report.bytes = cache->file().size();
-    report.bytes_behind_end = report.bytes - cache->superblock().file_bytes;  // the reader checked that it fits
+    report.bytes_behind_end =
+        report.bytes - cache->superblock().file_bytes;  // the reader checked that it fits
     return report;
 }
 
-Result<VerifyReport> verify_cache(const std::filesystem::path& path, const std::function<void(uint64_t)>& progress) {
+Result<VerifyReport> verify_cache(const std::filesystem::path& path,
+                                  const std::function<void(uint64_t)>& progress) {
     LUCARNE_ASSIGN(auto file, InputFile::open_shared(path));
     return verify_cache(std::move(file), progress);
 }

@@ -13,10 +13,10 @@
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
-#include "octree/convert/nodes/assembler.h"
 #include "octree/convert/build_inputs.h"
-#include "octree/convert/nodes/build_listener.h"
 #include "octree/convert/identity.h"
+#include "octree/convert/nodes/assembler.h"
+#include "octree/convert/nodes/build_listener.h"
 #include "octree/convert/nodes/in_order.h"
 #include "octree/convert/scans/scan_stage.h"
 
@@ -32,8 +32,8 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Runs one stage and writes down what it took. What it freed goes back to the system: else the allocator keeps it
-/// in pools of each thread, where the next stage's memory comes on top.
+/// Runs one stage and writes down what it took. What it freed goes back to the system: else the allocator
+/// keeps it in pools of each thread, where the next stage's memory comes on top.
 template <class Stage>
 auto timed(BuildReport& report, const char* name, const Stage& stage) {
     const auto wall = std::chrono::steady_clock::now();
@@ -63,7 +63,10 @@ auto resumable(Workspace& work, const char* stage, const Restore& restore, const
 class Steps {
  public:
     Steps(BuildListener* listener, std::string stage, uint64_t points)
-        : listener_(listener), stage_(std::move(stage)), points_(points), progress_(stage_, points, "points") {}
+        : listener_(listener),
+          stage_(std::move(stage)),
+          points_(points),
+          progress_(stage_, points, "points") {}
 
     /// Error: the build is to stop.
     Result<void> add(uint64_t points) {
@@ -145,7 +148,8 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     const auto folder = !options.temp_folder.empty()       ? options.temp_folder
                         : options.output.has_parent_path() ? options.output.parent_path()
                                                            : std::filesystem::path(".");
-    LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
+    LUCARNE_ASSIGN(const Unifier inputs,
+                   Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
@@ -158,11 +162,10 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
     LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
-                       return resumable(work, "scan", ScanFacts::restore,
-                                        [&] {
-                                            const ThreadLimit readers(memory.readers);
-                                            return scan_inputs(inputs, memory.batch_bytes);
-                                        });
+                       return resumable(work, "scan", ScanFacts::restore, [&] {
+                           const ThreadLimit readers(memory.readers);
+                           return scan_inputs(inputs, memory.batch_bytes);
+                       });
                    }));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
@@ -201,12 +204,11 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     }));
     report.stages.back().cpu_seconds -= encoding;
     report.stages.push_back({"encode", 0, encoding});
-    LUCARNE_TRY(
-        timed(report, "write", [&] {
-            SourceHeader header = bare;
-            header.schema = loader.schema();
-            return writer.finish(header);
-        }));
+    LUCARNE_TRY(timed(report, "write", [&] {
+        SourceHeader header = bare;
+        header.schema = loader.schema();
+        return writer.finish(header);
+    }));
     work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;

@@ -43,7 +43,8 @@ struct StageTime {
 
 struct BuildReport {
     uint64_t points = 0;
-    uint64_t dropped = 0;  ///< points that were read and left out: those without a number for a coordinate, invalid ones
+    /// Points that were read and left out: those without a number for a coordinate, invalid ones.
+    uint64_t dropped = 0;
     std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
     std::vector<StageTime> stages;

@@ -101,8 +101,7 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
     header.metres_per_unit = common_unit(inputs);
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
-        if (!header.scans.back().unit_stated)
-            header.scans.back().metres_per_unit = header.metres_per_unit;
+        if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = header.metres_per_unit;
         widen_colour(header.scans.back(), inputs.source(i).schema(), schema);
         if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;
     }

@@ -28,8 +28,8 @@ std::string file_identity(const std::filesystem::path& path) {
 
 std::string build_identity(const BuildOptions& options) {
     std::string text =
-        fmt::format("format {}, --memory {}, --normals mode {}, --neighbours {}, search {} {}\n", format::kVersion,
-                    options.memory, static_cast<int>(options.normals), options.neighbours,
+        fmt::format("format {}, --memory {}, --normals mode {}, --neighbours {}, search {} {}\n",
+                    format::kVersion, options.memory, static_cast<int>(options.normals), options.neighbours,
                     static_cast<int>(options.neighbour_search), options.read_options);
     for (const auto* input : options.inputs) {
         SourceHeader header{.schema = input->schema()};

@@ -5,12 +5,12 @@
 
 #include "io/core/parallel.h"
 #include "io/formats/copc/copc.h"
-#include "octree/tree/attributes.h"
 #include "octree/convert/scans/unify.h"
 #include "octree/copc/copc.h"
 #include "octree/copc/node_normals.h"
 #include "octree/copc/node_order.h"
 #include "octree/copc/node_surface.h"
+#include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
 namespace {

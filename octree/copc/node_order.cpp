@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "octree/convert/sampling/node_sampler.h"
-#include "octree/tree/radix_sort.h"
 #include "octree/convert/sampling/sampler.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 

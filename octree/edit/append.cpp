@@ -5,11 +5,11 @@
 
 #include "io/core/log.h"
 #include "io/formats/scan.h"
-#include "octree/tree/attributes.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/scans/scan_stage.h"
 #include "octree/edit/edit_plan.h"
 #include "octree/edit/rewrite.h"
+#include "octree/tree/attributes.h"
 #include "octree/tree/stored_names.h"
 
 namespace lucarne::octree {

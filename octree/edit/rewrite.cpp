@@ -8,11 +8,11 @@
 
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
-#include "octree/tree/attributes.h"
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/in_order.h"
-#include "octree/tree/radix_sort.h"
 #include "octree/edit/edit_plan.h"
+#include "octree/tree/attributes.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "io/files/update_file.h"
-#include "octree/convert/chunks/chunk_store.h"
 #include "octree/cache/file.h"
+#include "octree/convert/chunks/chunk_store.h"
 #include "octree/edit/edit.h"
 
 namespace lucarne::octree {

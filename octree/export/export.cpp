@@ -31,9 +31,10 @@ std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
 Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     : source_(source), normals_(source.header().schema) {
     const auto& header = source.header();
-    const bool estimated = header.schema.find(io::names::normal_oct) &&
-                           (options.normals || replaces_normals(header.schema));
-    // Where another attribute is written under a name, the input's keeps its stored name, and so do longer ones.
+    const bool estimated =
+        header.schema.find(io::names::normal_oct) && (options.normals || replaces_normals(header.schema));
+    // Where another attribute is written under a name, the input's keeps its stored name, and so do longer
+    // ones.
     const auto taken = [&](std::string_view name) {
         const bool normal = name == io::names::normal;
         const bool written =
@@ -48,7 +49,8 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     for (const auto& attribute : header.schema.attributes) {
         if (attribute.name == io::names::normal_oct || attribute.name == io::names::area) continue;
         const bool keeps = taken(reserved_name(attribute.name));
-        schema_.add(keeps ? attribute.name : name_in_file(attribute.name), attribute.type, attribute.components);
+        schema_.add(keeps ? attribute.name : name_in_file(attribute.name), attribute.type,
+                    attribute.components);
         copies_.push_back(
             {attribute.offset, schema_.attributes.back().offset, static_cast<uint32_t>(attribute.bytes())});
     }
@@ -88,9 +90,10 @@ void Exporter::append(const NodeData& data, size_t first, size_t count,
         if (!normal_) continue;
         const glm::vec3 normal = normals_.of(in);
         for (int axis = 0; axis < 3; ++axis)
-            io::store_scalar(normal_->type,
-                             out + normal_->offset + static_cast<size_t>(axis) * io::scalar_bytes(normal_->type),
-                             normal[axis]);
+            io::store_scalar(
+                normal_->type,
+                out + normal_->offset + static_cast<size_t>(axis) * io::scalar_bytes(normal_->type),
+                normal[axis]);
     }
 }
 

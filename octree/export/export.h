@@ -11,13 +11,14 @@
 namespace lucarne::octree {
 
 struct ExportOptions {
-    /// Write the normals that are drawn as `normal` where these are estimated. Caches whose estimated normals stand
-    /// in place of the inputs' own are always written so.
+    /// Write the normals that are drawn as `normal` where these are estimated. Caches whose estimated normals
+    /// stand in place of the inputs' own are always written so.
     bool normals = false;
 };
 
-/// What of a cache goes back into a scan file: the inputs' attributes without those that the build added. Inputs'
-/// own normals that estimated ones replace keep the name that the cache gives them (octree/tree/stored_names.h).
+/// What of a cache goes back into a scan file: the inputs' attributes without those that the build added.
+/// Inputs' own normals that estimated ones replace keep the name that the cache gives them
+/// (octree/tree/stored_names.h).
 class Exporter {
  public:
     Exporter(const NodeSource& source, const ExportOptions& options);

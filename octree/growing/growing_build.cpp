@@ -11,16 +11,16 @@
 
 #include "io/core/guarded.h"
 #include "io/core/log.h"
-#include "octree/tree/attributes.h"
+#include "octree/cache/cache.h"
 #include "octree/convert/build_inputs.h"
-#include "octree/convert/nodes/build_listener.h"
-#include "octree/tree/radix_sort.h"
 #include "octree/convert/chunks/record_loader.h"
 #include "octree/convert/chunks/station_ids.h"
-#include "octree/cache/cache.h"
+#include "octree/convert/nodes/build_listener.h"
 #include "octree/growing/quick_surface.h"
 #include "octree/growing/sample.h"
 #include "octree/growing/tree_top.h"
+#include "octree/tree/attributes.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 namespace {
@@ -102,8 +102,8 @@ Result<void> GrowingBuild::State::take_first() {
     std::vector<const io::PointSource*> sources;
     for (const auto& input : inputs) sources.push_back(input.get());
     options.build.inputs = sources;
-    LUCARNE_ASSIGN(unifier, Unifier::create(std::move(sources),
-                                            options.build.normals == NormalsMode::estimate));
+    LUCARNE_ASSIGN(unifier,
+                   Unifier::create(std::move(sources), options.build.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(*unifier));
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
     schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
@@ -237,9 +237,8 @@ void GrowingBuild::stop() {
 
 void GrowingBuild::begin(std::function<void()> changed) {
     state_->changed = std::move(changed);
-    auto started = guarded("the build", [&] {
-        state_->thread = std::thread([state = state_.get()] { state->work(); });
-    });
+    auto started = guarded("the build",
+                           [&] { state_->thread = std::thread([state = state_.get()] { state->work(); }); });
     if (!started) state_->end(tl::make_unexpected(std::move(started).error()));
 }
 

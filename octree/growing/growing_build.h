@@ -43,8 +43,8 @@ class GrowingBuild {
 
     /// Takes the sample. Errors: unreadable inputs, inputs that do not fit together, no points.
     static Result<std::unique_ptr<GrowingBuild>> open(Inputs inputs, GrowingOptions options);
-    /// Stops the build at its next step and waits for it. A cache that is not finished leaves nothing, but for what
-    /// `build.resume` asks for.
+    /// Stops the build at its next step and waits for it. A cache that is not finished leaves nothing, but
+    /// for what `build.resume` asks for.
     ~GrowingBuild();
     GrowingBuild(const GrowingBuild&) = delete;
     GrowingBuild& operator=(const GrowingBuild&) = delete;

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/tree/radix_sort.h"
 #include "octree/normals/normals.h"
 #include "octree/normals/surface/plane.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 namespace {

@@ -65,7 +65,8 @@ Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_
 }
 
 /// Every 2^k-th point of one pass, k as small as `wanted` allows: a file's length is known at its end only.
-Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input, uint64_t wanted, Steps& steps) {
+Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input, uint64_t wanted,
+                                            Steps& steps) {
     LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());
     const size_t stride = inputs.schema().stride;
     std::vector<std::byte> kept, storage;
@@ -98,8 +99,9 @@ Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Samp
         const double share = static_cast<double>(inputs.source(i).info().declared_points) /
                              static_cast<double>(std::max<uint64_t>(1, sample.points));
         const auto wanted = std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
-        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable() ? pick(inputs, i, wanted, steps)
-                                                                       : read_through(inputs, i, wanted, steps));
+        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable()
+                                               ? pick(inputs, i, wanted, steps)
+                                               : read_through(inputs, i, wanted, steps));
         sample.records.insert(sample.records.end(), records.begin(), records.end());
     }
     const size_t stride = inputs.schema().stride, count = sample.records.size() / stride;

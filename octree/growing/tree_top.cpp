@@ -9,8 +9,8 @@
 #include <bit>
 #include <cstring>
 
-#include "octree/convert/nodes/subtree.h"
 #include "octree/cache/file.h"
+#include "octree/convert/nodes/subtree.h"
 #include "octree/normals/surface/area_floor.h"
 
 namespace lucarne::octree {
@@ -79,7 +79,7 @@ void GrowingSource::link() {
 /// A loose point.
 struct Item {
     uint64_t code = 0;
-    float area = 0;  ///< in faces of the root cube
+    float area = 0;           ///< in faces of the root cube
     uint8_t first_level = 0;  ///< the cells of this level and deeper have it as their first point
     const std::byte* record = nullptr;
 };

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "io/files/file.h"
-#include "octree/convert/sampling/node_sampler.h"
 #include "octree/cache/format.h"
+#include "octree/convert/sampling/node_sampler.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {
@@ -33,7 +33,7 @@ struct GrowingState {
     std::span<const format::Entry> settled;  ///< any order; what no node of `roots` stands over is left out
     std::span<const std::shared_ptr<const LooseNode>> roots;  ///< along the Morton curve
     const LoosePoints& sample;                                ///< of the whole cloud
-    std::shared_ptr<const ByteSource> file;                    ///< holds what is settled
+    std::shared_ptr<const ByteSource> file;                   ///< holds what is settled
 };
 
 /// The whole of it as an octree. Every point stands in it once: of the sample only what lies behind the last

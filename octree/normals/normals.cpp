@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/normals/surface/chunk_surface.h"
 #include "octree/normals/orientation/orientation.h"
+#include "octree/normals/surface/chunk_surface.h"
 
 namespace lucarne::octree {
 namespace {
@@ -45,8 +45,8 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
     }
 }
 
-/// From each site to the station that saw it, scaled: the first point at the site with a station decides; zero
-/// where none is known.
+/// From each site to the station that saw it, scaled: the first point at the site with a station decides;
+/// zero where none is known.
 Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkCache& cache, size_t chunk,
                                                  const NormalOptions& options,
                                                  const ChunkNeighbours& neighbours) {

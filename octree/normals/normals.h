@@ -48,8 +48,8 @@ struct NormalOptions {
     uint64_t memory = uint64_t{1} << 30;  ///< bytes that this stage may hold in all
     unsigned threads = 0;
     bool normals = true;  ///< false: only areas (the input has its own normals)
-    /// Areas are given in squares of this length. Floats hold the squares of neither 1e30 nor 1e-30, so clouds
-    /// of unknown size take their own extent.
+    /// Areas are given in squares of this length. Floats hold the squares of neither 1e30 nor 1e-30, so
+    /// clouds of unknown size take their own extent.
     double area_unit = 1;
 };
 

@@ -156,8 +156,8 @@ void Residency::State::admit() {
     queue = std::move(missing);
 }
 
-/// Drops entries that are neither wanted nor held nor on their way, and lists what may be evicted, the longest
-/// unwanted last.
+/// Drops entries that are neither wanted nor held nor on their way, and lists what may be evicted, the
+/// longest unwanted last.
 void Residency::State::forget_strangers() {
     evictable.clear();
     std::erase_if(entries, [&](const auto& pair) {
@@ -294,7 +294,8 @@ Result<Events> Residency::State::load(uint32_t node, uint64_t record_bytes, uint
             return rejected(name, "it holds something else than the directory says");
         if (options.prepare) data = options.prepare(node, std::move(data));
         Events made;
-        made.push_back({ResidencyEvent::Kind::loaded, node, std::make_shared<const NodeData>(std::move(data))});
+        made.push_back(
+            {ResidencyEvent::Kind::loaded, node, std::make_shared<const NodeData>(std::move(data))});
         return made;
     });
 }

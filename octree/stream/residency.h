@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "octree/tree/source.h"
 #include "octree/stream/cut.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::octree {
 

@@ -23,8 +23,8 @@ constexpr size_t kMostLoaded = 64;
 constexpr uint32_t kFineLevel = 6;  ///< whose cubes are told by their place alone
 constexpr uint32_t kPointsOfANode = 64;
 
-/// Places in a node that a device tells apart, a side (gi::kFractionSteps), and how many the bulk must span to
-/// be seen.
+/// Places in a node that a device tells apart, a side (gi::kFractionSteps), and how many the bulk must span
+/// to be seen.
 constexpr double kNodeSteps = 1 << 16, kLeastSteps = 256;
 
 struct Weighted {

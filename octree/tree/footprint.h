@@ -46,10 +46,10 @@ LUCARNE_SHARED_FN float surfel_radius(float own, float floor_area) {
 }
 
 #ifdef __cplusplus
-// The floor at a prefix of `share` (0, 1] of a node's points, from its values at 1, 1/2, 1/4, 1/8: linear in the
-// logarithms between them, inversely proportional below. Where points are left out whose own shares filled the surface
-// (a first value near 0), the floor jumps to about the mean share at once: the second term, measured on random and
-// even patterns, keeps the sum of all areas within a twelfth of the surface.
+// The floor at a prefix of `share` (0, 1] of a node's points, from its values at 1, 1/2, 1/4, 1/8: linear in
+// the logarithms between them, inversely proportional below. Where points are left out whose own shares
+// filled the surface (a first value near 0), the floor jumps to about the mean share at once: the second
+// term, measured on random and even patterns, keeps the sum of all areas within a twelfth of the surface.
 inline float floor_at_prefix(const float (&floors)[4], float share) {
     const float octaves = -std::log2(share > 1e-6f ? share : 1e-6f);
     if (!(octaves > 0)) return floors[0];

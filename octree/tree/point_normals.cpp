@@ -11,7 +11,8 @@ namespace lucarne::octree {
 PointNormals::PointNormals(const io::Schema& schema) {
     if (const auto* own = schema.find(io::names::normal); own && own->components == 3) own_ = own;
     const auto* estimated = schema.find(io::names::normal_oct);
-    if (estimated && estimated->components == 3 && estimated->type == io::ScalarType::u8) estimated_ = estimated;
+    if (estimated && estimated->components == 3 && estimated->type == io::ScalarType::u8)
+        estimated_ = estimated;
 }
 
 glm::vec3 PointNormals::of(const std::byte* record) const {

@@ -1,5 +1,5 @@
-// An engine that is one folder and one line of the list of engines: its options are on the command line, in scene
-// files, presets, reports and the window without a word about them elsewhere.
+// An engine that is one folder and one line of the list of engines: its options are on the command line, in
+// scene files, presets, reports and the window without a word about them elsewhere.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -38,8 +38,8 @@ class AddedEngine : public ::testing::Test {
     void SetUp() override { cache_ = test::make_cornell(folder_, "20k"); }
     /// The most of each channel in a picture by the engine.
     glm::vec3 brightest(std::vector<std::string> options) {
-        options.insert(options.begin(),
-                       {"render", cache_, "-o", folder_ / "out.exr", "--overwrite", "--size", "64x48", "--engine", "paint"});
+        options.insert(options.begin(), {"render", cache_, "-o", folder_ / "out.exr", "--overwrite", "--size",
+                                         "64x48", "--engine", "paint"});
         const auto done = run(options);
         EXPECT_TRUE(done) << done.error().line();
         const auto picture = io::read_exr(folder_ / "out.exr");
@@ -61,7 +61,8 @@ TEST_F(AddedEngine, TakesItsOptionsFromTheCommandLine) {
     EXPECT_EQ(brightest({}), glm::vec3(0, 1, 0)) << "the default of the preset interactive";
     EXPECT_EQ(brightest({"--preset", "preview"}), glm::vec3(1, 0, 0));
     EXPECT_EQ(brightest({"--tint", "0.25,0.5,1", "--paint-gain", "2"}), glm::vec3(0.5f, 1, 2));
-    EXPECT_EQ(brightest({"--tint", "0,0,0.5", "--pattern", "stripes", "--stripe-width", "64"}), glm::vec3(0, 0, 0.5f));
+    EXPECT_EQ(brightest({"--tint", "0,0,0.5", "--pattern", "stripes", "--stripe-width", "64"}),
+              glm::vec3(0, 0, 0.5f));
     testing::internal::CaptureStdout();
     EXPECT_TRUE(run({"render", "--help"}));
     const std::string help = testing::internal::GetCapturedStdout();
@@ -72,9 +73,11 @@ TEST_F(AddedEngine, TakesItsOptionsFromTheCommandLine) {
 }
 
 TEST_F(AddedEngine, RejectsWrongValuesBeforeAnythingIsDone) {
-    for (const std::vector<std::string>& wrong :
-         {std::vector<std::string>{"--tint", "1,2,3"}, {"--tint", "red"}, {"--stripe-width", "0"}, {"--paint-gain", "9"},
-          {"--pattern", "dots"}}) {
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--tint", "1,2,3"},
+                                                  {"--tint", "red"},
+                                                  {"--stripe-width", "0"},
+                                                  {"--paint-gain", "9"},
+                                                  {"--pattern", "dots"}}) {
         std::vector<std::string> arguments = {"render", cache_, "-o", folder_ / "none.exr"};
         arguments.insert(arguments.end(), wrong.begin(), wrong.end());
         const auto done = run(arguments);
@@ -89,12 +92,13 @@ TEST_F(AddedEngine, TakesItsOptionsFromSceneFilesAndWritesThem) {
     const std::string render =
         R"({"engine": "paint", "tint": [0.5, 0, 0], "paint_gain": 4, "stripe_width": 2, "pattern": "plain", "paint_sky": true})";
     EXPECT_EQ(brightest({"--scene", scene(render)}), glm::vec3(2, 0, 0));
-    EXPECT_EQ(brightest({"--scene", scene(render), "--paint-gain", "1"}), glm::vec3(0.5f, 0, 0)) << "options win";
+    EXPECT_EQ(brightest({"--scene", scene(render), "--paint-gain", "1"}), glm::vec3(0.5f, 0, 0))
+        << "options win";
     const auto read = gi::load_render_settings(scene(render));
     ASSERT_TRUE(read) << read.error().line();
     EXPECT_EQ(gi::write_render_settings(*read), nlohmann::ordered_json::parse(render));
-    for (const char* wrong : {R"("tint": [1, 2, 3])", R"("paint_gain": 0)", R"("stripe_width": 65)", R"("pattern": "dots")",
-                              R"("paint_sky": 1)"}) {
+    for (const char* wrong : {R"("tint": [1, 2, 3])", R"("paint_gain": 0)", R"("stripe_width": 65)",
+                              R"("pattern": "dots")", R"("paint_sky": 1)"}) {
         const auto rejected = gi::parse_scene(std::string("{\"render\": {") + wrong + "}}", "wrong.json");
         ASSERT_FALSE(rejected) << wrong;
         const std::string key = std::string(wrong).substr(1, std::string(wrong).find('"', 1) - 1);
@@ -140,7 +144,8 @@ class Panel {
         ImGui::EndFrame();
     }
     void click(ViewModel& model, ImVec2 at) {
-        // A window hears of the mouse from its second frame on. A short drag to the right: numbers are dragged.
+        // A window hears of the mouse from its second frame on. A short drag to the right: numbers are
+        // dragged.
         const ImVec2 to(at.x + 20, at.y);
         for (const bool pressed : {false, false, false, true}) draw(model, at, pressed);
         for (const bool pressed : {true, true, false, false}) draw(model, to, pressed);
@@ -153,7 +158,8 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
         for (const gi::OptionInfo* option : gi::engine_options())
             if (model.settings.get(*option) != before.get(*option)) changed.insert(std::string(option->key));
     };
-    // Wherever a control is, a click on it changes something; one more below chooses from a list that has opened.
+    // Wherever a control is, a click on it changes something; one more below chooses from a list that has
+    // opened.
     for (float y = 20; y < 500; y += 6) {
         Panel panel;
         ViewModel model(10);
@@ -165,7 +171,8 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
             if (model.engine == "paint" && model.preset == "interactive") look(model, before);
         }
     }
-    for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"}) EXPECT_THAT(changed, Contains(key));
+    for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"})
+        EXPECT_THAT(changed, Contains(key));
     EXPECT_FALSE(changed.contains("vpls")) << "another engine's";
 }
 

@@ -14,6 +14,8 @@ std::span<const EngineEntry> engines() {
     return all;
 }
 
-const EngineInfo& default_engine() { return vpl_engine().info; }
+const EngineInfo& default_engine() {
+    return vpl_engine().info;
+}
 
 }  // namespace lucarne::gi

@@ -1,7 +1,7 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
 // with its preset, its figure and its target. A program and no test: `./run accuracy` takes some minutes, and
-// misses are printed, not hidden. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go into FOLDER (default: a
-// temporary one that is removed).
+// misses are printed, not hidden. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go into FOLDER (default:
+// a temporary one that is removed).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,13 +15,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "viewer/frame/presets.h"
-#include "gi/bounce_options.h"
 
 namespace lucarne {
 namespace {
@@ -126,15 +126,16 @@ Result<void> judge(const std::string& what, const std::vector<glm::vec4>& pictur
 }
 
 /// Lights with a size, direct and with one bounce: one frame, and the average of `frames`.
-Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera,
-                         const BenchRun& run, double rel_mse) {
+Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera, const BenchRun& run,
+                         double rel_mse) {
     scan.light_by(bench::scene_file(scene));
     const std::string common = "--size 128x128 --preset interactive --camera " + camera + " ";
     for (const std::string bounce : {"0", "1"}) {
         const std::string only = common + "--only-bounce " + bounce + " ";
         LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + samples(run, 512)));
         for (const uint64_t count : {uint64_t{1}, run.count(16)}) {
-            LUCARNE_ASSIGN(const auto picture, scan.picture("soft-vpl", fmt::format("{} --frames {}", only, count)));
+            LUCARNE_ASSIGN(const auto picture,
+                           scan.picture("soft-vpl", fmt::format("{} --frames {}", only, count)));
             LUCARNE_TRY(judge(fmt::format("{}, bounce {}, {} frames", scene, bounce, count), picture, truth,
                               rel_mse, .03));
         }
@@ -162,8 +163,7 @@ Result<void> cornell(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto all, scan.truth("all", size + "--bounces 4" + samples(run, 128)));
     LUCARNE_ASSIGN(const auto together, scan.picture("all-vpl", size + "--bounces 4"));
     LUCARNE_TRY(judge("cornell, bounces 0 to 4, high", together, all, 0, .03));
-    LUCARNE_ASSIGN(const auto minute,
-                   scan.picture("minute", size + "--only-bounce 1" + seconds(run, 60)));
+    LUCARNE_ASSIGN(const auto minute, scan.picture("minute", size + "--only-bounce 1" + seconds(run, 60)));
     LUCARNE_TRY(judge("cornell, bounce 1, high, 60 s", minute, first, .001, .01));
 
     double whole = 0;
@@ -201,12 +201,13 @@ Result<void> invariance(gi::Device& device, const BenchRun& run) {
         gi::mean_luminance(shuffled.radiance) / gi::mean_luminance(in_order.radiance) - 1, .01, true);
     double usual = 0;
     for (const int millions : {2, 1, 4}) {
-        LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(millions * 1'000'000ull), run.folder));
+        LUCARNE_ASSIGN(const Scan scan,
+                       Scan::create("cornell", run.points(millions * 1'000'000ull), run.folder));
         LUCARNE_ASSIGN(const auto picture, scan.picture("n", "--size 256x256 --preset high --only-bounce 1"));
         const double mean = gi::mean_luminance(picture);
         if (millions == 2) usual = mean;
-        row(fmt::format("cornell, bounce 1, high, {}M points", millions), "mean against 2M points", mean / usual - 1, .01,
-            true);
+        row(fmt::format("cornell, bounce 1, high, {}M points", millions), "mean against 2M points",
+            mean / usual - 1, .01, true);
     }
     return {};
 }
@@ -249,7 +250,8 @@ Result<void> glossy(const BenchRun& run) {
         const std::filesystem::path shiny = run.folder / fmt::format("shininess-{}.json", exponent);
         std::ofstream(shiny) << scene;
         scan.light_by(shiny);
-        LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + samples(run, static_cast<uint64_t>(paths))));
+        LUCARNE_ASSIGN(const auto truth,
+                       scan.truth("truth", common + samples(run, static_cast<uint64_t>(paths))));
         for (const std::string& time : {std::string(), seconds(run, 60)}) {
             LUCARNE_ASSIGN(const auto picture, scan.picture("glossy", common + time));
             const std::string what =

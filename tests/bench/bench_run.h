@@ -17,8 +17,9 @@
 
 namespace lucarne::bench {
 
-/// One call of a benchmark program. Everything with a size is asked for at its full size and comes back times the
-/// scale, so that a test can run the whole program in seconds. Figures beside targets count at scale 1 alone.
+/// One call of a benchmark program. Everything with a size is asked for at its full size and comes back times
+/// the scale, so that a test can run the whole program in seconds. Figures beside targets count at scale 1
+/// alone.
 struct BenchRun {
     std::filesystem::path folder;           ///< for scans, caches and pictures
     double scale = 1;                       ///< of the full size, in (0, 1]
@@ -37,7 +38,8 @@ struct BenchRun {
 };
 
 /// Reads the arguments into `run`. Returns the first that is wrong; empty: none.
-inline std::string read_arguments(int argc, char** argv, std::initializer_list<const char*> options, BenchRun& run) {
+inline std::string read_arguments(int argc, char** argv, std::initializer_list<const char*> options,
+                                  BenchRun& run) {
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         if (!argument.starts_with("--")) {
@@ -48,15 +50,19 @@ inline std::string read_arguments(int argc, char** argv, std::initializer_list<c
         char* end = nullptr;
         const double value = ++i < argc ? std::strtod(argv[i], &end) : 0;
         if (!end || *end) return argument;
-        if (name == "scale" && value > 0 && value <= 1) run.scale = value;
-        else if (std::ranges::find(options, name) != options.end()) run.options[name] = value;
-        else return argument;
+        if (name == "scale" && value > 0 && value <= 1)
+            run.scale = value;
+        else if (std::ranges::find(options, name) != options.end())
+            run.options[name] = value;
+        else
+            return argument;
     }
     return "";
 }
 
-/// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed. `options` are the
-/// names of the program's own options. Returns the exit status: 1 where something failed, never for a missed target.
+/// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed.
+/// `options` are the names of the program's own options. Returns the exit status: 1 where something failed,
+/// never for a missed target.
 inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
                       std::initializer_list<const char*> options = {}) {
     const std::string program = std::filesystem::path(argv[0]).filename();
@@ -67,7 +73,8 @@ inline int bench_main(int argc, char** argv, const std::function<Result<void>(co
         fmt::print(stderr, "{}: {}: is unknown or has no valid number; usage: {}\n", program, wrong, usage);
         return 2;
     }
-    std::string own = run.folder.empty() ? (std::filesystem::temp_directory_path() / (program + "-XXXXXX")).string() : "";
+    std::string own =
+        run.folder.empty() ? (std::filesystem::temp_directory_path() / (program + "-XXXXXX")).string() : "";
     if (!own.empty() && !mkdtemp(own.data())) {
         fmt::print(stderr, "{}: {}: cannot be made\n", program, own);
         return 1;

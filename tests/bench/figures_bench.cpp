@@ -1,8 +1,8 @@
 // The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, made anew:
 // the light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
-// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [--scale S] [--only N]`
-// prints tables and leaves scans and pictures in FOLDER (./run figures: figures). A program and no test; about ten
-// minutes on two cores.
+// (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [--scale S]
+// [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). A program and
+// no test; about ten minutes on two cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,14 +14,14 @@
 
 #include <fmt/format.h>
 
+#include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/inputs/input.h"
 #include "viewer/frame/rgba.h"
-#include "gi/bounce_options.h"
-#include "gi/engines/vpl/options.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne {
 namespace {
@@ -103,7 +103,8 @@ class Stage {
 /// Maps of about 64 x 64 texels whatever their number, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
     settings.set(gi::vpl::kVpls, vpls);
-    settings.set(gi::vpl::kAtlas, static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls)))));
+    settings.set(gi::vpl::kAtlas,
+                 static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls)))));
 }
 
 Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesystem::path& folder) {
@@ -153,7 +154,8 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
             for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
                 settings.set(gi::kBounces, bounces);
                 // A thousand VPLs take seconds, which vary less.
-                LUCARNE_ASSIGN(const auto measured, stage.frames(settings, vpls < 1024 ? static_cast<int>(run.count(3)) : 1));
+                LUCARNE_ASSIGN(const auto measured,
+                               stage.frames(settings, vpls < 1024 ? static_cast<int>(run.count(3)) : 1));
                 const double indirect = measured.luminance - direct.luminance;
                 if (interleave == 1) whole[bounces] = indirect;
                 fmt::print(" {:>22}", fmt::format("{:.0f} / {:.0f} ({:.3f})", measured.milliseconds,
@@ -221,7 +223,8 @@ Result<void> figure_13(const BenchRun& run) {
     for (const std::string scene : {"ring", "paraboloid"}) {
         LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(2'000'000), run.folder));
         const std::string common = fmt::format("--size {0}x{0} --preset high --only-bounce 1 ", kSide);
-        LUCARNE_ASSIGN(Scan::Truth truth, scan.truth("truth", common + fmt::format("--samples {}", run.count(2048))));
+        LUCARNE_ASSIGN(Scan::Truth truth,
+                       scan.truth("truth", common + fmt::format("--samples {}", run.count(2048))));
         for (auto* picture : {&truth.whole, &truth.first, &truth.second}) *picture = coarse(*picture, kSide);
         // The caustic: what is brighter than a third of the brightest.
         std::vector<bool> mask;
@@ -247,15 +250,18 @@ Result<void> figure_14(Scan& scan, const BenchRun& run) {
     heading("fig. 14: cornell, .5 diffuse, .45 specular, shininess 1000, the first bounce alone, 64 x 64");
     scan.light_by(bench::scene_file("cornell-glossy"));
     const std::string common = "--size 64x64 --only-bounce 1 --preset ";
-    LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + fmt::format("high --samples {}", run.count(16384))));
+    LUCARNE_ASSIGN(const auto truth,
+                   scan.truth("truth", common + fmt::format("high --samples {}", run.count(16384))));
     LUCARNE_ASSIGN(const auto interactive, scan.picture("interactive", common + "interactive"));
     judge("256 VPLs, 4 x 4 interleaved, one frame", interactive, truth);
     LUCARNE_ASSIGN(const auto high, scan.picture("high", common + "high"));
     judge("1024 VPLs, one frame", high, truth);
-    LUCARNE_ASSIGN(const auto averaged, scan.picture("averaged", common + fmt::format("high --seconds {}", run.seconds(30))));
+    LUCARNE_ASSIGN(const auto averaged,
+                   scan.picture("averaged", common + fmt::format("high --seconds {}", run.seconds(30))));
     judge("1024 VPLs, averaged for 30 s", averaged, truth);
     for (const std::string preset : {"interactive", "high"})
-        LUCARNE_TRY(scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset));
+        LUCARNE_TRY(
+            scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset));
     return {};
 }
 

@@ -1,7 +1,8 @@
-// Out of core and global illumination together at full size, as a table: `lucarne_headline [FOLDER] [--scale S]`.
-// A virtual scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB) and flown
-// through with three bounces under caps of 128 MiB, a twelfth of the cache; then with the whole cloud on the
-// device, at the same places; then slowly, for the flicker. A program and no test: misses are printed.
+// Out of core and global illumination together at full size, as a table: `lucarne_headline [FOLDER] [--scale
+// S]`. A virtual scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB)
+// and flown through with three bounces under caps of 128 MiB, a twelfth of the cache; then with the whole
+// cloud on the device, at the same places; then slowly, for the flicker. A program and no test: misses are
+// printed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,12 +13,12 @@
 
 #include <fmt/format.h>
 
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
 #include "viewer/commands/drawing_options.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/inputs/input.h"
-#include "gi/bounce_options.h"
-#include "gi/engines/vpl/options.h"
 
 namespace lucarne {
 namespace {
@@ -40,8 +41,9 @@ Result<std::string> cache_in(const bench::BenchRun& run) {
     const uint64_t points = run.points(40'000'000);
     const std::string cache = run.folder / fmt::format("nave-{}.luc", points), scan = cache + ".ply";
     if (std::filesystem::exists(cache)) return cache;
-    for (const std::string& arguments : {fmt::format("generate nave --even --normals --points {} --overwrite -o {}", points, scan),
-                                         "convert " + scan + " -o " + cache})
+    for (const std::string& arguments :
+         {fmt::format("generate nave --even --normals --points {} --overwrite -o {}", points, scan),
+          "convert " + scan + " -o " + cache})
         if (std::system((LUCARNE_BINARY " " + arguments).c_str()) != 0) return failed(arguments, "failed");
     std::filesystem::remove(scan);
     return cache;
@@ -127,7 +129,8 @@ Result<void> energy(const std::string& cache, double seconds) {
     };
     LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5, .seconds = seconds}, all, fine));
     double of_capped = 0;
-    for (size_t i = 0; i < whole.frames.size() && 2 * i < frames; ++i) of_capped += *capped.frames[2 * i].luminance;
+    for (size_t i = 0; i < whole.frames.size() && 2 * i < frames; ++i)
+        of_capped += *capped.frames[2 * i].luminance;
     row("energy against the whole cloud resident, cuts of 16M, 16M and 7M points",
         100 * (of_capped / static_cast<double>(whole.frames.size()) / whole.luminance() - 1), "%", 3);
     return {};

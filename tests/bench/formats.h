@@ -110,7 +110,8 @@ inline Result<void> write_e57(const io::PointSource& source, const std::filesyst
 /// Reading 4M points of the nave in every format that has a target. Page cache: only the processor counts.
 inline Result<void> bench_formats(const BenchRun& run) {
     const std::string scan = run.folder / "formats.las";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(run.points(4'000'000)), "--overwrite"}));
+    LUCARNE_TRY(run_lucarne(
+        {"generate", "nave", "-o", scan, "--points", std::to_string(run.points(4'000'000)), "--overwrite"}));
     LUCARNE_ASSIGN(const auto source, io::open_scan(scan));
     const auto path = [&](const char* name) { return run.folder / name; };
     LUCARNE_ASSIGN(const auto laz, io::create_scan(path("formats.laz"), source->schema(), source->info(),

@@ -1,4 +1,5 @@
-// How fast scan files are decoded, beside the targets: `bench_formats [FOLDER] [--scale S]`, which needs 1 GB.
+// How fast scan files are decoded, beside the targets: `bench_formats [FOLDER] [--scale S]`, which needs 1
+// GB.
 #include "tests/bench/formats.h"
 
 int main(int argc, char** argv) {

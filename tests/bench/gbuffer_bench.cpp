@@ -1,6 +1,6 @@
 // How long the G-buffer takes: a nave seen from inside, its surfels at a constant spacing in the picture as a
-// view cut has them. Prints the median of several runs, and the processor time of all cores, which other work on the
-// machine changes less. `bench_gbuffer [--scale S]`.
+// view cut has them. Prints the median of several runs, and the processor time of all cores, which other work
+// on the machine changes less. `bench_gbuffer [--scale S]`.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>

@@ -1,7 +1,7 @@
 // Clouds larger than any memory, built with --memory 1G: their points are made while they are read, so that
 // only the cache and its scratch file need disk. `lucarne_large [FOLDER] [--scale S]`: a scale of 0.1
-// makes everything a tenth as large. At 1 it takes some 40 GB of disk in FOLDER (default: a temporary one) and an
-// hour.
+// makes everything a tenth as large. At 1 it takes some 40 GB of disk in FOLDER (default: a temporary one)
+// and an hour.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -14,8 +14,8 @@
 
 #include "io/core/progress.h"
 #include "io/core/random.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/bench/bench_run.h"
 #include "tests/octree/test_sources.h"
 

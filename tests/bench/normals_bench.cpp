@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "tests/octree/normals/pcl_normals.h"
 #include "tests/bench/bench_run.h"
+#include "tests/octree/normals/pcl_normals.h"
 #include "tests/octree/normals/virtual_scans.h"
 
 namespace lucarne::octree {

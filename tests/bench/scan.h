@@ -23,10 +23,12 @@ inline std::string scene_file(const std::string& name) {
 /// A scan of a scene as a cache in `folder`.
 class Scan {
  public:
-    static Result<Scan> create(const std::string& scene, uint64_t points, const std::filesystem::path& folder) {
+    static Result<Scan> create(const std::string& scene, uint64_t points,
+                               const std::filesystem::path& folder) {
         const Scan made(scene, folder);
         const std::string scan = folder / (scene + ".ply");
-        LUCARNE_TRY(run(fmt::format("generate {} --even --normals --points {} -o {} --overwrite", scene, points, scan)));
+        LUCARNE_TRY(run(
+            fmt::format("generate {} --even --normals --points {} -o {} --overwrite", scene, points, scan)));
         LUCARNE_TRY(run("convert " + scan + " -o " + made.cache_ + " --overwrite"));
         std::filesystem::remove(scan);
         return made;
@@ -49,7 +51,8 @@ class Scan {
         std::vector<glm::vec4> whole, first, second;
     };
     Result<Truth> truth(const std::string& name, const std::string& arguments) const {
-        LUCARNE_ASSIGN(const std::string file, render(name + ".exr", "--engine reference --layers " + arguments));
+        LUCARNE_ASSIGN(const std::string file,
+                       render(name + ".exr", "--engine reference --layers " + arguments));
         const std::string stem = file.substr(0, file.size() - 4);
         LUCARNE_ASSIGN(io::Image whole, io::read_exr(file));
         LUCARNE_ASSIGN(io::Image first, io::read_exr(stem + ".a.exr"));
@@ -60,7 +63,8 @@ class Scan {
     /// The path of the picture FOLDER/SCENE-NAME, `name` with the ending of its kind.
     Result<std::string> render(const std::string& name, const std::string& arguments) const {
         const std::string file = folder_ / (scene_ + "-" + name);
-        LUCARNE_TRY(run("render " + cache_ + " -o " + file + " --overwrite --scene " + lit_by_ + " " + arguments));
+        LUCARNE_TRY(
+            run("render " + cache_ + " -o " + file + " --overwrite --scene " + lit_by_ + " " + arguments));
         return file;
     }
 

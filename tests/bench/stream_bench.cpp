@@ -1,7 +1,7 @@
 // What streaming is held to, measured by `lucarne fly` and printed beside its target: what loading takes of a
 // frame, cold starts, what loading ahead wins, popping, memory over a long flight, many caches.
-// `lucarne_stream [FOLDER] [--scale S] [--soak SECONDS]`: caches in FOLDER (default: a temporary one, 1 GB), seconds
-// of the long flight (default 60; an hour is 3600).
+// `lucarne_stream [FOLDER] [--scale S] [--soak SECONDS]`: caches in FOLDER (default: a temporary one, 1 GB),
+// seconds of the long flight (default 60; an hour is 3600).
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -37,8 +37,8 @@ constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
 
 Result<void> make_cache(const Ground& ground) {
     const std::string scan = ground.file("nave.ply");
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(ground.points()), "--even",
-                             "--normals", "--overwrite"}));
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(ground.points()),
+                             "--even", "--normals", "--overwrite"}));
     LUCARNE_TRY(run_lucarne({"convert", scan, "-o", ground.cache(), "--normals", "keep", "--overwrite"}));
     std::filesystem::remove(scan);
     return {};
@@ -106,8 +106,8 @@ Result<void> bench_popping(const Ground& ground) {
 
 Result<void> bench_soak(const Ground& ground) {
     const std::string seconds = fmt::format("{}", ground.run.option("soak", ground.run.seconds(60)));
-    LUCARNE_ASSIGN(const json flight, fly(ground, {ground.cache(), "--realtime", "--soak", seconds, "--memory", "64M",
-                                                   "--device-memory", "64M"}));
+    LUCARNE_ASSIGN(const json flight, fly(ground, {ground.cache(), "--realtime", "--soak", seconds,
+                                                   "--memory", "64M", "--device-memory", "64M"}));
     const json& soak = flight["soak"];
     figure(fmt::format("flight of {} s: laps", seconds), soak["laps"].get<double>(), "");
     row("the same: resident memory, last lap over the first",

@@ -11,13 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "gi/bounce_options.h"
 #include "gi/raster/gbuffer.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
 #include "viewer/commands/drawing_options.h"
-#include "viewer/inputs/input.h"
 #include "viewer/frame/views.h"
-#include "gi/bounce_options.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne {
 namespace {
@@ -30,7 +30,8 @@ double median(std::vector<double> values) {
 Result<void> bench_normals(const bench::BenchRun& run) {
     const uint64_t points = run.points(4'000'000);
     const std::string scan = run.folder / "nave4m.las", cache = run.folder / "nave4m.luc";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(points), "--overwrite"}));
+    LUCARNE_TRY(
+        run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(points), "--overwrite"}));
     LUCARNE_ASSIGN(const Usage without,
                    run_lucarne({"convert", scan, "-o", cache, "--normals", "none", "--overwrite"}));
     LUCARNE_ASSIGN(const Usage with,
@@ -74,8 +75,8 @@ Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameReques
 
 Result<void> bench_frames(const bench::BenchRun& run) {
     const std::string scan = run.folder / "even.ply", cache = run.folder / "even.luc";
-    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points", std::to_string(run.points(8'000'000)), "--even",
-                             "--normals", "--overwrite"}));
+    LUCARNE_TRY(run_lucarne({"generate", "nave", "-o", scan, "--points",
+                             std::to_string(run.points(8'000'000)), "--even", "--normals", "--overwrite"}));
     LUCARNE_TRY(run_lucarne({"convert", scan, "-o", cache, "--normals", "keep", "--overwrite"}));
     std::filesystem::remove(scan);
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "tests/fault/run_lucarne.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne {
 namespace {

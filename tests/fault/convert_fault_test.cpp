@@ -103,9 +103,9 @@ TEST(ConvertFaults, SayThatAFileMayNotGrowFurther) {
     ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
     ASSERT_EQ(lucarne(convert + cache).code, 0);
     const auto left_before = std::distance(std::filesystem::directory_iterator(folder.path()), {});
-    for (const std::string& arguments : {convert + quoted(folder / "b.luc"),
-                                         "export " + cache + " -o " + quoted(folder / "b.las"),
-                                         "export " + cache + " -o " + quoted(folder / "b.copc.laz")}) {
+    for (const std::string& arguments :
+         {convert + quoted(folder / "b.luc"), "export " + cache + " -o " + quoted(folder / "b.las"),
+          "export " + cache + " -o " + quoted(folder / "b.copc.laz")}) {
         const auto outcome = lucarne(arguments, "ulimit -f 64; ");  // blocks of 512 bytes, or of 1024
         EXPECT_EQ(outcome.code, 1) << arguments;
         EXPECT_NE(outcome.text.find("File too large"), std::string::npos) << outcome.text;
@@ -130,7 +130,8 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
         {"convert " + quoted(folder / "absent.las") + " -o " + output, 3, "No such file"},
         {"convert " + quoted(folder / "none") + " -o " + output, 3, "a folder without scans"},
         {"convert " + quoted(folder / "empty.las") + " -o " + output, 3, "is empty"},
-        {"convert " + quoted(folder / "text.las") + " -o " + output, 3, "is named .las and has no such header"},
+        {"convert " + quoted(folder / "text.las") + " -o " + output, 3,
+         "is named .las and has no such header"},
         {"convert " + ok + " -o " + quoted(folder / "taken.luc"), 1, "exists already"},
         {"convert " + ok + " -o " + quoted(folder / "no" / "where.luc"), 1, "does not exist"},
         {"convert " + ok + " -o " + output + " --memory lots", 2, "not an amount of memory"},
@@ -161,10 +162,13 @@ TEST(ConvertFaults, NameAnInputWithoutPointsAmongOthersAndTakeTheOthers) {
     const std::string head = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n";
     io::testing::write_bytes(folder / "empty.ply", head + "property float z\nend_header\n");
     const std::string empty = quoted(folder / "empty.ply"), to = " --normals none -o ";
-    const auto among = lucarne("convert " + empty + " " + quoted(folder / "a.las") + to + quoted(folder / "a.luc"));
+    const auto among =
+        lucarne("convert " + empty + " " + quoted(folder / "a.las") + to + quoted(folder / "a.luc"));
     EXPECT_EQ(among.code, 0) << "nothing is lost";
     EXPECT_NE(among.text.find("/empty.ply: has no points\n"), std::string::npos) << among.text;
-    EXPECT_NE(among.text.find("; without points: " + (folder / "empty.ply").string() + "\n"), std::string::npos) << among.text;
+    EXPECT_NE(among.text.find("; without points: " + (folder / "empty.ply").string() + "\n"),
+              std::string::npos)
+        << among.text;
     const auto alone = lucarne("convert " + empty + to + quoted(folder / "b.luc"));
     EXPECT_EQ(alone.code, 3);
     EXPECT_NE(alone.text.find("/empty.ply: has no points\n"), std::string::npos) << alone.text;

@@ -134,7 +134,8 @@ TEST_F(Updates, EndWithOneLineAndTheRightCodeWhenTheyAreWrong) {
         int code;
         const char* says;
     };
-    const auto cache = quoted(cache_), scan = quoted(folder_ / "b.las"), other = quoted(folder_ / "other.luc");
+    const auto cache = quoted(cache_), scan = quoted(folder_ / "b.las"),
+               other = quoted(folder_ / "other.luc");
     std::filesystem::copy_file(folder_ / "b.las", folder_ / "other.luc");
     for (const auto& [arguments, code, says] :
          {Case{"convert --append " + scan + " -o " + quoted(folder_ / "absent.luc"), 3, "No such file"},

@@ -40,14 +40,15 @@ inline Outcome lucarne(const std::string& arguments, const std::string& before =
 inline Outcome lucarne_with_fault(const std::string& fault, const std::string& arguments,
                                   const std::string& before = {}) {
     // The sanitizers' library wants to be the first, but does not need to.
-    return run(before + " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS "' LUCARNE_FAULT='" +
+    return run(before +
+               " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS "' LUCARNE_FAULT='" +
                fault + "' exec " LUCARNE_BINARY " " + arguments);
 }
 
-/// The calls that change files, by name and in order, of a command that succeeds. `scratch` is a file for the preloaded
-/// library to write to.
-inline std::vector<std::string> traced_calls(const std::filesystem::path& scratch, const std::string& arguments,
-                                             const std::string& before = {}) {
+/// The calls that change files, by name and in order, of a command that succeeds. `scratch` is a file for the
+/// preloaded library to write to.
+inline std::vector<std::string> traced_calls(const std::filesystem::path& scratch,
+                                             const std::string& arguments, const std::string& before = {}) {
     const auto traced = lucarne_with_fault("trace:" + scratch.string(), arguments, before);
     EXPECT_EQ(traced.code, 0) << traced.text;
     std::ifstream lines(scratch);

@@ -5,8 +5,8 @@
 #include "io/formats/scan.h"
 #include "tests/fuzz/fuzz.h"
 
-// What every fuzzer of a scan format does: open, read to the end, write what was read in every format; and read
-// once more what can be saved of it.
+// What every fuzzer of a scan format does: open, read to the end, write what was read in every format; and
+// read once more what can be saved of it.
 namespace lucarne::fuzz {
 
 /// A reader that still gives points after so many refuses nothing, and a few KiB may well hold millions.
@@ -20,7 +20,8 @@ inline void write_unfinished(const io::PointSource& source, std::span<const std:
 }
 
 inline void read_and_write(std::shared_ptr<const ByteSource> file, bool salvage) {
-    const auto source = io::open_scan(std::move(file), {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
+    const auto source =
+        io::open_scan(std::move(file), {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
     if (!source) return;
     const auto reader = (*source)->open();
     if (!reader) return;

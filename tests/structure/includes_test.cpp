@@ -1,6 +1,4 @@
 // Folders include one way only: io <- octree <- gi <- viewer; no engine's room includes another's.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -10,6 +8,8 @@
 #include <regex>
 #include <set>
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -25,17 +25,21 @@ std::vector<std::string> includes_of(const std::filesystem::path& file) {
     return found;
 }
 
-bool starts_with(const std::string& text, const std::string& prefix) { return text.rfind(prefix, 0) == 0; }
+bool starts_with(const std::string& text, const std::string& prefix) {
+    return text.rfind(prefix, 0) == 0;
+}
 
 TEST(Structure, FoldersIncludeOneWayOnly) {
     size_t files = 0;
     for (size_t folder = 0; folder < kOrder.size(); ++folder)
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCARNE_SOURCE_DIR) / kOrder[folder])) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(
+                 std::filesystem::path(LUCARNE_SOURCE_DIR) / kOrder[folder])) {
             if (!entry.is_regular_file()) continue;
             ++files;
             for (const auto& include : includes_of(entry.path()))
                 for (size_t above = folder + 1; above < kOrder.size(); ++above)
-                    EXPECT_FALSE(starts_with(include, kOrder[above] + "/")) << entry.path() << " includes " << include;
+                    EXPECT_FALSE(starts_with(include, kOrder[above] + "/"))
+                        << entry.path() << " includes " << include;
         }
     EXPECT_GT(files, 20u);
 }
@@ -43,14 +47,16 @@ TEST(Structure, FoldersIncludeOneWayOnly) {
 TEST(Structure, NoEngineIncludesAnother) {
     const auto rooms = std::filesystem::path(LUCARNE_SOURCE_DIR) / "gi/engines";
     std::set<std::string> engines;
-    for (const auto& entry : std::filesystem::directory_iterator(rooms)) engines.insert(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(rooms))
+        engines.insert(entry.path().filename());
     EXPECT_GE(engines.size(), 4u);
     for (const auto& engine : engines)
         for (const auto& entry : std::filesystem::recursive_directory_iterator(rooms / engine)) {
             if (!entry.is_regular_file()) continue;
             for (const auto& include : includes_of(entry.path()))
                 for (const auto& other : engines)
-                    EXPECT_FALSE(other != engine && starts_with(include, "gi/engines/" + other + "/")) << entry.path() << " includes " << include;
+                    EXPECT_FALSE(other != engine && starts_with(include, "gi/engines/" + other + "/"))
+                        << entry.path() << " includes " << include;
         }
 }
 
@@ -81,8 +87,8 @@ std::vector<std::string> find_cycle(const Graph& graph) {
     return {};
 }
 
-/// Within each folder the folders and loose files in it include each other one way only. A header and its .cpp are two
-/// files, so that what implements an interface may use those who include it.
+/// Within each folder the folders and loose files in it include each other one way only. A header and its
+/// .cpp are two files, so that what implements an interface may use those who include it.
 TEST(Structure, NoFolderHasCyclesAmongItsParts) {
     // The window's model holds every feature's, and the features' panels take the whole model.
     const std::set<std::string> known = {"viewer"};
@@ -97,7 +103,8 @@ TEST(Structure, NoFolderHasCyclesAmongItsParts) {
                 auto a = from.begin(), b = to.begin();
                 std::filesystem::path common;
                 for (; a != from.end() && b != to.end() && *a == *b; ++a, ++b) common /= *a;
-                if (!common.empty() && a != from.end() && b != to.end()) folders[common][a->string()].insert(b->string());
+                if (!common.empty() && a != from.end() && b != to.end())
+                    folders[common][a->string()].insert(b->string());
             }
         }
     EXPECT_GT(folders.size(), 30u);
@@ -119,8 +126,7 @@ TEST(Structure, NoFileIsADumpingGround) {
             std::ifstream in(entry.path());
             size_t lines = 0;
             for (std::string line; std::getline(in, line);) ++lines;
-            if (entry.path().extension() != ".md")
-                EXPECT_LE(lines, kMostLines) << entry.path();
+            if (entry.path().extension() != ".md") EXPECT_LE(lines, kMostLines) << entry.path();
         }
 }
 
@@ -128,12 +134,15 @@ TEST(Structure, NoFileIsADumpingGround) {
 TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
     const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",
                                            "viewer/main.cpp"};
-    const std::regex writes("^[^/]*(, std(out|err)\\)|\\(std(out|err)[,)]|std::cout|std::cerr|fmt::print|\\b(printf|puts|perror)\\()");
+    const std::regex writes(
+        "^[^/]*(, "
+        "std(out|err)\\)|\\(std(out|err)[,)]|std::cout|std::cerr|fmt::print|\\b(printf|puts|perror)\\()");
     const std::filesystem::path root = LUCARNE_SOURCE_DIR;
     for (const std::string& folder : kOrder)
         for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
             const auto extension = entry.path().extension();
-            if ((extension != ".cpp" && extension != ".h") || allowed.contains(entry.path().lexically_relative(root)))
+            if ((extension != ".cpp" && extension != ".h") ||
+                allowed.contains(entry.path().lexically_relative(root)))
                 continue;
             std::ifstream in(entry.path());
             for (std::string line; std::getline(in, line);)

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/random.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
-#include "io/core/random.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/window/settings.h"
 

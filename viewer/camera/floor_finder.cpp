@@ -71,7 +71,8 @@ void FloorFinder::look(const std::shared_ptr<const octree::NodeSource>& source, 
     asked_ = eye;
     using Floor = Result<std::optional<double>>;
     jobs_.push(
-        "looking for the floor", [source, eye, eye_height]() -> Floor { return floor_below(*source, eye, eye_height); },
+        "looking for the floor",
+        [source, eye, eye_height]() -> Floor { return floor_below(*source, eye, eye_height); },
         [shared = shared_](const Floor& floor) {
             const std::lock_guard lock(shared->mutex);
             shared->floor = floor.value_or(std::nullopt);

@@ -6,8 +6,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/tree/source.h"
 #include "io/core/job_queue.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

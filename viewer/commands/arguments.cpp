@@ -128,13 +128,21 @@ Argument Arguments::add_choice(const std::string& names, const std::vector<std::
     return Argument(option);
 }
 
-Argument Arguments::find(const std::string& name) { return Argument(app_->get_option(name)); }
+Argument Arguments::find(const std::string& name) {
+    return Argument(app_->get_option(name));
+}
 
-bool Arguments::given(const std::string& name) const { return app_->count(name) > 0; }
+bool Arguments::given(const std::string& name) const {
+    return app_->count(name) > 0;
+}
 
-void Arguments::footer(const std::string& text) { app_->footer(text); }
+void Arguments::footer(const std::string& text) {
+    app_->footer(text);
+}
 
-void Arguments::run(std::function<Result<void>()> action) { *action_ = std::move(action); }
+void Arguments::run(std::function<Result<void>()> action) {
+    *action_ = std::move(action);
+}
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
     : app_(std::make_unique<CLI::App>(description)) {
@@ -152,8 +160,7 @@ Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) 
     try {
         app_->parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() != 0)
-            return bad_arguments("arguments", error.what(), "see lucarne --help");
+        if (error.get_exit_code() != 0) return bad_arguments("arguments", error.what(), "see lucarne --help");
         app_->exit(error);  // prints the help
         return std::function<Result<void>()>();
     }

@@ -15,11 +15,12 @@
 namespace CLI {
 class App;
 class Option;
-}
+}  // namespace CLI
 
 namespace lucarne::viewer {
 
-// CLI11 behind a small interface: its headers take ten seconds to compile, so only arguments.cpp includes them.
+// CLI11 behind a small interface: its headers take ten seconds to compile, so only arguments.cpp includes
+// them.
 
 /// One declared argument; each function adds a rule or a text and returns the argument.
 class Argument {
@@ -51,15 +52,16 @@ class Arguments {
  public:
     explicit Arguments(CLI::App& app) : app_(&app) {}
 
-    /// `names` are "-o,--output", or "inputs" for a positional argument. `value` outlives the parsing and keeps its
-    /// value where the argument is absent. T: std::string, std::filesystem::path, an integer, double, an optional or a
-    /// vector of these; arguments.cpp lists the types.
+    /// `names` are "-o,--output", or "inputs" for a positional argument. `value` outlives the parsing and
+    /// keeps its value where the argument is absent. T: std::string, std::filesystem::path, an integer,
+    /// double, an optional or a vector of these; arguments.cpp lists the types.
     template <class T>
     Argument add(const std::string& names, T& value, const std::string& help);
     Argument flag(const std::string& names, bool& value, const std::string& help);
     Argument flag(const std::string& names, std::function<void()> set, const std::string& help);
     /// `set` takes the text; its error, where it returns one, rejects the argument.
-    Argument parsed(const std::string& names, std::function<std::optional<std::string>(const std::string& text)> set,
+    Argument parsed(const std::string& names,
+                    std::function<std::optional<std::string>(const std::string& text)> set,
                     const std::string& help);
     /// One of the named values of an enumeration. The help shows "a|b|c".
     template <class Enum>
@@ -67,7 +69,8 @@ class Arguments {
                     const std::string& help) {
         std::vector<std::string> words;
         for (const auto& [word, chosen] : choices) words.push_back(word);
-        return add_choice(names, words, [&value, choices](size_t index) { value = choices[index].second; }, help);
+        return add_choice(
+            names, words, [&value, choices](size_t index) { value = choices[index].second; }, help);
     }
     Argument find(const std::string& name);          ///< one that was declared
     bool given(const std::string& name) const;       ///< on the parsed command line
@@ -80,7 +83,8 @@ class Arguments {
                         std::function<void(size_t)> set, const std::string& help);
 
     CLI::App* app_;
-    std::shared_ptr<std::function<Result<void>()>> action_ = std::make_shared<std::function<Result<void>()>>();
+    std::shared_ptr<std::function<Result<void>()>> action_ =
+        std::make_shared<std::function<Result<void>()>>();
 };
 
 /// The program's command line: one command and its arguments.

@@ -7,8 +7,8 @@
 namespace lucarne::viewer {
 namespace {
 
-/// What the program itself has resident before it reads a point: its libraries, for the most part. 14 to 16 MiB
-/// measured.
+/// What the program itself has resident before it reads a point: its libraries, for the most part. 14 to 16
+/// MiB measured.
 constexpr uint64_t kProgram = uint64_t{16} << 20;
 constexpr uint64_t kLeastCap = uint64_t{32} << 20;
 
@@ -17,8 +17,9 @@ constexpr uint64_t kLeastCap = uint64_t{32} << 20;
 Result<uint64_t> build_memory(const std::string& cap) {
     LUCARNE_ASSIGN(const uint64_t bytes, parse_bytes("--memory", cap));
     if (bytes < kLeastCap)
-        return bad_arguments("--memory", fmt::format("{} is too little, the program alone takes {}", bytes_text(bytes),
-                                                     bytes_text(kProgram)),
+        return bad_arguments("--memory",
+                             fmt::format("{} is too little, the program alone takes {}", bytes_text(bytes),
+                                         bytes_text(kProgram)),
                              fmt::format("give at least {}", bytes_text(kLeastCap)));
     return bytes - kProgram;
 }

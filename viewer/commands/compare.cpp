@@ -13,9 +13,9 @@
 #include "gi/compare/flip.h"
 #include "gi/compare/metrics.h"
 #include "gi/post/tone_map.h"
+#include "io/core/terminal.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
-#include "io/core/terminal.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/outputs.h"
@@ -185,21 +185,22 @@ void add_compare(CommandLine& line) {
     command.add("picture", options->picture, "EXR").required().type_name("A.exr");
     command.add("reference", options->reference, "EXR: the truth; the mean of --halves if not given")
         .type_name("B.exr");
-    command.add("--halves", options->halves,
-                     "Two independent halves of the reference, for an error free of its noise")
+    command
+        .add("--halves", options->halves,
+             "Two independent halves of the reference, for an error free of its noise")
         .values(2)
         .type_name("R1.exr R2.exr");
-    command.add("--gbuffer", options->gbuffer,
-                     "What render --gbuffer wrote: edges are those of depth and normal, not of luminance")
+    command
+        .add("--gbuffer", options->gbuffer,
+             "What render --gbuffer wrote: edges are those of depth and normal, not of luminance")
         .type_name("G.exr");
-    command.add("--exposure", options->exposure,
-                     "Stops by which FLIP sees both pictures; measured from the reference if not given")
+    command
+        .add("--exposure", options->exposure,
+             "Stops by which FLIP sees both pictures; measured from the reference if not given")
         .range(-64.0, 64.0)
         .type_name("EV");
-    command.add("--error-picture", options->error_picture, "Where the error lies")
-        .type_name("FILE.png");
-    command.add("--error-kind", options->error_kind,
-                     "FLIP, or luminance too dark (blue) or bright (red)")
+    command.add("--error-picture", options->error_picture, "Where the error lies").type_name("FILE.png");
+    command.add("--error-kind", options->error_kind, "FLIP, or luminance too dark (blue) or bright (red)")
         .one_of({"flip", "signed"})
         .show_default();
     command.add("--json", options->json, "The figures, machine-readable").type_name("FILE");

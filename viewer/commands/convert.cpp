@@ -9,18 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "io/core/counted.h"
-#include "io/files/file.h"
-#include "io/files/json.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 #include "io/formats/scan.h"
 #include "octree/convert/build.h"
 #include "octree/edit/edit.h"
 #include "octree/normals/normals.h"
 #include "viewer/commands/build_memory.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/input_options.h"
 #include "viewer/commands/edit_report.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/describe.h"
 #include "viewer/inputs/input.h"
@@ -109,9 +109,12 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
     for (const auto& stage : report.stages)
         stages.push_back(
             {{"name", stage.name}, {"wall_seconds", stage.wall_seconds}, {"cpu_seconds", stage.cpu_seconds}});
-    const nlohmann::json root{{"points", report.points}, {"dropped", report.dropped},
-                              {"nodes", report.nodes},   {"chunks", report.chunks},
-                              {"bytes", report.bytes},   {"stages", std::move(stages)},
+    const nlohmann::json root{{"points", report.points},
+                              {"dropped", report.dropped},
+                              {"nodes", report.nodes},
+                              {"chunks", report.chunks},
+                              {"bytes", report.bytes},
+                              {"stages", std::move(stages)},
                               {"left_out", losses_json(summary.losses)},
                               {"inputs", summary.inputs},
                               {"rejected", aside.json()}};
@@ -153,8 +156,8 @@ auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, 
 
 Result<void> append(ConvertOptions options, SetAside& aside) {
     const auto& build = options.build;
-    const octree::EditOptions edit{build.output, build.memory, build.threads, build.temp_folder,
-                                   build.neighbours, build.neighbour_search};
+    const octree::EditOptions edit{build.output,      build.memory,     build.threads,
+                                   build.temp_folder, build.neighbours, build.neighbour_search};
     Scans scans;
     LUCARNE_ASSIGN(auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
@@ -191,8 +194,10 @@ Result<void> convert(ConvertOptions options) {
     }
     const Summary summary(build.inputs, report.inputs);
     log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
-              counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes), wall, cpu, summary.text());
-    if (!options.json.empty()) LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
+              counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes),
+              wall, cpu, summary.text());
+    if (!options.json.empty())
+        LUCARNE_TRY(write_report(options.json, build.overwrite, report, summary, aside));
     return aside.result(build.output.string());
 }
 
@@ -204,33 +209,30 @@ void add_convert(CommandLine& line) {
     auto options = std::make_shared<ConvertOptions>();
     options->build.resume = octree::Resume::later;
     Arguments command = line.add("convert", "Build an octree cache from scans");
-    command.add(
-            "inputs", options->inputs,
-            "Scan files, or folders of them; several become one cache. A broken one of several is left out")
+    command
+        .add("inputs", options->inputs,
+             "Scan files, or folders of them; several become one cache. A broken one of several is left out")
         .required()
         .type_name("INPUT");
     add_read_options(command, options->read);
-    command.add("-o,--output", options->build.output, "The cache to write")
-        .required()
-        .type_name("CACHE.luc");
+    command.add("-o,--output", options->build.output, "The cache to write").required().type_name("CACHE.luc");
     command
-        .choice<NormalsMode>("--normals", options->build.normals,
-                             {{"auto", NormalsMode::automatic},
-                              {"keep", NormalsMode::keep},
-                              {"estimate", NormalsMode::estimate},
-                              {"none", NormalsMode::none}},
-                             "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
-                     "them; estimate puts estimated ones in place of the inputs' own, which stay as normal_in_file")
+        .choice<NormalsMode>(
+            "--normals", options->build.normals,
+            {{"auto", NormalsMode::automatic},
+             {"keep", NormalsMode::keep},
+             {"estimate", NormalsMode::estimate},
+             {"none", NormalsMode::none}},
+            "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
+            "them; estimate puts estimated ones in place of the inputs' own, which stay as normal_in_file")
         .show_default("auto");
-    command.add("--memory", options->memory,
-                     "Cap on the memory of the process, however large the input is (32M or more)")
+    command
+        .add("--memory", options->memory,
+             "Cap on the memory of the process, however large the input is (32M or more)")
         .show_default()
         .type_name("BYTES");
-    command.add("--threads", options->build.threads, "0: all cores")
-        .show_default()
-        .type_name("N");
-    command.add("--temp", options->build.temp_folder,
-                     "Folder for temporary files (default: the cache's)")
+    command.add("--threads", options->build.threads, "0: all cores").show_default().type_name("N");
+    command.add("--temp", options->build.temp_folder, "Folder for temporary files (default: the cache's)")
         .type_name("DIR");
     command.add("--neighbours", options->build.neighbours, "Nearest points that make a normal")
         .show_default()
@@ -239,19 +241,21 @@ void add_convert(CommandLine& line) {
     command
         .choice<NeighbourSearch>("--neighbours-search", options->build.neighbour_search,
                                  {{"leaf", NeighbourSearch::leaf}, {"flann", NeighbourSearch::flann}},
-                                 "How these are found: leaf is fast, flann is the kd-tree that PCL takes by default, to compare with")
+                                 "How these are found: leaf is fast, flann is the kd-tree that PCL takes by "
+                                 "default, to compare with")
         .show_default("leaf");
     command.flag(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
-        "Go on from the last stage that an interrupted conversion finished; if this one fails, keep its stages");
+        "Go on from the last stage that an interrupted conversion finished; if this one fails, keep its "
+        "stages");
     command.flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
-    Argument append_flag = command.flag("--append", options->append,
-                          "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
-                          "normals. Files that it holds already are left out");
+    Argument append_flag =
+        command.flag("--append", options->append,
+                     "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
+                     "normals. Files that it holds already are left out");
     for (const char* other : {"--resume", "--overwrite", "--normals"})
         append_flag.excludes(command.find(other));
-    command.add("--json", options->json, "Write what was done and how long it took")
-        .type_name("FILE");
+    command.add("--json", options->json, "Write what was done and how long it took").type_name("FILE");
     command.run([options] { return convert(*options); });
 }
 

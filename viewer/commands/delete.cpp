@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/files/file.h"
 #include "octree/edit/edit.h"
 #include "viewer/commands/build_memory.h"
 #include "viewer/commands/commands.h"
@@ -63,12 +63,12 @@ void add_delete(CommandLine& line) {
     command.add("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
         .values(1)
         .type_name("N");
-    command.add("--memory", options->memory, "Cap on the memory of the process, besides the cache's directory (32M or more)")
+    command
+        .add("--memory", options->memory,
+             "Cap on the memory of the process, besides the cache's directory (32M or more)")
         .show_default()
         .type_name("BYTES");
-    command.add("--threads", options->edit.threads, "0: all cores")
-        .show_default()
-        .type_name("N");
+    command.add("--threads", options->edit.threads, "0: all cores").show_default().type_name("N");
     command.add("--temp", options->edit.temp_folder, "Folder for temporary files (default: the cache's)")
         .type_name("DIR");
     command.add("--json", options->json, "Write what was done").type_name("FILE");

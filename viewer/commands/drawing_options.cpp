@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
-#include "gi/surfels/colouring.h"
 #include "gi/scene/render_settings_file.h"
+#include "gi/surfels/colouring.h"
 #include "io/core/log.h"
 #include "octree/tree/bulk.h"
 
@@ -40,7 +40,8 @@ void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
         const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
         if (option->kind == gi::OptionKind::flag) {
             const bool usual = std::get<bool>(option->defaults[size_t(gi::Effort::interactive)]);
-            command.flag(name, [&settings, option, usual] { settings.set(*option, !usual); }, help);
+            command.flag(
+                name, [&settings, option, usual] { settings.set(*option, !usual); }, help);
             continue;
         }
         const auto take = [&settings, option](const std::string& text) -> std::optional<std::string> {
@@ -85,7 +86,8 @@ void warn_of_extent(const octree::SourceHeader& header) {
     if (widest >= kLeast && widest <= kMost) return;
     if (widest > 0)
         log::warn(
-            "the points span {:.3g} m: pictures are right from 1 cm to 1000 km; convert with the right --unit, or "
+            "the points span {:.3g} m: pictures are right from 1 cm to 1000 km; convert with the right "
+            "--unit, or "
             "remove stray points with lucarne delete",
             widest);
 }
@@ -101,23 +103,22 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--preset", options.render.preset, "Effort, see below")
         .show_default(std::string(kDefaultPreset))
         .type_name("NAME");
-    command.add("--size", options.size, "Of the picture in pixels")
-        .show_default()
-        .type_name("WxH");
+    command.add("--size", options.size, "Of the picture in pixels").show_default().type_name("WxH");
     add_engine_options(command, options.render.options);
-    command.add("--points", options.points, "Most points that a cut takes: 200000, 2M")
-        .type_name("N");
+    command.add("--points", options.points, "Most points that a cut takes: 200000, 2M").type_name("N");
     command.add("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
         .range(-100.0, 100.0)
         .type_name("EV");
-    command.add("--memory", options.memory,
-                    "Most that the cloud takes of the memory on its way to the device (512M)")
+    command
+        .add("--memory", options.memory,
+             "Most that the cloud takes of the memory on its way to the device (512M)")
         .type_name("SIZE");
-    command.add("--device-memory", options.device_memory,
-                    "Most of the device's memory, for surfels, pictures and maps together (2G)")
+    command
+        .add("--device-memory", options.device_memory,
+             "Most of the device's memory, for surfels, pictures and maps together (2G)")
         .type_name("SIZE");
     command.flag("--no-prefetch", options.no_prefetch,
-                     "Load nothing ahead of a camera that moves (for measuring)");
+                 "Load nothing ahead of a camera that moves (for measuring)");
     add_look_options(command, options.look);
     add_light_options(command, options.light);
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
@@ -127,9 +128,11 @@ Result<void> take_render_settings(DrawingOptions& options) {
     if (!options.scene.empty()) {
         LUCARNE_ASSIGN(const gi::RenderSettings said, gi::load_render_settings(options.scene));
         if (!said.engine.empty() && !gi::find_engine(said.engine))
-            return rejected(options.scene, fmt::format("/render/engine: there is no engine '{}'", said.engine));
+            return rejected(options.scene,
+                            fmt::format("/render/engine: there is no engine '{}'", said.engine));
         if (!said.preset.empty() && !find_preset(said.preset))
-            return rejected(options.scene, fmt::format("/render/preset: there is no preset '{}'", said.preset));
+            return rejected(options.scene,
+                            fmt::format("/render/preset: there is no preset '{}'", said.preset));
         fill(options.render, said);
     }
     gi::RenderSettings usual;

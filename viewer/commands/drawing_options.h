@@ -29,8 +29,9 @@ struct DrawingOptions {
     bool no_prefetch = false;
 };
 
-/// Declares --scene --engine --preset --size --points --exposure --memory --device-memory --no-prefetch, the options of
-/// every engine, and those of add_look_options() and add_light_options(). `options` outlives the command.
+/// Declares --scene --engine --preset --size --points --exposure --memory --device-memory --no-prefetch, the
+/// options of every engine, and those of add_look_options() and add_light_options(). `options` outlives the
+/// command.
 void add_drawing_options(Arguments& command, DrawingOptions& options);
 
 /// What the command line leaves open of `render`, as the scene file says it, else the defaults; engine and

@@ -2,17 +2,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/files/file.h"
-#include "io/files/json.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 
 namespace lucarne::viewer {
 
 void compact_after_update(const octree::EditOptions& edit, octree::EditReport& report) {
     const auto compacted = octree::compact_if_half_unused(edit.cache, edit.temp_folder);
     if (!compacted) {
-        log::warn("{}: is updated, but cannot be compacted: {}", edit.cache.string(), compacted.error().line());
+        log::warn("{}: is updated, but cannot be compacted: {}", edit.cache.string(),
+                  compacted.error().line());
         return;
     }
     report.bytes = compacted->bytes;

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/progress.h"
@@ -45,12 +44,16 @@ Result<void> export_cache(const Options& options) {
 
 void add_export(CommandLine& line) {
     auto options = std::make_shared<Options>();
-    Arguments command = line.add("export", "Write a cache back to a scan file, with every point and attribute");
+    Arguments command =
+        line.add("export", "Write a cache back to a scan file, with every point and attribute");
     command.add("cache", options->cache, "The cache (or COPC file) to read").required().type_name("CACHE");
-    command.add("-o,--output", options->output, "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
+    command
+        .add("-o,--output", options->output,
+             "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         .required()
         .type_name("FILE");
-    command.flag("--normals", options->content.normals, "Write estimated normals, too, as normal (always where convert was told to estimate them)");
+    command.flag("--normals", options->content.normals,
+                 "Write estimated normals, too, as normal (always where convert was told to estimate them)");
     command.flag("--overwrite", options->overwrite, "Replace the output if it exists");
     command.run([options] { return export_cache(*options); });
 }

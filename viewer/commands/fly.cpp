@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include "gi/registry.h"
+#include "io/core/log.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
-#include "io/core/log.h"
 #include "io/files/page_cache.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/compare_flights.h"
 #include "viewer/flythrough/flight.h"
@@ -69,7 +69,8 @@ std::vector<Plan> plans_of(const FlyOptions& options) {
 
 /// Everything that can be wrong with arguments and outputs, before long work starts.
 Result<void> check(const FlyOptions& options) {
-    if (options.input.paths.empty()) return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
+    if (options.input.paths.empty())
+        return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
     if (options.path.empty()) return bad_arguments("--path", "is missing", "name a camera path");
     if (options.report.empty()) return bad_arguments("--output", "is missing", "name the report's file");
     if (options.frame_time_ms > 0 && !options.realtime)
@@ -223,32 +224,34 @@ void add_fly(CommandLine& line) {
     command.add("--html", options->html, "The report as a page with plots, too").type_name("FILE");
     add_drawing_options(command, options->drawing);
     command.find("--engine").description("Or several, one flight each: vpl,direct");
-    const Argument wait = command.flag("--wait", options->wait,
-                                   "Every frame, every cut whole: the same pixels on every run (default)");
+    const Argument wait = command.flag(
+        "--wait", options->wait, "Every frame, every cut whole: the same pixels on every run (default)");
     command.flag("--realtime", options->realtime, "By the clock, never waiting: what a user sees")
         .excludes(wait);
-    command.add("--frame-time", options->frame_time_ms,
-                     "With --realtime: cuts take as many points as keep frames to this time")
+    command
+        .add("--frame-time", options->frame_time_ms,
+             "With --realtime: cuts take as many points as keep frames to this time")
         .range(1.0, 1e5)
         .type_name("MS");
     command.flag("--cold", options->cold,
-                      "Before each flight another, from files that the system was made to forget");
-    command.add("--soak", options->soak,
-                     "Fly the path again and again for so long, and compare the memory")
+                 "Before each flight another, from files that the system was made to forget");
+    command.add("--soak", options->soak, "Fly the path again and again for so long, and compare the memory")
         .range(0.0, 1e6)
         .type_name("SECONDS");
     command.add("--frames-dir", options->frames_folder,
-                        "Write every frame there, frame_00001.png and so on (for a video: README.md)");
-    command.add("--video", options->video,
-                     "Make a video of all frames by ffmpeg, where that is installed: FILE.mp4, .mkv, .webm")
+                "Write every frame there, frame_00001.png and so on (for a video: README.md)");
+    command
+        .add("--video", options->video,
+             "Make a video of all frames by ffmpeg, where that is installed: FILE.mp4, .mkv, .webm")
         .type_name("FILE");
     command.flag("--flicker", options->flicker,
-                      "Also report every frame's mean luminance and how much surfaces' light changes");
+                 "Also report every frame's mean luminance and how much surfaces' light changes");
     command.flag("--popping", options->popping,
-                      "Also report how much pictures change from frame to frame, and in the same flight with "
-                      "every point");
-    command.add("--compare", options->compare,
-                     "Two reports: says whether the second is slower (exit code 1), faster, or neither")
+                 "Also report how much pictures change from frame to frame, and in the same flight with "
+                 "every point");
+    command
+        .add("--compare", options->compare,
+             "Two reports: says whether the second is slower (exit code 1), faster, or neither")
         .values(2)
         .type_name("A.json B.json");
     command.add("--margin", options->margin, "Differences up to this are none, per cent")

@@ -64,20 +64,19 @@ void add_generate(CommandLine& line) {
         scenes += fmt::format("\n  {:<11}{}", scene.name, scene.summary);
     scenes += fmt::format("\n  {:<11}{}", io::synthetic_survey().name, io::synthetic_survey().summary);
     command.footer(scenes);
-    command.add("scene", options->scan.scene, "Which scene, see below")
-        .required()
-        .type_name("SCENE");
+    command.add("scene", options->scan.scene, "Which scene, see below").required().type_name("SCENE");
     command.add("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
         .required()
         .type_name("FILE");
     command.add("--points", options->points, "How many points: about, or exactly with --even")
         .show_default()
         .type_name("N[k|M|G]");
-    const Argument stations = command.add("--stations", options->scan.stations,
-                                      "How many scanner stations (default: the scene's own)")
-                         .type_name("N");
-    command.flag("--even", options->scan.even,
-                   "Sample all surfaces evenly instead of scanning, without noise")
+    const Argument stations =
+        command
+            .add("--stations", options->scan.stations, "How many scanner stations (default: the scene's own)")
+            .type_name("N");
+    command
+        .flag("--even", options->scan.even, "Sample all surfaces evenly instead of scanning, without noise")
         .excludes(stations);
     command.add("--noise", options->scan.noise, "Standard deviation of the range, metres")
         .show_default()

@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/core/options.h"
+#include "io/core/progress.h"
+#include "io/core/terminal.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
-#include "io/core/options.h"
-#include "io/core/terminal.h"
 #include "io/formats/mesh/source.h"
 #include "io/formats/scan.h"
-#include "io/core/progress.h"
 #include "octree/cache/cache.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
@@ -76,7 +76,8 @@ Result<Json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOpt
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(std::move(file), options.read));
     // A mesh of a few bytes may have millions of samples.
-    if (options.quick || io::mesh::is_sampled(scan->info())) return scan_json(scan->info(), scan->schema(), nullptr);
+    if (options.quick || io::mesh::is_sampled(scan->info()))
+        return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
     const uint64_t declared = scan->info().declared_points;
     if (declared > kLong) progress.emplace("looking through", declared, "points");
@@ -159,15 +160,19 @@ Result<void> info(const InfoOptions& options) {
 void add_info(CommandLine& line) {
     auto options = std::make_shared<InfoOptions>();
     Arguments command = line.add("info", "Say what a cache or a scan holds");
-    command.add("inputs", options->inputs,
-                     "Caches, scan files, folders of scan files. A broken one of several is left out")
+    command
+        .add("inputs", options->inputs,
+             "Caches, scan files, folders of scan files. A broken one of several is left out")
         .required()
         .type_name("INPUT");
     command.flag("--quick", options->quick,
-                      "Do not read the points of scans: no bounds but those that headers state, and what was left out as far as it "
-                      "is known");
+                 "Do not read the points of scans: no bounds but those that headers state, and what was left "
+                 "out as far as it "
+                 "is known");
     add_read_options(command, options->read);
-    command.add("--json", options->json_file, "Write it there as well, for machines: an object, of several inputs a list")
+    command
+        .add("--json", options->json_file,
+             "Write it there as well, for machines: an object, of several inputs a list")
         .type_name("FILE");
     command.flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
     command.run([options] { return info(*options); });

@@ -16,9 +16,10 @@ std::optional<std::string> problem_unless(bool good, const char* problem) {
 }  // namespace
 
 void add_read_options(Arguments& command, io::ReadOptions& options) {
-    command.add("--columns", options.columns,
-                    "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
-                    "else they are guessed, and the guess is printed")
+    command
+        .add("--columns", options.columns,
+             "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
+             "else they are guessed, and the guess is printed")
         .type_name("NAMES");
     command
         .parsed(
@@ -28,14 +29,17 @@ void add_read_options(Arguments& command, io::ReadOptions& options) {
                 return problem_unless(options.metres_per_unit.has_value(),
                                       "is none of m, cm, mm, km, ft, us-ft, in, nor a number of metres");
             },
-            "The unit of the scans' coordinates, where a file does not say it or is wrong: m, cm, mm, km, ft, us-ft, "
+            "The unit of the scans' coordinates, where a file does not say it or is wrong: m, cm, mm, km, "
+            "ft, us-ft, "
             "in, or how many metres it has")
         .type_name("UNIT");
-    const Argument spacing = command.add("--spacing", options.mesh.spacing,
-                    "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "
-                    "its diagonal, or as dense as its vertices)")
-        .positive()
-        .type_name("METRES");
+    const Argument spacing =
+        command
+            .add("--spacing", options.mesh.spacing,
+                 "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "
+                 "its diagonal, or as dense as its vertices)")
+            .positive()
+            .type_name("METRES");
     command
         .parsed(
             "--mesh-points",
@@ -48,9 +52,9 @@ void add_read_options(Arguments& command, io::ReadOptions& options) {
         .type_name("N")
         .excludes(spacing);
     command.flag("--vertices", options.mesh.vertices,
-                     "The vertices of a mesh are the points; its faces are passed over");
+                 "The vertices of a mesh are the points; its faces are passed over");
     command.flag("--salvage", options.salvage,
-                     "Read what can be read of damaged and truncated scan files, and say what cannot");
+                 "Read what can be read of damaged and truncated scan files, and say what cannot");
 }
 
 void add_input_options(Arguments& command, InputOptions& options) {

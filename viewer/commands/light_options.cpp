@@ -28,29 +28,32 @@ Result<gi::ValueRange> parse_luminance(const std::string& text) {
 }  // namespace
 
 void add_light_options(Arguments& command, LightOptions& options) {
-    command.add("--tone-map", options.tone_map,
-                    fmt::format("How radiance is shown: {}", fmt::join(gi::tone_map_names(), ", ")))
+    command
+        .add("--tone-map", options.tone_map,
+             fmt::format("How radiance is shown: {}", fmt::join(gi::tone_map_names(), ", ")))
         .type_name("NAME");
-    command.add("--luminance", options.luminance,
-                    "What false colours span, cd/m2; about the exposure when not given")
+    command
+        .add("--luminance", options.luminance,
+             "What false colours span, cd/m2; about the exposure when not given")
         .type_name("LOW:HIGH");
     command.add("--albedo", options.albedo, "Scale of what the points' colours reflect")
         .range(0.0, 10.0)
         .type_name("X");
-    command.add("--flatten", options.flatten,
-                    "Share of the light in the points' colours that is divided out")
+    command.add("--flatten", options.flatten, "Share of the light in the points' colours that is divided out")
         .range(0.0, 1.0)
         .type_name("X");
     command.add("--beside", options.compare, "Show this engine beside the picture's own (.png)")
         .type_name("ENGINE");
-    command.add("--beside-show", options.compare_show,
-                    fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
+    command
+        .add("--beside-show", options.compare_show,
+             fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
         .type_name("HOW");
     command.add("--border", options.border, "Of a split comparison: share of the width left of it")
         .range(0.0, 1.0)
         .type_name("X");
-    command.add("--difference-range", options.difference_range,
-                    "Difference of exposed luminance that has the last colour")
+    command
+        .add("--difference-range", options.difference_range,
+             "Difference of exposed luminance that has the last colour")
         .range(1e-6, 1e6)
         .type_name("X");
 }

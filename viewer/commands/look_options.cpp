@@ -36,7 +36,10 @@ Result<std::vector<double>> parse_numbers(std::string_view option, std::string_v
 Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
     const bool turned = std::ranges::count(text, ',') == 6;
     LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', turned ? 7 : 6));
-    gi::ClipBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, turned ? glm::radians(std::remainder(n[6], 360.0)) : 0, inverted};
+    gi::ClipBox box{{n[0], n[1], n[2]},
+                    {n[3], n[4], n[5]},
+                    turned ? glm::radians(std::remainder(n[6], 360.0)) : 0,
+                    inverted};
     if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
         return bad_arguments(std::string(option),
                              fmt::format("'{}' has its second corner below its first", text),
@@ -114,14 +117,15 @@ void add_look_options(Arguments& command, LookOptions& options) {
     const auto names = [](std::span<const std::string_view> all) {
         return fmt::format("{}", fmt::join(all, ", "));
     };
-    command.add("--colour,--color", options.colour,
-                    "What the points' colours say: " + names(gi::colour_names()) + ":NAME")
+    command
+        .add("--colour,--color", options.colour,
+             "What the points' colours say: " + names(gi::colour_names()) + ":NAME")
         .type_name("WHAT");
-    command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names()))
-        .type_name("NAME");
+    command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names())).type_name("NAME");
     command.flag("--reverse-map", options.reversed, "The colour map from its other end");
-    command.add("--range", options.range,
-                    "Values that the colour map's ends stand for; where most points lie when not given")
+    command
+        .add("--range", options.range,
+             "Values that the colour map's ends stand for; where most points lie when not given")
         .type_name("LOW:HIGH");
     command.add("--shading", options.shading, "Of the engine unlit: " + names(gi::shading_names()))
         .type_name("NAME");
@@ -134,30 +138,33 @@ void add_look_options(Arguments& command, LookOptions& options) {
     command.add("--point-pixels", options.point_pixels, "The same size for all points, in pixels")
         .range(0.0, 64.0)
         .type_name("N");
-    command.add("--background", options.background,
-                    "Behind the points: scene, one colour, or one from top to bottom (sRGB, 0 to 1)")
+    command
+        .add("--background", options.background,
+             "Behind the points: scene, one colour, or one from top to bottom (sRGB, 0 to 1)")
         .type_name("R,G,B[:R,G,B]");
     command.add("--hide-class", options.hidden_classes, "Points of these classes are not there")
         .range(0, 255)
         .separator(',')
         .type_name("N,...");
-    command.add("--clip-box", options.clip_boxes,
-                    "Only points inside are there (several: inside any); DEGREES turns it about the vertical")
+    command
+        .add("--clip-box", options.clip_boxes,
+             "Only points inside are there (several: inside any); DEGREES turns it about the vertical")
         .repeatable()
         .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
     command.add("--clip-outside", options.clip_outside, "Only points outside are there")
         .repeatable()
         .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command.add("--clip-plane", options.clip_planes,
-                    "Only points on the side that the normal points to are there")
+    command
+        .add("--clip-plane", options.clip_planes,
+             "Only points on the side that the normal points to are there")
         .repeatable()
         .type_name("PX,PY,PZ,NX,NY,NZ");
     command.flag("--clip-casts", options.clip_casts,
-                     "What is clipped is out of sight, but still blocks and bounces light");
+                 "What is clipped is out of sight, but still blocks and bounces light");
     command.flag("--legend", options.legend, "Over the picture (.png): what the colours stand for");
     command.flag("--axes", options.axes, "Over the picture (.png): where x, y and z point to");
     command.flag("--scale-bar", options.scale_bar,
-                     "Over the picture (.png): a length at the distance of the camera's target");
+                 "Over the picture (.png): a length at the distance of the camera's target");
 }
 
 Result<void> apply(const LookOptions& options, gi::Look& look) {

@@ -7,16 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/terminal.h"
+#include "io/files/file.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
-#include "viewer/picking/nearest.h"
 #include "viewer/measure/section.h"
+#include "viewer/picking/nearest.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -108,25 +108,27 @@ void add_measure(CommandLine& line) {
     auto options = std::make_shared<MeasureOptions>();
     Arguments command = line.add("measure", "Measure as the window does: points, distances, areas, sections");
     add_input_options(command, options->input);
-    command.add("--measurements", options->measurements,
-                     "What to measure, as the window saves it (data/README.md)")
+    command
+        .add("--measurements", options->measurements,
+             "What to measure, as the window saves it (data/README.md)")
         .type_name("FILE.json");
-    command.add("--at", options->at,
-                     "Say all of the scan's point nearest to this place; may be repeated")
+    command.add("--at", options->at, "Say all of the scan's point nearest to this place; may be repeated")
         .separator(',')
         .type_name("X,Y,Z");
     command.flag("--snap", options->snap,
-                      "Move the measurements' points to the nearest ones of the scan first");
-    command.add("-o,--output", options->output,
-                     "Write a table (.csv) or the measurements again (.json); else they are printed")
+                 "Move the measurements' points to the nearest ones of the scan first");
+    command
+        .add("-o,--output", options->output,
+             "Write a table (.csv) or the measurements again (.json); else they are printed")
         .type_name("FILE");
     command.add("--json", options->json_file, "Write the results there as well, for machines")
         .type_name("FILE");
     command.add("--results", options->results, "In metres or in the scan file's own unit")
         .one_of({"m", "file"})
         .show_default();
-    command.add("--sections", options->sections,
-                     "Write every section into this folder, as points and as a drawing")
+    command
+        .add("--sections", options->sections,
+             "Write every section into this folder, as points and as a drawing")
         .type_name("FOLDER");
     command.add("--section-points", options->section_points, "The most points of a section")
         .range(uint64_t{1}, uint64_t{100'000'000})

@@ -13,15 +13,15 @@
 #include "gi/compare/edges.h"
 #include "gi/compare/metrics.h"
 #include "gi/registry.h"
-#include "io/files/file.h"
-#include "io/files/json.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
+#include "io/files/file.h"
+#include "io/files/json.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/inputs/input.h"
 #include "viewer/publish/finished_picture.h"
@@ -171,7 +171,8 @@ Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOption
 Result<void> render(RenderOptions options) {
     // Everything that can be wrong with the arguments, before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
-    LUCARNE_TRY(check_outputs({options.output, options.json, options.gbuffer}, options.overwrite, inputs_of(options)));
+    LUCARNE_TRY(check_outputs({options.output, options.json, options.gbuffer}, options.overwrite,
+                              inputs_of(options)));
     LUCARNE_TRY(take_render_settings(options.drawing));
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));
@@ -198,7 +199,8 @@ Result<void> render(RenderOptions options) {
             io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));
     if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing.size));
     if (!options.json.empty()) {
-        LUCARNE_TRY(write_file(options.json, json_text(report(rendered, *pipeline, drawing, mean)), options.overwrite));
+        LUCARNE_TRY(write_file(options.json, json_text(report(rendered, *pipeline, drawing, mean)),
+                               options.overwrite));
     }
     log::info("{}: {}x{}, {}, preset {}, {} frame{} in {:.2f} s; {}{}", options.output, drawing.size.width,
               drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,
@@ -215,33 +217,29 @@ void add_render(CommandLine& line) {
     Arguments command = line.add("render", "Render one picture without a window");
     add_input_options(command, options->input);
     command.flag("--first", options->first,
-                      "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
-                      "nothing is converted or kept");
+                 "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
+                 "nothing is converted or kept");
     command.add("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
         .required()
         .type_name("FILE");
     command.add("--camera", options->camera, "One of the scene's; the first when not given")
         .type_name("NAME");
     add_drawing_options(command, options->drawing);
-    command.add("--frames", options->frames, "How many to average")
-        .range(1, 1'000'000)
-        .type_name("N");
-    command.add("--seconds", options->seconds, "How long to go on averaging")
-        .range(0.0, 1e6)
-        .type_name("S");
-    command.add("--json", options->json, "Figures of the picture, machine-readable")
-        .type_name("FILE");
-    command.add("--gbuffer", options->gbuffer,
-                     "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
+    command.add("--frames", options->frames, "How many to average").range(1, 1'000'000).type_name("N");
+    command.add("--seconds", options->seconds, "How long to go on averaging").range(0.0, 1e6).type_name("S");
+    command.add("--json", options->json, "Figures of the picture, machine-readable").type_name("FILE");
+    command
+        .add("--gbuffer", options->gbuffer,
+             "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
         .type_name("FILE.exr");
     command.flag("--layers", options->layers,
-                      "Also write what else the engine knows, beside the picture (reference: "
-                      "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
-                      "OUT.b.exr by half the paths each)");
+                 "Also write what else the engine knows, beside the picture (reference: "
+                 "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
+                 "OUT.b.exr by half the paths each)");
     command.flag("--transparent", options->finish.transparent,
-                      "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
+                 "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
     command.flag("--no-overlay", options->no_overlay,
-                      "Without the legend, axes and scale bar that the scene asks for");
+                 "Without the legend, axes and scale bar that the scene asks for");
     command.flag("--overwrite", options->overwrite, "Replace files that exist");
     command.run([options] {
         options->finish.overlays = !options->no_overlay;

@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 
-
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/core/options.h"
@@ -25,8 +24,10 @@ Result<void> verify(const std::filesystem::path& path) {
     log::info("{}: sound; {} points in {} nodes on {} levels, {}", path.string(), report.points, report.nodes,
               report.depth + 1, bytes_text(report.bytes));
     if (report.bytes_behind_end)
-        log::warn("{}: has {} of an interrupted update behind its end, which do no harm; lucarne compact removes them",
-                  path.string(), counted(report.bytes_behind_end, "bytes"));
+        log::warn(
+            "{}: has {} of an interrupted update behind its end, which do no harm; lucarne compact removes "
+            "them",
+            path.string(), counted(report.bytes_behind_end, "bytes"));
     return {};
 }
 

@@ -11,8 +11,8 @@
 #include "io/core/log.h"
 #include "octree/tree/bulk.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/input_options.h"
 #include "viewer/commands/drawing_options.h"
+#include "viewer/commands/input_options.h"
 #include "viewer/commands/outputs.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
@@ -110,8 +110,8 @@ Result<void> view(ViewOptions options) {
         options.size_given || !kept.settings.window.width ? drawing.size : kept.settings.window;
     LUCARNE_ASSIGN(const auto window, Window::open(size, "Lucarne"));
     awake = true;
-    LUCARNE_ASSIGN(const auto worker,
-                   PictureWorker::start(window->worker_device(Window::Hidden::view), nullptr, drawing.caps, &Window::wake));
+    LUCARNE_ASSIGN(const auto worker, PictureWorker::start(window->worker_device(Window::Hidden::view),
+                                                           nullptr, drawing.caps, &Window::wake));
     ViewModel model = first_model(options, drawing);
     model.device = worker->device();
     model.shell.scans = &scans;
@@ -131,13 +131,16 @@ void add_view(CommandLine& line) {
     add_input_options(command, options->input);
     add_drawing_options(command, options->drawing);
     command.add("--camera", options->camera, "Start with this camera of the scene");
-    command.add("--scale", options->drawing.render.scale,
-                     "Share of the window's sides that pictures are made at, and scaled up from: half takes a quarter of "
-                     "the pixels' time")
+    command
+        .add("--scale", options->drawing.render.scale,
+             "Share of the window's sides that pictures are made at, and scaled up from: half takes a "
+             "quarter of "
+             "the pixels' time")
         .range(gi::kLeastPictureScale, 1.0)
         .type_name("X");
-    command.add("--frame-time", options->frame_time_ms,
-                     "What a picture should take while something moves; cuts and size follow it")
+    command
+        .add("--frame-time", options->frame_time_ms,
+             "What a picture should take while something moves; cuts and size follow it")
         .range(1.0, 1e5)
         .show_default()
         .type_name("MS");
@@ -145,7 +148,7 @@ void add_view(CommandLine& line) {
         .type_name("FILE.json");
     command.add("--path", options->path, "Show and edit this flythrough").type_name("P.json");
     command.add("--screenshot", options->screenshot,
-                        "Save the window as this PNG once its picture is whole, and close");
+                "Save the window as this PNG once its picture is whole, and close");
     command.add("--frames", options->frames, "Whole pictures to average with --screenshot")
         .range(1u, 256u)
         .show_default();

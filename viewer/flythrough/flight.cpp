@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "gi/compare/metrics.h"
-#include "io/files/file.h"
 #include "io/core/process.h"
 #include "io/core/progress.h"
+#include "io/files/file.h"
 #include "viewer/frame/cost_model.h"
 #include "viewer/frame/rgba.h"
 
@@ -189,9 +189,11 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
     if (error) return failed(folder.string(), error.message(), "name a folder that can be written");
     if (overwrite) return {};
     // Any frame of another flight would be mixed with this one's.
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
         const std::string name = entry->path().filename().string();
-        if (name.starts_with(kFramePrefix) && name.ends_with(".png")) return check_output(entry->path(), false);
+        if (name.starts_with(kFramePrefix) && name.ends_with(".png"))
+            return check_output(entry->path(), false);
     }
     if (error) return failed(folder.string(), error.message());
     return {};

@@ -23,8 +23,8 @@ struct FlightOptions {
     bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance, while the clock stands still
     bool changes = false;  ///< measure FlownFrame::change, likewise
     double soak = 0;       ///< s; the path is flown again and again for at least so long
-    double frame_time =
-        0;  ///< s; by the clock, the budgets of cuts follow it (cost_model.h); 0: they are fixed
+    /// In seconds: by the clock, the budgets of cuts follow it (cost_model.h); 0: they are fixed.
+    double frame_time = 0;
 };
 
 struct Flight {

@@ -15,11 +15,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/core/interrupt.h"
+#include "io/core/process.h"
 #include "io/files/file.h"
 #include "io/files/file_io.h"
-#include "io/core/interrupt.h"
 #include "io/files/private_file.h"
-#include "io/core/process.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -70,8 +70,8 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::start(const std::filesystem::p
     std::unique_ptr<VideoWriter> writer(new VideoWriter(stop));
     writer->file_ = file;
     // ffmpeg would follow a link that somebody put in its output's place.
-    LUCARNE_ASSIGN(writer->folder_,
-                   new_private_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path(".")));
+    LUCARNE_ASSIGN(writer->folder_, new_private_folder(file.has_parent_path() ? file.parent_path()
+                                                                              : std::filesystem::path(".")));
     writer->part_ = writer->folder_ / file.filename();
     at_interrupt(writer->folder_, [folder = writer->folder_, part = file.filename().string()] {
         remove_private_folder(folder, std::span(&part, 1));
@@ -186,7 +186,8 @@ Result<void> VideoWriter::finish() {
         if (ended < 0 && errno == EINTR) ended = 0;
         if (ended >= 0) continue;
         pid_ = -1;  // who ignores SIGCHLD is not told how it ended
-        return failed(file_.string(), "how ffmpeg ended is not known: " + std::generic_category().message(errno));
+        return failed(file_.string(),
+                      "how ffmpeg ended is not known: " + std::generic_category().message(errno));
     }
     pid_ = -1;
     for (size_t before = said_.size() + 1; words_ >= 0 && said_.size() != before;) {

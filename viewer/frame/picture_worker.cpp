@@ -11,7 +11,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr int kPickRadius = 4;              ///< pixels
+constexpr int kPickRadius = 4;  ///< pixels
 
 /// What the pipeline was last told, so that only changes are handed on: each starts its average again.
 struct Told {
@@ -265,8 +265,10 @@ Result<std::unique_ptr<PictureWorker>> PictureWorker::start(WorkerDevice device,
     worker->state_->options = options;
     worker->state_->started = std::move(promise);
     if (source) worker->state_->next_source = std::move(source);
-    worker->state_->thread = std::thread(
-        [state = worker->state_.get(), device = std::move(device)]() mutable { state->work(std::move(device)); });
+    worker->state_->thread =
+        std::thread([state = worker->state_.get(), device = std::move(device)]() mutable {
+            state->work(std::move(device));
+        });
     LUCARNE_TRY(started.get());
     return worker;
 }

@@ -22,9 +22,9 @@ struct PictureRequest {
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
-    uint64_t scene_version = 0;  ///< another number: the scene is another
-    uint64_t shader_version = 0; ///< another number: shader files are read again
-    bool moving = false;         ///< one picture does: the next request is on its way
+    uint64_t scene_version = 0;            ///< another number: the scene is another
+    uint64_t shader_version = 0;           ///< another number: shader files are read again
+    bool moving = false;                   ///< one picture does: the next request is on its way
     uint32_t pictures = kMostAccumulated;  ///< averaged at rest, before the worker rests too
 };
 
@@ -80,10 +80,11 @@ class PictureWorker {
     std::shared_ptr<const Picture> latest() const;  ///< null before the first, and without a source
     /// The newest request's error, if making its picture failed; it is not tried again.
     Result<void> error() const;
-    /// Why the device was lost, while the worker waits for another: device, pipeline and all they held are gone
-    /// by then, sources and the request are not. The last picture stays.
+    /// Why the device was lost, while the worker waits for another: device, pipeline and all they held are
+    /// gone by then, sources and the request are not. The last picture stays.
     std::optional<Error> lost_device() const;
-    /// In place of the lost one: the worker goes on with it where it was. If it cannot be made it counts as lost.
+    /// In place of the lost one: the worker goes on with it where it was. If it cannot be made it counts as
+    /// lost.
     void set_device(WorkerDevice device);
     const gi::DeviceInfo& device() const;  ///< of the first
 

@@ -10,20 +10,17 @@
 #include <glm/geometric.hpp>
 
 #include "gi/lighting/light_options.h"
-#include "gi/post/accumulate.h"
-#include "gi/post/backdrop.h"
-#include "gi/post/false_colour.h"
-#include "gi/post/tone_map.h"
 #include "gi/registry.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
-#include "octree/tree/bulk.h"
 #include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
+#include "octree/tree/bulk.h"
 #include "viewer/frame/cut_choice.h"
 #include "viewer/frame/prepare.h"
+#include "viewer/frame/presentation.h"
 #include "viewer/frame/views.h"
 
 namespace lucarne::viewer {
@@ -51,8 +48,8 @@ uint64_t pool_bytes(uint64_t surfels) {
 bool same_view(const FrameRequest& a, const FrameRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target &&
            a.camera.up == b.camera.up && a.camera.vertical_fov == b.camera.vertical_fov &&
-           a.camera.orthographic_height == b.camera.orthographic_height &&
-           a.size.width == b.size.width && a.size.height == b.size.height;
+           a.camera.orthographic_height == b.camera.orthographic_height && a.size.width == b.size.width &&
+           a.size.height == b.size.height;
 }
 
 bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector<gi::SceneMaterial>& b) {
@@ -72,7 +69,8 @@ bool same_light(const gi::Scene& a, const gi::Scene& b) {
 }  // namespace
 
 struct Pipeline::State {
-    State(gi::Device& on, const PipelineOptions& how) : device(on), options(how), times(on) {}
+    State(gi::Device& on, const PipelineOptions& how)
+        : device(on), options(how), times(on), presentation(on) {}
 
     Result<void> take_source(std::shared_ptr<const octree::NodeSource> from);
     Result<void> colour_anew();
@@ -89,9 +87,6 @@ struct Pipeline::State {
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
     Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
-    Result<void> finish(const FrameRequest& request);
-    Result<void> show(const gi::Engine& lit_by, const gi::Buffer& radiance, gi::Buffer& shown);
-    Result<void> compare(const FrameRequest& request);
     Result<void> make_picture(const FrameRequest& request);
     bool shrink_pool();
     FrameStats stats(double seconds) const;
@@ -126,18 +121,14 @@ struct Pipeline::State {
     CutBudgets budgets;
     gi::Scene scene;
     bool fresh = false;  // the source has taken another's place, and nothing of it has been drawn yet
-    bool changed =
-        true;  // scene, settings, budgets or engine: cuts are chosen anew, the average starts again
+    // Scene, settings, budgets or engine: cuts are chosen anew, the average starts again.
+    bool changed = true;
 
     FrameRequest last;
     double last_seconds = 0;  // that the last frame took
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
-    gi::Buffer sample, mean, picture;  // radiance of this frame, of the average; RGBA8
-    gi::Buffer other_sample, other_mean, other_picture;
-    uint32_t accumulated = 0;          // frames in `mean`
-    bool averaged = false;             // the last picture is `mean`
-    double exposure_ev = 0;
+    Presentation presentation;
 };
 
 /// What the caps allow, and no more than the whole cloud.
@@ -236,7 +227,8 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              budgets,
                              glm::distance(bulk[0], bulk[1]),
                              &scene.look.clip};
-    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()), [](const auto& node) { return pool_bytes(node.count); }});
+    chosen = chooser.choose(
+        purpose, {pool_bytes(pool.capacity()), [](const auto& node) { return pool_bytes(node.count); }});
     local = local_frame(request.camera.position, source->header().metres_per_unit);
     camera = camera_view(request.camera, request.size, local);
     cuts_stale = true;
@@ -321,11 +313,12 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                              static_cast<float>(scene.look.point_pixels)};
     LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer, size));
     times.end();
-    LUCARNE_TRY(draw_with(*engine, request, sample));
-    return other ? draw_with(*other, request, other_sample) : Result<void>();
+    LUCARNE_TRY(draw_with(*engine, request, presentation.sample(false)));
+    return other ? draw_with(*other, request, presentation.sample(true)) : Result<void>();
 }
 
-Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target) {
+Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest& request,
+                                        gi::Buffer& target) {
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
     gi::FrameCuts cuts{&view, {}, &light_cut};
@@ -336,7 +329,8 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
     }
     const auto& header = source->header();
     std::vector<gi::Material> materials;
-    for (const auto& material : scene.materials) materials.push_back(device_material(material, scene.albedo.scale));
+    for (const auto& material : scene.materials)
+        materials.push_back(device_material(material, scene.albedo.scale));
     gi::Frame frame{device,
                     pool,
                     cuts,
@@ -346,7 +340,7 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
                     materials,
                     glm::vec3(scene.background),
                     settings,
-                    accumulated,
+                    presentation.accumulated(),
                     target,
                     times,
                     scene.environment,
@@ -358,60 +352,6 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
     return drawing.render(frame);
 }
 
-/// Average and tone map.
-Result<void> Pipeline::State::finish(const FrameRequest& request) {
-    const uint32_t pixels = request.size.width * request.size.height;
-    ++accumulated;
-    averaged = request.accumulate;
-    times.begin("tone map");
-    if (averaged) {
-        LUCARNE_TRY(device.reserve(mean, pixels * sizeof(glm::vec4), "the picture's average"));
-        LUCARNE_TRY(gi::accumulate(device, sample, pixels, accumulated, mean));
-    }
-    const gi::Buffer& radiance = averaged ? mean : sample;
-    exposure_ev = 0;
-    if (engine->info().unlit) {
-        // Its colours are the screen's already.
-    } else if (scene.exposure_ev) {
-        exposure_ev = *scene.exposure_ev;
-    } else {
-        LUCARNE_ASSIGN(exposure_ev, gi::automatic_exposure(device, radiance, pixels));
-    }
-    LUCARNE_TRY(show(*engine, radiance, picture));
-    if (other) LUCARNE_TRY(compare(request));
-    LUCARNE_TRY(gi::draw_backdrop(device, gbuffer, scene.look.backdrop, picture));
-    times.end();
-    return {};
-}
-
-Result<void> Pipeline::State::show(const gi::Engine& lit_by, const gi::Buffer& radiance, gi::Buffer& shown) {
-    const uint32_t pixels = gbuffer.width * gbuffer.height;
-    const bool unlit = lit_by.info().unlit;
-    if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
-        return gi::false_colour(device, radiance, pixels, gi::luminance_range(scene.luminance, exposure_ev),
-                                shown);
-    return gi::tone_map(device, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
-                        unlit ? 0 : exposure_ev, shown);
-}
-
-/// Brings the other engine's light into the picture.
-Result<void> Pipeline::State::compare(const FrameRequest& request) {
-    using Show = gi::Comparison::Show;
-    const auto [width, height] = request.size;
-    if (averaged) {
-        LUCARNE_TRY(device.reserve(other_mean, size_t{width} * height * sizeof(glm::vec4),
-                                   "the other engine's average"));
-        LUCARNE_TRY(gi::accumulate(device, other_sample, width * height, accumulated, other_mean));
-    }
-    const gi::Buffer& radiance = averaged ? other_mean : other_sample;
-    const gi::Comparison& how = *scene.comparison;
-    if (how.show != Show::split)
-        return gi::difference(device, averaged ? mean : sample, radiance, width * height,
-                              how.show == Show::absolute_difference, exposure_ev, how.range, picture);
-    LUCARNE_TRY(show(*other, radiance, other_picture));
-    return gi::split(device, other_picture, width, height, how.border, picture);
-}
-
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
     LUCARNE_TRY(stream(request));
@@ -420,11 +360,14 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
         times.begin("upload of cuts");
         LUCARNE_TRY(build_cuts());
         times.end();
-        accumulated = 0;
+        presentation.restart();
     }
-    if (!request.accumulate || !averaged) accumulated = 0;  // else `mean` is of an earlier view
+    if (!request.accumulate || !presentation.averaged()) presentation.restart();
     LUCARNE_TRY(draw(request));
-    return finish(request);
+    times.begin("tone map");
+    LUCARNE_TRY(presentation.finish(*engine, other.get(), scene, gbuffer, request.accumulate));
+    times.end();
+    return {};
 }
 
 /// Gives a quarter of the pool back to the device; false when little is left of it.
@@ -464,7 +407,7 @@ FrameStats Pipeline::State::stats(double seconds) const {
                          static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
     result.memory.device = device.memory_used();
     result.memory.resident = resident_memory();
-    result.accumulated = std::max(accumulated, 1u);
+    result.accumulated = std::max(presentation.accumulated(), 1u);
     result.engine = engine->stats();
     return result;
 }
@@ -525,16 +468,16 @@ const gi::ShownValues& Pipeline::values() const {
     return state_->values;
 }
 double Pipeline::exposure_ev() const {
-    return state_->exposure_ev;
+    return state_->presentation.exposure_ev();
 }
 const gi::Buffer& Pipeline::picture() const {
-    return state_->picture;
+    return state_->presentation.picture();
 }
 std::vector<std::vector<glm::vec4>> Pipeline::layers() const {
     return state_->engine->layers();
 }
 const gi::Buffer& Pipeline::radiance() const {
-    return state_->averaged ? state_->mean : state_->sample;
+    return state_->presentation.radiance();
 }
 
 Result<void> Pipeline::set_engine(std::string_view name) {
@@ -558,7 +501,7 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
     if (!scene.environment_on) scene.environment.reset();
     if (!scene.comparison) {
         state_->other.reset();
-        state_->other_sample = {}, state_->other_mean = {}, state_->other_picture = {};
+        state_->presentation.forget_comparison();
     } else if (!state_->other || state_->other->info().name != scene.comparison->engine) {
         LUCARNE_ASSIGN(state_->other, gi::make_engine(scene.comparison->engine));
         state_->changed = true;
@@ -581,7 +524,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     state.times.begin("cuts");
     if (state.changed || !same_view(request, state.last)) {
         state.choose_cuts(request);
-        state.accumulated = 0;
+        state.presentation.restart();
     }
     state.look_ahead(request);
     state.times.end();

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "gi/engine.h"
-#include "gi/surfels/colouring.h"
 #include "gi/scene/scene.h"
+#include "gi/surfels/colouring.h"
 #include "io/core/options.h"
 #include "octree/tree/source.h"
 #include "viewer/frame/presets.h"
@@ -37,7 +37,7 @@ struct FrameRequest {
     ImageSize size{1280, 720};
     bool wait = false;  ///< loads every cut whole first: the same pixels on every run
     bool accumulate =
-        false;  ///< averages with the frames before for as long as nothing that is drawn changes
+        false;            ///< averages with the frames before for as long as nothing that is drawn changes
     bool moving = false;  ///< one of a motion: the engine may use what it knows from the frames before
     Progress* progress = nullptr;  ///< of pixels, for an engine that takes long (EngineInfo)
 };
@@ -75,8 +75,9 @@ class Pipeline {
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
 
-    /// Draws from another source from now on: a build that has grown. The next picture waits for all its nodes, so
-    /// that none shows parts of both. Errors: a directory that is larger than the cap; no device memory.
+    /// Draws from another source from now on: a build that has grown. The next picture waits for all its
+    /// nodes, so that none shows parts of both. Errors: a directory that is larger than the cap; no device
+    /// memory.
     Result<void> set_source(std::shared_ptr<const octree::NodeSource> source);
 
     const octree::NodeSource& source() const;
@@ -86,10 +87,11 @@ class Pipeline {
     Result<void> set_engine(std::string_view name);
     void set_settings(const gi::EngineSettings& settings);
     void set_budgets(const CutBudgets& budgets);
-    /// Lights, materials, exposure, look. Moving a light is cheap; other materials or colours for the points send
-    /// every surfel to the device again, without `wait` one node after another while the old ones are shown.
-    /// Lights that are off, and an environment that is, are not there. Another exposure or tone map, or another way to
-    /// show a comparison, leaves the average as it is. Errors (arguments): the comparison's engine is none.
+    /// Lights, materials, exposure, look. Moving a light is cheap; other materials or colours for the points
+    /// send every surfel to the device again, without `wait` one node after another while the old ones are
+    /// shown. Lights that are off, and an environment that is, are not there. Another exposure or tone map,
+    /// or another way to show a comparison, leaves the average as it is. Errors (arguments): the comparison's
+    /// engine is none.
     Result<void> set_scene(gi::Scene scene);
 
     const gi::EngineInfo& engine() const;
@@ -97,8 +99,9 @@ class Pipeline {
     const CutBudgets& budgets() const;
     const gi::Scene& scene() const;
 
-    /// One frame into radiance() and picture(). Errors: no device memory, the engine's, a context that was lost
-    /// (gi::Device::check); with `wait` a node that cannot be read, which is left out otherwise (FrameStats).
+    /// One frame into radiance() and picture(). Errors: no device memory, the engine's, a context that was
+    /// lost (gi::Device::check); with `wait` a node that cannot be read, which is left out otherwise
+    /// (FrameStats).
     Result<FrameStats> render(const FrameRequest& request);
 
     /// Of the last frame: vec4 a pixel (linear radiance, W/(sr m^2)) and RGBA8 (tone-mapped sRGB), row 0 on

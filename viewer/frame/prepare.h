@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "gi/surfels/baked_light.h"
 #include "gi/scene/scene.h"
+#include "gi/surfels/baked_light.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/source.h"
 

@@ -40,7 +40,8 @@ gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings&
     gi::RenderSettings settings;
     settings.preset = preset.name;
     for (const gi::OptionInfo* option : gi::engine_options())
-        if (engine.get(*option) != preset.engine.get(*option)) settings.options.set(*option, engine.get(*option));
+        if (engine.get(*option) != preset.engine.get(*option))
+            settings.options.set(*option, engine.get(*option));
     return settings;
 }
 

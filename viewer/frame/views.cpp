@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kOriginGrid = 256.0;  // m
 constexpr double kNearPlane = 0.01;    // m
-// Heights of an orthographic picture from its plane to the pinhole that nodes are chosen by: what lies a hundred
-// heights deeper than the plane is chosen a hundredth too coarse.
+// Heights of an orthographic picture from its plane to the pinhole that nodes are chosen by: what lies a
+// hundred heights deeper than the plane is chosen a hundredth too coarse.
 constexpr double kPinholeDistance = 1e4;
-constexpr double kWidestAngle = 3.0;   // radians: a plane cannot hold a field of pi
+constexpr double kWidestAngle = 3.0;  // radians: a plane cannot hold a field of pi
 
 struct Axes {
     glm::dvec3 forward, right, up;
@@ -55,10 +55,9 @@ octree::View octree_view(const gi::SceneCamera& camera, ImageSize size) {
     const Axes axes = look_at(camera.position, camera.target, camera.up);
     const double tangent = std::tan(std::clamp(camera.vertical_fov, 1e-3, kWidestAngle) / 2);
     const double aspect = static_cast<double>(size.width) / size.height, height = camera.orthographic_height;
-    octree::View view =
-        height > 0 ? make_view(camera.position - axes.forward * (kPinholeDistance * height), axes,
-                               .5 / kPinholeDistance, aspect)
-                   : make_view(camera.position, axes, tangent, aspect);
+    octree::View view = height > 0 ? make_view(camera.position - axes.forward * (kPinholeDistance * height),
+                                               axes, .5 / kPinholeDistance, aspect)
+                                   : make_view(camera.position, axes, tangent, aspect);
     view.width = size.width;
     view.height = size.height;
     return view;
@@ -73,7 +72,8 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
     const bool parallel = camera.orthographic_height > 0;
     const double up =
         parallel ? camera.orthographic_height / 2 * frame.metres_per_unit : view.tan_half_height;
-    result.right = glm::vec4(glm::vec3(view.right * (up * (static_cast<double>(size.width) / size.height))), 0.0f);
+    result.right =
+        glm::vec4(glm::vec3(view.right * (up * (static_cast<double>(size.width) / size.height))), 0.0f);
     result.up = glm::vec4(glm::vec3(view.up * up), 0.0f);
     result.projection = parallel ? gi::kOrthographic : gi::kPerspective;
     result.width = size.width;

@@ -7,8 +7,8 @@
 #include "gi/shared/light.h"
 #include "gi/shared/material.h"
 #include "io/core/options.h"
-#include "octree/tree/source.h"
 #include "octree/stream/cut.h"
+#include "octree/tree/source.h"
 
 namespace lucarne::viewer {
 

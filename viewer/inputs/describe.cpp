@@ -30,8 +30,7 @@ json losses_json(const io::Losses& losses) {
 
 std::string losses_text(const io::Losses& losses) {
     std::string text;
-    for (const auto& loss : losses)
-        text += (text.empty() ? "" : ", ") + counted(loss.count, loss.what);
+    for (const auto& loss : losses) text += (text.empty() ? "" : ", ") + counted(loss.count, loss.what);
     return text;
 }
 

@@ -12,10 +12,10 @@ namespace lucarne::viewer {
 nlohmann::ordered_json vector_json(const glm::dvec3& v);
 nlohmann::ordered_json attributes_json(const io::Schema& schema);
 
-/// Path, format, coordinate system and unit, stations, what was left out; with `contents` the points and their
-/// bounds as they were read; of a mesh that is sampled without `contents` its own box and about how many points it
-/// becomes. The box that a header states is `stated_min` and `stated_max`. What a file of several scans says of each,
-/// and its images; of a mesh. `unit_given`: by the user.
+/// Path, format, coordinate system and unit, stations, what was left out; with `contents` the points and
+/// their bounds as they were read; of a mesh that is sampled without `contents` its own box and about how
+/// many points it becomes. The box that a header states is `stated_min` and `stated_max`. What a file of
+/// several scans says of each, and its images; of a mesh. `unit_given`: by the user.
 nlohmann::ordered_json scan_json(const io::ScanInfo& info, const io::Schema& schema,
                                  const io::Contents* contents);
 

@@ -22,7 +22,7 @@ namespace {
 using octree::GrowingBuild;
 
 constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< of a build beside which pictures are drawn
-constexpr size_t kMostOpenFiles = 64;                  ///< handles; those of further files are opened again in turn
+constexpr size_t kMostOpenFiles = 64;  ///< handles; those of further files are opened again in turn
 using Source = std::shared_ptr<const octree::NodeSource>;
 
 /// The scans, and where their cache goes; or the cache, if it is there.
@@ -42,7 +42,8 @@ struct Files {
 
 /// Many files share a bounded number of handles.
 Result<Files> open_files(const InputOptions& options) {
-    const auto handles = options.paths.size() > kMostOpenFiles ? std::make_shared<HandlePool>(kMostOpenFiles) : nullptr;
+    const auto handles =
+        options.paths.size() > kMostOpenFiles ? std::make_shared<HandlePool>(kMostOpenFiles) : nullptr;
     Files files;
     for (const std::string& path : options.paths) {
         LUCARNE_ASSIGN(std::shared_ptr<const ByteSource> file, InputFile::open_shared(path, handles));
@@ -56,7 +57,8 @@ Result<Files> open_files(const InputOptions& options) {
     return files;
 }
 
-Result<Scans> open_scans(const InputOptions& options, std::span<const std::shared_ptr<const ByteSource>> files) {
+Result<Scans> open_scans(const InputOptions& options,
+                         std::span<const std::shared_ptr<const ByteSource>> files) {
     Scans scans;
     std::vector<io::ScanInfo> infos;
     for (const auto& file : files) {
@@ -88,13 +90,13 @@ Result<Scans> open_scans(const InputOptions& options, std::span<const std::share
 }
 
 /// Scans as one cache, the one kept or a new one.
-Result<Source> convert_scans(const InputOptions& options, std::span<const std::shared_ptr<const ByteSource>> files) {
+Result<Source> convert_scans(const InputOptions& options,
+                             std::span<const std::shared_ptr<const ByteSource>> files) {
     LUCARNE_ASSIGN(Scans scans, open_scans(options, files));
     if (scans.cache) return scans.cache;
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
     if (auto built = octree::build_cache(scans.build); !built)
-        return tl::unexpected(
-            io::with_salvage_advice(built.error(), built.error().what, options.read));
+        return tl::unexpected(io::with_salvage_advice(built.error(), built.error().what, options.read));
     // The open file lives on after its name is gone with the folder.
     LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
     return Source(std::move(cache));
@@ -108,8 +110,9 @@ Result<Source> open_parts(const InputOptions& options, const Files& files) {
             LUCARNE_ASSIGN(auto octree, octree::open_octree(files.all[i]));
             sources.push_back(std::move(octree));
         } else {
-            LUCARNE_ASSIGN(sources.emplace_back(), convert_scans({{options.paths[i]}, options.no_cache, options.read},
-                                                                 std::span(&files.all[i], 1)));
+            LUCARNE_ASSIGN(sources.emplace_back(),
+                           convert_scans({{options.paths[i]}, options.no_cache, options.read},
+                                         std::span(&files.all[i], 1)));
         }
     }
     if (sources.size() == 1) return std::move(sources.front());

@@ -37,12 +37,13 @@ struct OpenInput {
     std::unique_ptr<octree::GrowingBuild> build;  ///< of scans without a cache yet; not begun
 };
 
-/// Octrees as they are, or the cache kept of these scans, or a sample of them and their build. Errors: those of the
-/// readers.
+/// Octrees as they are, or the cache kept of these scans, or a sample of them and their build. Errors: those
+/// of the readers.
 Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening = {});
 
-/// The same, waiting for a cache that is not there yet. With an octree among them every input is a part of its own,
-/// in its own place, unit and schema (octree/stream/joined_source.h). Errors: those of the builder as well.
+/// The same, waiting for a cache that is not there yet. With an octree among them every input is a part of
+/// its own, in its own place, unit and schema (octree/stream/joined_source.h). Errors: those of the builder
+/// as well.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const InputOptions& options);
 /// Of one input.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const std::filesystem::path& path);

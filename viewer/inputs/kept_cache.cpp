@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "io/files/file.h"
-#include "io/files/user_folder.h"
 #include "io/core/log.h"
 #include "io/core/random.h"
+#include "io/files/file.h"
+#include "io/files/user_folder.h"
 #include "octree/cache/cache.h"
 
 namespace lucarne::viewer {
@@ -69,8 +69,9 @@ std::shared_ptr<const octree::NodeSource> KeptCache::find() const {
         if (!input || !octree::is_cache(**input)) continue;
         auto cache = octree::open_cache(std::move(*input));
         if (cache && made_of(**cache, true)) return std::move(*cache);
-        log::info("{}: {}; it is not used", file.string(),
-                  cache ? "was made from another state of the scan, or with other options" : cache.error().why);
+        log::info(
+            "{}: {}; it is not used", file.string(),
+            cache ? "was made from another state of the scan, or with other options" : cache.error().why);
     }
     return nullptr;
 }

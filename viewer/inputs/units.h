@@ -21,7 +21,8 @@ struct UnitChoice {
 
 /// Of a file's unit: "m", "ft", "US ft"; "units of 0.5 m" where it has no name.
 std::string unit_name(double metres_per_unit);
-/// The metres of a unit by its name ("ft", "us-ft" for "US ft"), or as a number of metres; none where it is neither.
+/// The metres of a unit by its name ("ft", "us-ft" for "US ft"), or as a number of metres; none where it is
+/// neither.
 std::optional<double> metres_of(const std::string& unit);
 
 }  // namespace lucarne::viewer

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -78,7 +78,8 @@ void add_light(ViewModel& model, gi::LightKind kind) {
     const double metres = model.picture ? model.picture->metres_per_unit : 1;
     const double ev = model.scene.exposure_ev.value_or(model.picture ? model.picture->exposure_ev : 0);
     light.strength = glm::dvec3(fitting_strength(light, ev, metres));
-    if (kind == gi::LightKind::point) light.target = light.position - glm::dvec3(0, 0, 1);  // as files have it
+    if (kind == gi::LightKind::point)
+        light.target = light.position - glm::dvec3(0, 0, 1);  // as files have it
     model.scene.lights.push_back(light);
     model.light = model.scene.lights.size() - 1;
     model.scene_changed();

@@ -9,9 +9,9 @@
 #include "gi/registry.h"
 #include "viewer/light/edits.h"
 #include "viewer/light/handles.h"
+#include "viewer/picking/pick.h"
 #include "viewer/window/panels/on_screen.h"
 #include "viewer/window/panels/panels.h"
-#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -118,7 +118,8 @@ bool take_light_handles(ViewModel& model) {
     if (!model.picture) return false;
     LightTools& tools = model.light_tools;
     if (take_border(model)) return true;
-    if (!tools.show_handles || !model.side_bar().shown || gi::engine_is(model.engine, &gi::EngineInfo::unlit)) {
+    if (!tools.show_handles || !model.side_bar().shown ||
+        gi::engine_is(model.engine, &gi::EngineInfo::unlit)) {
         tools.held.reset();
         return false;
     }

@@ -6,8 +6,8 @@
 
 #include "gi/scene/photometry.h"
 #include "gi/shared/surfel_code.h"
-#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
+#include "viewer/window/actions.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {

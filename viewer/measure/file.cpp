@@ -170,7 +170,8 @@ Result<void> save_measurements(const std::filesystem::path& path, std::span<cons
     if (extension != ".csv" && extension != ".json")
         return bad_arguments(path.string(), "measurements are written as .csv or .json", "name it so");
     return write_file(
-        path, extension == ".csv" ? measurements_csv(all, units) : measurements_json(all, units.metres_per_unit),
+        path,
+        extension == ".csv" ? measurements_csv(all, units) : measurements_json(all, units.metres_per_unit),
         overwrite);
 }
 

@@ -17,7 +17,8 @@ std::vector<glm::dvec3> positions(const Measurement& m) {
 }
 
 /// The edges of a slice on the map, at the height of its ends.
-void slice_lines(OverlayLayout& layout, const Measurement& m, const std::vector<glm::dvec3>& at, size_t index) {
+void slice_lines(OverlayLayout& layout, const Measurement& m, const std::vector<glm::dvec3>& at,
+                 size_t index) {
     const glm::dvec2 along(at[1].x - at[0].x, at[1].y - at[0].y);
     const double length = glm::length(along);
     if (!(length > 0)) return;

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/picking/exact_point.h"
 #include "viewer/inputs/units.h"
+#include "viewer/picking/exact_point.h"
 
 namespace lucarne::viewer {
 

@@ -48,7 +48,8 @@ struct MeasureModel {
     bool unsaved() const { return list.unsaved() || can_finish(); }
     /// Writes over its own file alone. Errors: save_measurements().
     Result<void> save(const std::filesystem::path& path);
-    /// Takes the place of all there is, which can be undone. Errors: load_measurements(); then nothing changes.
+    /// Takes the place of all there is, which can be undone. Errors: load_measurements(); then nothing
+    /// changes.
     Result<void> load(const std::filesystem::path& path);
 
     /// Another scan was opened or closed, and with it the unit of all together has changed.

@@ -3,9 +3,9 @@
 
 #include <imgui.h>
 
+#include "viewer/measure/marks.h"
 #include "viewer/window/panels/on_screen.h"
 #include "viewer/window/panels/panels.h"
-#include "viewer/measure/marks.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -33,8 +33,8 @@ struct SectionPoint {
 
 struct Section {
     Slice slice;
-    std::vector<SectionPoint>
-        points;  ///< an even sample where `complete` is false: whole levels of the octree
+    /// An even sample where `complete` is false: whole levels of the octree.
+    std::vector<SectionPoint> points;
     bool complete = false;
     uint64_t nodes_read = 0, nodes = 0;
     double lowest = 0, highest = 0;  ///< of the points; both 0 without any

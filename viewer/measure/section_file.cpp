@@ -6,9 +6,9 @@
 
 #include "io/files/file.h"
 #include "octree/tree/stored_names.h"
-#include "viewer/overlay/axis_marks.h"
 #include "viewer/measure/file.h"
 #include "viewer/measure/section.h"
+#include "viewer/overlay/axis_marks.h"
 
 namespace lucarne::viewer {
 namespace {

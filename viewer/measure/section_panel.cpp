@@ -47,8 +47,7 @@ void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, c
 void SectionPanel::draw(ViewModel& model) {
     MeasureModel& measure = model.measure;
     const Measurement* one = measure.selected_one();
-    if (!one || one->kind != MeasureKind::section || !model.side_bar().is_open(BarSection::measure))
-        return;
+    if (!one || one->kind != MeasureKind::section || !model.side_bar().is_open(BarSection::measure)) return;
     const UnitChoice units = measure.units();
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const float font = ImGui::GetFontSize();

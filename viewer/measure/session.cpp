@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/overlay/axis_marks.h"
 #include "io/files/free_name.h"
+#include "viewer/overlay/axis_marks.h"
 #include "viewer/window/panels/on_screen.h"
 #include "viewer/window/panels/panels.h"
 
@@ -35,13 +35,16 @@ void MeasureSession::follow_section(ViewModel& model) {
     measure.section = shown ? worker_.section() : nullptr;
     if (!measure.save_section) return;
     measure.save_section = false;
-    if (shown) worker_.save_section(free_name(model.pictures, "section", {".csv", ".svg"}), one->name, measure.units());
+    if (shown)
+        worker_.save_section(free_name(model.pictures, "section", {".csv", ".svg"}), one->name,
+                             measure.units());
 }
 
 void MeasureSession::files(ViewModel& model) {
     MeasureModel& measure = model.measure;
     if (measure.wish == MeasureModel::FileWish::none) return;
-    if (measure.wish == MeasureModel::FileWish::load && !model.picture) return;  // the first one tells the unit
+    if (measure.wish == MeasureModel::FileWish::load && !model.picture)
+        return;  // the first one tells the unit
     const auto wish = std::exchange(measure.wish, MeasureModel::FileWish::none);
     const auto path = model.pictures / measure.file;
     const bool save = wish == MeasureModel::FileWish::save;
@@ -56,9 +59,9 @@ void MeasureSession::files(ViewModel& model) {
 
 void MeasureSession::take_input(ViewModel& model) {
     const ImGuiIO& io = ImGui::GetIO();
-    const bool click = ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.WantCaptureMouse &&
-                       !io.KeyShift &&
-                       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < scaled(kClickReach) * scaled(kClickReach);
+    const bool click =
+        ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.WantCaptureMouse && !io.KeyShift &&
+        io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < scaled(kClickReach) * scaled(kClickReach);
     if (click && model.measure.tool && model.picture) {
         const ImVec2 at = io.MouseClickedPos[ImGuiMouseButton_Left];
         worker_.pick(model.picture, {at.x / io.DisplaySize.x, at.y / io.DisplaySize.y});

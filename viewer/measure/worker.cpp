@@ -15,7 +15,9 @@ void MeasureWorker::pick(std::shared_ptr<const Picture> picture, const glm::dvec
     ++waiting_;
     picking_.push(
         "picking",
-        [this, picture = std::move(picture), place] { return pick_point(*picture, place, cache_of(picture->source)); },
+        [this, picture = std::move(picture), place] {
+            return pick_point(*picture, place, cache_of(picture->source));
+        },
         [this](Pick found) {
             {
                 const std::lock_guard lock(mutex_);
@@ -64,11 +66,11 @@ void MeasureWorker::read(std::shared_ptr<const octree::NodeSource> source, const
             }
             published_();
         };
-        LUCARNE_ASSIGN(const Section section,
-                       read_section(*source, slice, kMostSectionPoints, [&](const Section& now, bool level_done) {
-                           if (level_done) publish(now);
-                           return !*stop;
-                       }));
+        LUCARNE_ASSIGN(const Section section, read_section(*source, slice, kMostSectionPoints,
+                                                           [&](const Section& now, bool level_done) {
+                                                               if (level_done) publish(now);
+                                                               return !*stop;
+                                                           }));
         if (!*stop) publish(section);
         return {};
     };

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/core/job_queue.h"
-#include "viewer/picking/pick.h"
 #include "viewer/measure/section.h"
+#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 
@@ -54,10 +54,10 @@ class MeasureWorker {
     std::shared_ptr<const Section> section_;
     std::optional<std::string> message_;
     std::atomic<int> waiting_{0};  ///< picks
-    std::shared_ptr<std::atomic<bool>> stop_ =
-        std::make_shared<std::atomic<bool>>(false);  ///< reading the section
-    std::unique_ptr<NodeCache> cache_;               ///< the picking thread's
-    JobQueue picking_, sections_;                    ///< last: they end before what they use
+    /// Stops reading the section.
+    std::shared_ptr<std::atomic<bool>> stop_ = std::make_shared<std::atomic<bool>>(false);
+    std::unique_ptr<NodeCache> cache_;  ///< the picking thread's
+    JobQueue picking_, sections_;       ///< last: they end before what they use
 };
 
 }  // namespace lucarne::viewer

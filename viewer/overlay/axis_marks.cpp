@@ -27,7 +27,8 @@ std::vector<double> axis_marks(double low, double high, double step) {
     std::vector<double> marks;
     const double first = std::ceil(low / step - 1e-9);
     // Counted: far away a step may be less than a double's.
-    for (int i = 0; i < 100 && (first + i) * step <= high + 1e-9 * step; ++i) marks.push_back((first + i) * step);
+    for (int i = 0; i < 100 && (first + i) * step <= high + 1e-9 * step; ++i)
+        marks.push_back((first + i) * step);
     return marks;
 }
 

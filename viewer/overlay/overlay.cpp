@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "viewer/overlay/axis_marks.h"
-#include "viewer/inputs/units.h"
 #include "viewer/frame/views.h"
+#include "viewer/inputs/units.h"
+#include "viewer/overlay/axis_marks.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "gi/surfels/colouring.h"
 #include "gi/scene/scene.h"
+#include "gi/surfels/colouring.h"
 #include "io/core/options.h"
 
 namespace lucarne::viewer {

@@ -4,10 +4,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "viewer/frame/rgba.h"
 #include "viewer/overlay/draw_marks.h"
 #include "viewer/overlay/figure_scale.h"
 #include "viewer/overlay/overlay.h"
-#include "viewer/frame/rgba.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,8 +1,8 @@
 // A flythrough's path over the picture.
 #include <imgui.h>
 
-#include "viewer/window/panels/panels.h"
 #include "viewer/measure/marks_layout.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -7,8 +7,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "viewer/window/panels/panels.h"
 #include "viewer/publish/render_progress.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -59,8 +59,9 @@ void key_buttons(ViewModel& model) {
     ImGui::Checkbox("draw the path", &show.draw_path);
 }
 
-/// Taken once the user is done with the field, so that half a number is no error. ImGui says "changed" in each frame
-/// in which the text is another number than `value`: the last of them counts, unless it was taken back.
+/// Taken once the user is done with the field, so that half a number is no error. ImGui says "changed" in
+/// each frame in which the text is another number than `value`: the last of them counts, unless it was taken
+/// back.
 template <class Take>
 void number_field(ShowModel& show, const char* label, double value, const Take& take) {
     if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))

@@ -7,8 +7,8 @@
 
 #include "gi/bounce_options.h"
 #include "gi/registry.h"
-#include "viewer/window/actions.h"
 #include "viewer/light/edits.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -34,8 +34,8 @@ void next_preset(ViewModel& model) {
 }
 
 void change_bounces(ViewModel& model, int by) {
-    const auto bounces =
-        static_cast<uint32_t>(std::clamp<int64_t>(int64_t{model.settings[gi::kBounces]} + by, 0, kMostBounces));
+    const auto bounces = static_cast<uint32_t>(
+        std::clamp<int64_t>(int64_t{model.settings[gi::kBounces]} + by, 0, kMostBounces));
     model.settings.set(gi::kBounces, bounces);
     model.message = fmt::format("{} indirect bounce{}", bounces, bounces == 1 ? "" : "s");
 }

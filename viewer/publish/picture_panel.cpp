@@ -4,8 +4,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "viewer/window/panels/panels.h"
 #include "viewer/publish/render_progress.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "io/core/job_queue.h"
 #include "io/files/file.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/flythrough/video.h"
-#include "io/core/job_queue.h"
 
 namespace lucarne::viewer {
 
@@ -146,7 +146,8 @@ bool RenderWorker::start(RenderOrder order, WorkerDevice device) {
     }
     state_->stop = false;
     state_->jobs.push(
-        "rendering", [state = state_.get(), order = std::move(order), device = std::move(device)] {
+        "rendering",
+        [state = state_.get(), order = std::move(order), device = std::move(device)] {
             return state->render(order, device);
         },
         [state = state_.get()](Result<std::string> done) { state->finish(std::move(done)); });

@@ -4,8 +4,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "viewer/window/actions.h"
 #include "viewer/scans/scan_set.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -61,9 +61,11 @@ void FileBrowser::show_all(bool all) {
 
 void FileBrowser::list() {
     jobs_.push(
-        "the folder", [folder = folder_, all = all_]() -> Result<FolderListing> { return list_folder(folder, all); },
+        "the folder",
+        [folder = folder_, all = all_]() -> Result<FolderListing> { return list_folder(folder, all); },
         [shared = shared_, folder = folder_](Result<FolderListing> listed) {
-            FolderListing listing = listed ? std::move(*listed) : FolderListing{folder, {}, listed.error().line()};
+            FolderListing listing =
+                listed ? std::move(*listed) : FolderListing{folder, {}, listed.error().line()};
             const std::lock_guard lock(shared->mutex);
             shared->listing = std::move(listing);
         });

@@ -1,8 +1,8 @@
 #include <imgui.h>
 
 #include "io/core/options.h"
-#include "viewer/window/panels/panels.h"
 #include "viewer/scans/file_browser.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

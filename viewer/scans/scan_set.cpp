@@ -121,7 +121,8 @@ void ScanSet::push_opening(uint64_t id, InputOptions how, bool together, uint64_
     std::string name = how.paths.front();
     opener_.push(
         std::move(name),
-        [watch = items_[id].watch, operation = items_[id].operation, how = std::move(how), together, sample_points] {
+        [watch = items_[id].watch, operation = items_[id].operation, how = std::move(how), together,
+         sample_points] {
             const log::Operation::Scope scope(operation);
             return open_paths(how, together, *watch, sample_points);
         },
@@ -181,8 +182,9 @@ void ScanSet::retire(Item& item) {
     item.watch->cancelled = true;
     if (!item.input.build) return;
     item.input.build->stop();
-    opener_.push("closing a scan",
-                 [input = std::make_shared<OpenInput>(std::exchange(item.input, {}))]() mutable { input.reset(); });
+    opener_.push(
+        "closing a scan",
+        [input = std::make_shared<OpenInput>(std::exchange(item.input, {}))]() mutable { input.reset(); });
 }
 
 void ScanSet::remove(uint64_t id) {

@@ -15,8 +15,8 @@
 #include <glm/geometric.hpp>
 
 #include "gi/scene/scene.h"
-#include "viewer/inputs/input.h"
 #include "io/core/job_queue.h"
+#include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
 

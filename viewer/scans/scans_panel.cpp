@@ -2,8 +2,8 @@
 #include <imgui.h>
 
 #include "io/core/options.h"
-#include "viewer/window/panels/panels.h"
 #include "viewer/scans/scan_set.h"
+#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {

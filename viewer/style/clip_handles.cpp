@@ -3,9 +3,9 @@
 
 #include <imgui.h>
 
+#include "viewer/picking/pick.h"
 #include "viewer/window/panels/on_screen.h"
 #include "viewer/window/panels/panels.h"
-#include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {
 namespace {

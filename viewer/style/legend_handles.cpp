@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "viewer/window/panels/on_screen.h"
 #include "viewer/style/overlay_view.h"
+#include "viewer/window/panels/on_screen.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -5,9 +5,9 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
-#include "viewer/window/actions.h"
-#include "viewer/style/look_edits.h"
 #include "viewer/overlay/overlay.h"
+#include "viewer/style/look_edits.h"
+#include "viewer/window/actions.h"
 
 namespace lucarne::viewer {
 namespace {

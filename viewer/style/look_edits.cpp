@@ -8,7 +8,9 @@
 
 namespace lucarne::viewer {
 
-bool is_lit(const ViewModel& model) { return !gi::engine_is(model.engine, &gi::EngineInfo::unlit); }
+bool is_lit(const ViewModel& model) {
+    return !gi::engine_is(model.engine, &gi::EngineInfo::unlit);
+}
 
 void switch_light(ViewModel& model) {
     std::string& lit = model.look_tools.lit_engine;

@@ -5,8 +5,8 @@
 #include <imgui.h>
 
 #include "viewer/overlay/figure_scale.h"
-#include "viewer/window/panels/on_screen.h"
 #include "viewer/style/overlay_view.h"
+#include "viewer/window/panels/on_screen.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -43,7 +43,8 @@ void draw_overlay(const ViewModel& model) {
     std::ranges::move(figure_scale(model.scene, model.picture->exposure_ev, view), std::back_inserter(marks));
     for (const Mark& mark : marks) {
         if (mark.kind == Mark::Kind::area) list.AddRectFilled(point(mark.from), point(mark.to), packed(mark));
-        if (mark.kind == Mark::Kind::line) list.AddLine(point(mark.from), point(mark.to), packed(mark), scaled(2));
+        if (mark.kind == Mark::Kind::line)
+            list.AddLine(point(mark.from), point(mark.to), packed(mark), scaled(2));
         if (mark.kind == Mark::Kind::text) list.AddText(point(mark.from), packed(mark), mark.text.c_str());
     }
 }

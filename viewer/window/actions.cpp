@@ -42,8 +42,8 @@ std::string key_name(int key) {
 std::vector<Action> join() {
     std::vector<Action> all;
     for (const auto room :
-         {file_actions(), view_actions(), bookmark_actions(), look_actions(), light_actions(), picture_actions(),
-          measure_actions(), show_actions(), window_actions()})
+         {file_actions(), view_actions(), bookmark_actions(), look_actions(), light_actions(),
+          picture_actions(), measure_actions(), show_actions(), window_actions()})
         all.insert(all.end(), room.begin(), room.end());
     return all;
 }

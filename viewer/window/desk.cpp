@@ -82,7 +82,8 @@ void Desk::follow_bookmarks() {
                 "the bookmarks", [of]() -> Result<LoadedBookmarks> { return load_bookmarks(of); },
                 [read = read_, of](Result<LoadedBookmarks> loaded) {
                     const std::lock_guard lock(read->mutex);
-                    read->bookmarks = loaded ? std::move(*loaded) : LoadedBookmarks{of, {}, loaded.error().line()};
+                    read->bookmarks =
+                        loaded ? std::move(*loaded) : LoadedBookmarks{of, {}, loaded.error().line()};
                 });
     }
     std::optional<LoadedBookmarks> loaded;
@@ -143,7 +144,8 @@ bool Desk::closing(bool at_once) {
     model_.close = false;
     window_.stay();
     shell.closing_problem.clear();
-    if (!std::exchange(shell.ask_to_close, true)) log::info("{}: asked whether to close all the same", reason);
+    if (!std::exchange(shell.ask_to_close, true))
+        log::info("{}: asked whether to close all the same", reason);
     return false;
 }
 

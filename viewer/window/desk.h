@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <span>
 
-#include "viewer/scans/file_browser.h"
-#include "viewer/camera/floor_finder.h"
 #include "io/core/job_queue.h"
+#include "viewer/camera/floor_finder.h"
+#include "viewer/scans/file_browser.h"
 #include "viewer/scans/native_dialog.h"
 #include "viewer/scans/scan_set.h"
 #include "viewer/window/view_model.h"

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "io/files/user_folder.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
+#include "io/files/user_folder.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -9,12 +9,24 @@
 namespace lucarne::viewer {
 
 /// What the side bar is made of, from its top to its bottom.
-enum class BarSection : uint8_t { scans, rendering, look, light, measure, bookmarks, flythrough, picture, statistics, controller };
+enum class BarSection : uint8_t {
+    scans,
+    rendering,
+    look,
+    light,
+    measure,
+    bookmarks,
+    flythrough,
+    picture,
+    statistics,
+    controller
+};
 inline constexpr size_t kSections = 10;
 
 /// As the settings' file calls them.
 inline constexpr std::array<std::string_view, kSections> kSectionNames = {
-    "scans", "rendering", "look", "light", "measure", "bookmarks", "flythrough", "picture", "statistics", "controller"};
+    "scans",     "rendering",  "look",    "light",      "measure",
+    "bookmarks", "flythrough", "picture", "statistics", "controller"};
 
 /// The one place where panels stand: sections that open and close, on the left of the window.
 struct SideBar {

@@ -11,10 +11,10 @@
 namespace lucarne::viewer {
 namespace {
 
-/// `file`, unless there is another than `own` under that name. Without a question: in the window's own folder, since
-/// that of a file that was opened may be anybody's.
-std::filesystem::path place(const ViewModel& model, const std::filesystem::path& file, const std::filesystem::path& own,
-                            SaveTo to) {
+/// `file`, unless there is another than `own` under that name. Without a question: in the window's own
+/// folder, since that of a file that was opened may be anybody's.
+std::filesystem::path place(const ViewModel& model, const std::filesystem::path& file,
+                            const std::filesystem::path& own, SaveTo to) {
     if (to == SaveTo::own_files && file == own) return file;
     const auto wanted = to == SaveTo::own_files ? file : model.pictures / file.filename();
     std::error_code ignored;

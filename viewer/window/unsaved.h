@@ -18,7 +18,8 @@ struct Unsaved {
 
 /// Which files unsaved work goes into.
 enum class SaveTo {
-    own_files,  ///< those it was saved to or loaded from, or named in the panels; a free name where another has that
+    own_files,  ///< those it was saved to or loaded from, or named in the panels; a free name where another
+                ///< has that
     free_names  ///< names that are free in the window's own folder (ViewModel::pictures)
 };
 

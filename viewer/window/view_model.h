@@ -6,15 +6,15 @@
 
 #include "io/input/controller.h"
 #include "viewer/camera/camera.h"
-#include "viewer/window/health.h"
-#include "viewer/light/tools.h"
 #include "viewer/camera/navigation.h"
-#include "viewer/style/look_tools.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/presets.h"
-#include "viewer/window/shell.h"
-#include "viewer/publish/model.h"
+#include "viewer/light/tools.h"
 #include "viewer/measure/model.h"
+#include "viewer/publish/model.h"
+#include "viewer/style/look_tools.h"
+#include "viewer/window/health.h"
+#include "viewer/window/shell.h"
 
 namespace lucarne::viewer {
 
@@ -43,7 +43,7 @@ struct ViewModel {
     gi::EngineSettings settings;
     CutBudgets budgets;
     double resolution_scale = 1;  ///< of the window's sides, which pictures are made at
-    double frame_time = 0.1;  ///< s: what a picture should take while something moves
+    double frame_time = 0.1;      ///< s: what a picture should take while something moves
     PipelineOptions caps;
 
     Shell shell;  ///< the open scans and what stands around the picture

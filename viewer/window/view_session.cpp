@@ -10,18 +10,18 @@
 #include "io/core/guarded.h"
 #include "io/core/log.h"
 #include "io/core/process.h"
-#include "viewer/window/actions.h"
 #include "io/files/free_name.h"
-#include "viewer/light/edits.h"
-#include "viewer/window/panels/panels.h"
 #include "viewer/frame/rgba.h"
+#include "viewer/light/edits.h"
+#include "viewer/window/actions.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/window/unsaved.h"
 
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kRest = 0.25;      ///< s without a move until the picture is made in full
-constexpr double kStep = 1.0 / 60;  ///< s between frames of the window while something moves
+constexpr double kRest = 0.25;       ///< s without a move until the picture is made in full
+constexpr double kStep = 1.0 / 60;   ///< s between frames of the window while something moves
 constexpr uint32_t kIdleFrames = 4;  ///< until ImGui's windows have found their sizes
 
 bool same_request(const PictureRequest& a, const PictureRequest& b) {
@@ -31,8 +31,7 @@ bool same_request(const PictureRequest& a, const PictureRequest& b) {
            a.frame.camera.orthographic_height == b.frame.camera.orthographic_height &&
            a.frame.size.width == b.frame.size.width && a.frame.size.height == b.frame.size.height &&
            a.engine == b.engine && a.settings == b.settings && a.budgets == b.budgets &&
-           a.scene_version == b.scene_version && a.shader_version == b.shader_version &&
-           a.moving == b.moving;
+           a.scene_version == b.scene_version && a.shader_version == b.shader_version && a.moving == b.moving;
 }
 
 /// The cursor as shares of the window's width and height.
@@ -83,7 +82,8 @@ void ViewSession::take_picture() {
     model_.scale = quality_.scale();
     model_.health.shaders = latest->shader_problem;
     const uint64_t lost = latest->stats.nodes_lost;
-    model_.health.nodes = lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
+    model_.health.nodes =
+        lost == 0 ? "" : fmt::format("left out of the picture: {}", latest->stats.lost_node);
     if (lost > 1) model_.health.nodes += fmt::format(" (and {} more)", lost - 1);
     const bool last_source = scans_.settled() && latest->source == scans_.source();
     const bool whole =
@@ -96,7 +96,8 @@ Result<void> ViewSession::recover() {
     follow_device();
     if (!window_.lost()) return {};
     if (!tries_.take(Clock::now()))
-        return failed("window", "the graphics driver loses it again and again", "see that the driver is up to date");
+        return failed("window", "the graphics driver loses it again and again",
+                      "see that the driver is up to date");
     const log::Operation::Scope scope{log::Operation()};
     log::warn("the graphics driver has lost the window; it is made again");
     LUCARNE_TRY(window_.recover());
@@ -113,7 +114,8 @@ void ViewSession::follow_device() {
     log::warn("{}", lost->line());
     model_.message = lost->why + ": the graphics device is set up again";
     if (tries_.take(Clock::now())) {
-        if (auto device = window_.renew_worker_device(Window::Hidden::view)) return worker_.set_device(std::move(*device));
+        if (auto device = window_.renew_worker_device(Window::Hidden::view))
+            return worker_.set_device(std::move(*device));
     }
     given_up_ = true;
     model_.message.clear();
@@ -229,8 +231,8 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
-    // Not WantCaptureKeyboard, which holds as long as the mouse holds anything, and a frame longer: keys would be
-    // lost.
+    // Not WantCaptureKeyboard, which holds as long as the mouse holds anything, and a frame longer: keys
+    // would be lost.
     if (model_.shell.ask_to_close)
         desk_.answer(keys);
     else if (!io.WantTextInput)

@@ -7,22 +7,23 @@
 
 #include "io/core/interrupt.h"
 #include "viewer/frame/cost_model.h"
-#include "viewer/light/sky_loader.h"
-#include "viewer/measure/session.h"
-#include "viewer/style/legend_handles.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/quality.h"
+#include "viewer/light/sky_loader.h"
+#include "viewer/measure/session.h"
+#include "viewer/publish/session.h"
+#include "viewer/scans/scan_set.h"
+#include "viewer/style/legend_handles.h"
 #include "viewer/window/controller_input.h"
 #include "viewer/window/desk.h"
-#include "viewer/scans/scan_set.h"
-#include "viewer/publish/session.h"
 #include "viewer/window/view_model.h"
 #include "viewer/window/window.h"
 
 namespace lucarne::viewer {
 
-/// For scripts: the window's own picture is saved once it shows the average of exactly so many whole pictures, the same
-/// on every run, and the window closes. With nothing open it shows the start page, once that has its final size.
+/// For scripts: the window's own picture is saved once it shows the average of exactly so many whole
+/// pictures, the same on every run, and the window closes. With nothing open it shows the start page, once
+/// that has its final size.
 struct ScriptedShot {
     std::filesystem::path file;
     uint32_t pictures = 1;
@@ -45,9 +46,9 @@ class ViewSession {
           budget_(model.frame_time),
           show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
 
-    /// Until the window is closed. Where it ends without a question (SIGTERM, an error), unsaved work goes into files
-    /// with free names. Errors: the scripted shot cannot be made or written, or is not of all scans; the window is
-    /// lost; such a file cannot be written.
+    /// Until the window is closed. Where it ends without a question (SIGTERM, an error), unsaved work goes
+    /// into files with free names. Errors: the scripted shot cannot be made or written, or is not of all
+    /// scans; the window is lost; such a file cannot be written.
     Result<void> run();
 
  private:

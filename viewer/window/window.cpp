@@ -19,8 +19,8 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr float kDoubleClickReach = 6;  ///< of the second click from the first, on a screen of scale 1
-constexpr size_t kMostPressed = 64;    ///< keys kept between two frames
-constexpr size_t kMostDropped = 1000;  ///< files
+constexpr size_t kMostPressed = 64;     ///< keys kept between two frames
+constexpr size_t kMostDropped = 1000;   ///< files
 constexpr const char* kTodo =
     "start it on a desktop with OpenGL 4.5, or use lucarne render, which needs no display";
 
@@ -316,7 +316,8 @@ void Window::show(const Picture& picture) {
     }
     // A picture made before the window changed its shape keeps its own until the next one is there.
     const ImageSize size = framebuffer();
-    const double scale = std::max(static_cast<double>(size.width) / width, static_cast<double>(size.height) / height);
+    const double scale =
+        std::max(static_cast<double>(size.width) / width, static_cast<double>(size.height) / height);
     const auto half = [&](int length) { return length * scale / 2; };
     const double x = size.width / 2.0, y = size.height / 2.0;
     place_ = {static_cast<int>(std::lround(x - half(width))), static_cast<int>(std::lround(y - half(height))),

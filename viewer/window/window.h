@@ -12,8 +12,8 @@
 #include "gi/device/gl/context_watch.h"
 #include "io/core/options.h"
 #include "io/image/image.h"
-#include "viewer/window/key_chord.h"
 #include "viewer/frame/picture_worker.h"
+#include "viewer/window/key_chord.h"
 
 struct GLFWwindow;
 
@@ -108,10 +108,11 @@ class Window {
     std::array<GLFWwindow*, 2> hidden_{};
     std::string title_;
     bool initialised_ = false, imgui_ = false;
-    double text_size_ = 1;                     ///< wanted
-    double text_scale_ = 0, text_pixels_ = 0;  ///< what the glyphs are of, and the pixels of a unit of the desktop's then
-    unsigned texture_ = 0, framebuffer_ = 0;   ///< the picture, and what it is copied from
-    std::vector<unsigned> small_;              ///< textures
+    double text_size_ = 1;  ///< wanted
+    double text_scale_ = 0,
+           text_pixels_ = 0;  ///< what the glyphs are of, and the pixels of a unit of the desktop's then
+    unsigned texture_ = 0, framebuffer_ = 0;  ///< the picture, and what it is copied from
+    std::vector<unsigned> small_;             ///< textures
     ImageSize texture_size_;
     uint64_t shown_ = 0;        ///< the number of the picture in the texture
     PictureRect place_;         ///< of it, in this frame; empty: there is none

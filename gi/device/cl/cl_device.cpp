@@ -91,22 +91,24 @@ ClDevice::~ClDevice() {
 
 Error ClDevice::device_error(std::string_view what, int code) const {
     return {ErrorKind::failed, std::string(what),
-            fmt::format("the OpenCL device {} failed with error {}", info_.name, code), "see that its driver is up to date"};
+            fmt::format("the OpenCL device {} failed with error {}", info_.name, code),
+            "see that its driver is up to date"};
 }
 
 Result<ClBuffer> ClDevice::buffer(size_t bytes, std::string_view what) {
     bytes = std::max<size_t>(bytes, 16);
     if (bytes > info_.max_buffer_bytes)
         return failed(std::string(what),
-                      fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20, info_.name,
-                                  info_.max_buffer_bytes >> 20),
+                      fmt::format("{} MiB are more than a buffer of {} holds ({} MiB)", bytes >> 20,
+                                  info_.name, info_.max_buffer_bytes >> 20),
                       kMemoryTodo);
     LUCARNE_TRY(budget_.take_memory(bytes, what));
     cl_int problem = CL_SUCCESS;
     const cl_mem memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, bytes, nullptr, &problem);
     if (problem != CL_SUCCESS) {
         budget_.give_memory_back(bytes);
-        return failed(std::string(what), fmt::format("the OpenCL device has no {} MiB of memory left", bytes >> 20),
+        return failed(std::string(what),
+                      fmt::format("the OpenCL device has no {} MiB of memory left", bytes >> 20),
                       kMemoryTodo);
     }
     ClBuffer made;
@@ -171,19 +173,21 @@ ClBuffer::~ClBuffer() {
 }
 
 Result<void> ClBuffer::upload(size_t offset, std::span<const std::byte> data) {
-    if (offset > bytes_ || data.size() > bytes_ - offset) return failed("OpenCL", "an upload is larger than its buffer");
+    if (offset > bytes_ || data.size() > bytes_ - offset)
+        return failed("OpenCL", "an upload is larger than its buffer");
     if (data.empty()) return {};
-    const cl_int problem = clEnqueueWriteBuffer(device_->queue_, memory_, CL_TRUE, offset, data.size(), data.data(), 0,
-                                                nullptr, nullptr);
+    const cl_int problem = clEnqueueWriteBuffer(device_->queue_, memory_, CL_TRUE, offset, data.size(),
+                                                data.data(), 0, nullptr, nullptr);
     if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error("upload", problem));
     return {};
 }
 
 Result<void> ClBuffer::download(size_t offset, std::span<std::byte> out) const {
-    if (offset > bytes_ || out.size() > bytes_ - offset) return failed("OpenCL", "a download is larger than its buffer");
+    if (offset > bytes_ || out.size() > bytes_ - offset)
+        return failed("OpenCL", "a download is larger than its buffer");
     if (out.empty()) return {};
-    const cl_int problem =
-        clEnqueueReadBuffer(device_->queue_, memory_, CL_TRUE, offset, out.size(), out.data(), 0, nullptr, nullptr);
+    const cl_int problem = clEnqueueReadBuffer(device_->queue_, memory_, CL_TRUE, offset, out.size(),
+                                               out.data(), 0, nullptr, nullptr);
     if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error("download", problem));
     return {};
 }
@@ -205,8 +209,8 @@ Result<void> ClKernel::set_bytes(uint32_t index, const void* value, size_t bytes
 Result<void> ClKernel::enqueue(size_t items, size_t group) const {
     if (items == 0) return {};
     if (group > 0) items = (items + group - 1) / group * group;
-    const cl_int problem = clEnqueueNDRangeKernel(device_->queue_, kernel_, 1, nullptr, &items, group ? &group : nullptr,
-                                                  0, nullptr, nullptr);
+    const cl_int problem = clEnqueueNDRangeKernel(device_->queue_, kernel_, 1, nullptr, &items,
+                                                  group ? &group : nullptr, 0, nullptr, nullptr);
     if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error(name_, problem));
     return {};
 }

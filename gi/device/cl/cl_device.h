@@ -54,9 +54,9 @@ class ClKernel {
     ~ClKernel();
     ClKernel(const ClKernel&) = delete;
     ClKernel& operator=(const ClKernel&) = delete;
-    /// Sets the arguments in their order, and runs `items` work-items in groups of `group` (0: the driver chooses).
-    /// `items` is rounded up to whole groups. Arguments: ClBuffers and plain values (uint32_t, float).
-    /// Errors: an argument does not fit; the device failed.
+    /// Sets the arguments in their order, and runs `items` work-items in groups of `group` (0: the driver
+    /// chooses). `items` is rounded up to whole groups. Arguments: ClBuffers and plain values (uint32_t,
+    /// float). Errors: an argument does not fit; the device failed.
     template <class... Arguments>
     Result<void> run(size_t items, size_t group, const Arguments&... arguments) const {
         uint32_t index = 0;
@@ -88,12 +88,12 @@ struct ClDeviceInfo {
     bool is_gpu = false;
 };
 
-/// One OpenCL device with one queue in order; used from the OpenGL device's thread. Engines that need it open it in
-/// Engine::prepare: starting OpenCL takes most of a second.
+/// One OpenCL device with one queue in order; used from the OpenGL device's thread. Engines that need it open
+/// it in Engine::prepare: starting OpenCL takes most of a second.
 class ClDevice {
  public:
-    /// The first GPU, else the first processor. `budget`: its memory cap holds for both, and it outlives this. Errors:
-    /// there is none; the message says what to install.
+    /// The first GPU, else the first processor. `budget`: its memory cap holds for both, and it outlives
+    /// this. Errors: there is none; the message says what to install.
     static Result<std::unique_ptr<ClDevice>> open(Device& budget);
     ~ClDevice();
     ClDevice(const ClDevice&) = delete;
@@ -104,9 +104,9 @@ class ClDevice {
     Result<ClBuffer> buffer(size_t bytes, std::string_view what);
     /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
     Result<void> reserve(ClBuffer& buffer, size_t bytes, std::string_view what);
-    /// The function `name` of an embedded source ("gi/engines/micro/gather.cl"), compiled once for each set of defines.
-    /// Includes are resolved as those of shaders are. The driver keeps the binaries (PoCL in POCL_CACHE_DIR). Errors
-    /// carry the compiler's first message with file and line.
+    /// The function `name` of an embedded source ("gi/engines/micro/gather.cl"), compiled once for each set
+    /// of defines. Includes are resolved as those of shaders are. The driver keeps the binaries (PoCL in
+    /// POCL_CACHE_DIR). Errors carry the compiler's first message with file and line.
     Result<const ClKernel*> kernel(std::string_view path, std::string_view name, const Defines& defines = {},
                                    const std::vector<ShaderText>& texts = shader_texts());
     /// Waits until all work is done. Errors: the device failed.

@@ -10,7 +10,8 @@ constexpr size_t kPiece = size_t{16} << 20;  ///< bytes on the host at a time
 
 }  // namespace
 
-Result<void> copy_to_cl(const Buffer& from, size_t bytes, ClDevice& device, ClBuffer& to, std::string_view what) {
+Result<void> copy_to_cl(const Buffer& from, size_t bytes, ClDevice& device, ClBuffer& to,
+                        std::string_view what) {
     LUCARNE_TRY(device.reserve(to, bytes, what));
     std::vector<std::byte> piece(std::min(bytes, kPiece));
     for (size_t at = 0; at < bytes; at += kPiece) {
@@ -21,7 +22,8 @@ Result<void> copy_to_cl(const Buffer& from, size_t bytes, ClDevice& device, ClBu
     return {};
 }
 
-Result<void> copy_to_gl(const ClBuffer& from, size_t bytes, Device& device, Buffer& to, std::string_view what) {
+Result<void> copy_to_gl(const ClBuffer& from, size_t bytes, Device& device, Buffer& to,
+                        std::string_view what) {
     LUCARNE_TRY(device.reserve(to, bytes, what));
     std::vector<std::byte> piece(std::min(bytes, kPiece));
     for (size_t at = 0; at < bytes; at += kPiece) {

@@ -154,14 +154,16 @@ Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
     state_->refused |= !fits;
     if (!fits)
         return failed(std::string(what),
-                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB", bytes >> 20,
-                                  state_->used >> 20, state_->cap >> 20),
+                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
+                                  bytes >> 20, state_->used >> 20, state_->cap >> 20),
                       kMemoryTodo);
     state_->used += bytes;
     return {};
 }
 
-void Device::give_memory_back(uint64_t bytes) { state_->used -= bytes; }
+void Device::give_memory_back(uint64_t bytes) {
+    state_->used -= bytes;
+}
 
 Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) {
     constexpr size_t kGrain = 16;  // a storage block ends on a vec4

@@ -95,8 +95,8 @@ class Program {
     };
     /// `text`: what it was compiled from.
     Program(Device& device, std::string_view path, std::string_view text, uint32_t id);
-    /// Null for uniforms that the compiler found unused: setting those is no error. Setting one that the text does not
-    /// declare is: Device::check() says so.
+    /// Null for uniforms that the compiler found unused: setting those is no error. Setting one that the text
+    /// does not declare is: Device::check() says so.
     const Uniform* find(std::string_view uniform) const;
 
     Device* device_;
@@ -140,8 +140,8 @@ class Device {
     /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
     Result<void> reserve(Buffer& buffer, size_t bytes, std::string_view what);
 
-    /// The compute program of an embedded shader ("gi/engines/vpl/shading/shade.comp"), compiled once for each set of
-    /// defines.
+    /// The compute program of an embedded shader ("gi/engines/vpl/shading/shade.comp"), compiled once for
+    /// each set of defines.
     /// `#include "path"` is resolved among the embedded files. Errors carry the compiler's first message.
     Result<const Program*> program(std::string_view path, const Defines& defines = {});
 
@@ -149,17 +149,17 @@ class Device {
     /// LUCARNE_SHADERS names it for every device. A file that does not compile is reported by a warning and
     /// shader_problem(); the program's own is used instead.
     void use_shader_folder(const std::filesystem::path& folder);
-    /// Reads the folder again. Programs whose text has changed are compiled anew; where that fails the last good
-    /// one stays. Not while one that program() gave is in use.
+    /// Reads the folder again. Programs whose text has changed are compiled anew; where that fails the last
+    /// good one stays. Not while one that program() gave is in use.
     void reload_shaders();
     /// The first compile error since the folder was last read, with file and line; empty: there is none.
     const std::string& shader_problem() const;
 
     void finish();  ///< waits until all work is done
 
-    /// Errors: the driver has lost or reset the context; all that was made in it is gone, and what it was last
-    /// asked for is nonsense. Another device has to take its place. Or a program was given a uniform that its text does
-    /// not declare: a mistake of whoever called it.
+    /// Errors: the driver has lost or reset the context; all that was made in it is gone, and what it was
+    /// last asked for is nonsense. Another device has to take its place. Or a program was given a uniform
+    /// that its text does not declare: a mistake of whoever called it.
     Result<void> check();
     /// For tests: check() fails from its `checks`th call on.
     void lose_after(uint32_t checks);

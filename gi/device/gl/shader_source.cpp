@@ -10,7 +10,8 @@ namespace {
 
 class Assembler {
  public:
-    Assembler(const std::vector<ShaderText>& texts, ShaderLanguage language) : texts_(texts), language_(language) {}
+    Assembler(const std::vector<ShaderText>& texts, ShaderLanguage language)
+        : texts_(texts), language_(language) {}
 
     Result<void> add(std::string_view path) {
         if (std::find(source.files.begin(), source.files.end(), path) != source.files.end()) return {};

@@ -17,9 +17,9 @@ struct ShaderSource {
 
 enum class ShaderLanguage : uint8_t { glsl, opencl };
 
-/// Puts `#version 450` (of GLSL), the defines, and the text of `path` together; every `#include "file"` is replaced by
-/// that file's text the first time it is met and by nothing after. Includes in angle brackets are C++'s and
-/// dropped. Errors: a file that is not among `texts`.
+/// Puts `#version 450` (of GLSL), the defines, and the text of `path` together; every `#include "file"` is
+/// replaced by that file's text the first time it is met and by nothing after. Includes in angle brackets are
+/// C++'s and dropped. Errors: a file that is not among `texts`.
 Result<ShaderSource> shader_source(std::string_view path, const Defines& defines,
                                    const std::vector<ShaderText>& texts,
                                    ShaderLanguage language = ShaderLanguage::glsl);

@@ -5,7 +5,8 @@
 
 namespace lucarne::gi {
 
-/// A shader file as it was at build time; `path` is relative to the project's root ("gi/engines/vpl/shading/shade.comp").
+/// A shader file as it was at build time; `path` is relative to the project's root
+/// ("gi/engines/vpl/shading/shade.comp").
 struct ShaderText {
     std::string_view path;
     std::string_view text;

@@ -21,7 +21,10 @@ glm::vec3 emission_of(const Material& material) {
 
 Illumination::Illumination(const SurfelTracer& surfels, std::vector<Material> materials,
                            std::vector<Light> lights, std::shared_ptr<const Environment> environment)
-    : surfels_(surfels), materials_(device_materials(std::move(materials))), emitters_(surfels, {}), lit_(surfels, {}) {
+    : surfels_(surfels),
+      materials_(device_materials(std::move(materials))),
+      emitters_(surfels, {}),
+      lit_(surfels, {}) {
     std::ranges::partition_copy(lights, std::back_inserter(sharp_), std::back_inserter(soft_), is_sharp);
     if (environment) environment_.emplace(std::move(environment));
     if (environment_ && environment_->dark()) environment_.reset();

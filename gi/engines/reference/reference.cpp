@@ -73,7 +73,8 @@ struct Shining {
     }
 };
 
-constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &reference::kSamples.info, &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &reference::kSamples.info,
+                                          &kSeed.info};
 constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
 constexpr EngineInfo kInfo{.name = "reference",
                            .description = "path tracing over the same surfels: slow, and the truth",

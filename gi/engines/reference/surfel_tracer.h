@@ -14,8 +14,8 @@
 namespace lucarne::gi::reference {
 
 /// A ray starts this many radii above its surfel, along the normal. See
-/// gi/engines/reference/README.md for how it was chosen: what it loses in corners against what noise in the positions
-/// would shade wrongly.
+/// gi/engines/reference/README.md for how it was chosen: what it loses in corners against what noise in the
+/// positions would shade wrongly.
 inline constexpr float kOriginOffset = 1.0f;
 
 /// Ray queries against surfels as opaque discs with two equal sides (Embree's oriented discs). Surfels

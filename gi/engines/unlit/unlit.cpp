@@ -60,8 +60,8 @@ Result<void> UnlitEngine::render(Frame& frame) {
     }
     frame.times.begin("colours");
     static const Defines kDefines[] = {{}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
-    LUCARNE_ASSIGN(const Program* program,
-                   frame.device.program("gi/engines/unlit/colours.comp", kDefines[static_cast<size_t>(shading)]));
+    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/engines/unlit/colours.comp",
+                                                                kDefines[static_cast<size_t>(shading)]));
     frame.gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
     if (shading == Shading::occlusion) obscurance_.bind(kObscurance);
     frame.radiance.bind(kRadiance);

@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 
 #include "gi/bounce_options.h"
-#include "gi/lighting/direct_light.h"
-#include "gi/lighting/light_options.h"
 #include "gi/engines/vpl/footprints.h"
-#include "gi/engines/vpl/seeding/light_sights.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/redistribution/redistribution.h"
+#include "gi/engines/vpl/seeding/light_sights.h"
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_options.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi {
@@ -43,11 +43,10 @@ struct Bounce {
 constexpr size_t kMostKept = size_t{64} << 20;
 
 constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,       &kOnlyBounce.info, &kVpls.info,          &kInterleave.info, &kAtlas.info,
+    &kBounces.info,         &kOnlyBounce.info,   &kVpls.info,          &kInterleave.info, &kAtlas.info,
     &kLightResolution.info, &kLightSamples.info, &kBestCandidate.info, &kReuse.info,      &kSeed.info};
-constexpr EngineInfo kInfo{.name = "vpl",
-                           .description = "virtual point lights with imperfect shadow maps",
-                           .options = kOptions};
+constexpr EngineInfo kInfo{
+    .name = "vpl", .description = "virtual point lights with imperfect shadow maps", .options = kOptions};
 
 class VplEngine : public Engine {
  public:

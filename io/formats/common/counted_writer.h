@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "io/files/file.h"
-#include "io/formats/common/format.h"
 #include "io/formats/common/decimal.h"
+#include "io/formats/common/format.h"
 
 namespace lucarne::io {
 
-/// A file of a text header, which says how many records follow, and of records of one size. Whoever extends it
-/// packs the records.
+/// A file of a text header, which says how many records follow, and of records of one size. Whoever extends
+/// it packs the records.
 class CountedWriter : public PointWriter {
  public:
     Result<void> write(std::span<const std::byte> records) final {

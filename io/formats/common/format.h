@@ -15,7 +15,7 @@ inline constexpr size_t kHeadBytes = 4096;  ///< of a file, by which its format 
 
 /// One scan file format. A new one is a file that exports such a function and a line in registry.cpp.
 struct Format {
-    std::string_view name;                      ///< "LAS"
+    std::string_view name;  ///< "LAS"
     /// ".las", lower case: what `create` is chosen by; what a file is that nothing else tells.
     std::string_view extension;
     bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to kHeadBytes)

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <string>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "io/formats/common/number.h"
@@ -53,7 +53,8 @@ constexpr bool same_letters(std::string_view a, std::string_view b) {
     return true;
 }
 
-/// The index of what is called `name`; where nothing is, of the first whose name differs only in case; else the size.
+/// The index of what is called `name`; where nothing is, of the first whose name differs only in case; else
+/// the size.
 template <class List, class NameOf>
 size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
     size_t alike = list.size();

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "io/formats/copc/hierarchy.h"
 #include "io/formats/common/format.h"
+#include "io/formats/copc/hierarchy.h"
 
 namespace lucarne::io::copc {
 namespace {

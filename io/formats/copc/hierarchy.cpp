@@ -120,7 +120,8 @@ class HierarchyReader {
 
 }  // namespace
 
-Result<std::vector<Node>> read_hierarchy(const ByteSource& file, const las::Header& header, const Info& info) {
+Result<std::vector<Node>> read_hierarchy(const ByteSource& file, const las::Header& header,
+                                         const Info& info) {
     return HierarchyReader(file, header).read(info);
 }
 

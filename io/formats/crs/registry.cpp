@@ -27,8 +27,8 @@ std::optional<double> axis_metres(const Context& context, const PJ* system, int 
     const Object cs(proj_crs_get_coordinate_system(context.get(), system));
     double metres = 0;
     if (!cs || axis >= proj_cs_get_axis_count(context.get(), cs.get()) ||
-        !proj_cs_get_axis_info(context.get(), cs.get(), axis, nullptr, nullptr, nullptr, &metres, nullptr, nullptr,
-                               nullptr))
+        !proj_cs_get_axis_info(context.get(), cs.get(), axis, nullptr, nullptr, nullptr, &metres, nullptr,
+                               nullptr, nullptr))
         return std::nullopt;
     return metres > 1e-9 && metres < 1e9 ? std::optional(metres) : std::nullopt;
 }
@@ -39,10 +39,12 @@ void add_units(const Context& context, const PJ* system, SystemUnits& units, int
     switch (proj_get_type(system)) {
         case PJ_TYPE_COMPOUND_CRS:
             for (int part = 0; part < 2; ++part)
-                add_units(context, Object(proj_crs_get_sub_crs(context.get(), system, part)).get(), units, depth + 1);
+                add_units(context, Object(proj_crs_get_sub_crs(context.get(), system, part)).get(), units,
+                          depth + 1);
             return;
         case PJ_TYPE_BOUND_CRS:
-            return add_units(context, Object(proj_get_source_crs(context.get(), system)).get(), units, depth + 1);
+            return add_units(context, Object(proj_get_source_crs(context.get(), system)).get(), units,
+                             depth + 1);
         case PJ_TYPE_GEOGRAPHIC_2D_CRS:
         case PJ_TYPE_GEOGRAPHIC_3D_CRS:
             units.degrees = true;
@@ -68,8 +70,8 @@ std::optional<SystemUnits> units_of(const Context& context, const Object& system
 
 std::optional<SystemUnits> registered_units(uint32_t epsg) {
     const Context context = make_context();
-    const Object system(proj_create_from_database(context.get(), "EPSG", std::to_string(epsg).c_str(), PJ_CATEGORY_CRS,
-                                                  0, nullptr));
+    const Object system(proj_create_from_database(context.get(), "EPSG", std::to_string(epsg).c_str(),
+                                                  PJ_CATEGORY_CRS, 0, nullptr));
     return units_of(context, system);
 }
 
@@ -77,8 +79,8 @@ std::optional<double> registered_unit(uint32_t epsg) {
     const Context context = make_context();
     const char* category = nullptr;
     double metres = 0;
-    if (!proj_uom_get_info_from_database(context.get(), "EPSG", std::to_string(epsg).c_str(), nullptr, &metres,
-                                         &category) ||
+    if (!proj_uom_get_info_from_database(context.get(), "EPSG", std::to_string(epsg).c_str(), nullptr,
+                                         &metres, &category) ||
         std::string_view(category) != "linear" || !(metres > 0))
         return std::nullopt;
     return metres;
@@ -86,7 +88,8 @@ std::optional<double> registered_unit(uint32_t epsg) {
 
 std::optional<SystemUnits> understood_units(std::string_view wkt) {
     const Context context = make_context();
-    const Object system(proj_create_from_wkt(context.get(), std::string(wkt).c_str(), nullptr, nullptr, nullptr));
+    const Object system(
+        proj_create_from_wkt(context.get(), std::string(wkt).c_str(), nullptr, nullptr, nullptr));
     return units_of(context, system);
 }
 

@@ -62,10 +62,12 @@ T number_behind(std::string_view text, size_t at) {
 }
 
 bool is_any(std::string_view word, std::initializer_list<std::string_view> keywords) {
-    return std::ranges::any_of(keywords, [&](std::string_view keyword) { return same_letters(word, keyword); });
+    return std::ranges::any_of(keywords,
+                               [&](std::string_view keyword) { return same_letters(word, keyword); });
 }
 bool holds_lengths(std::string_view word) {
-    return is_any(word, {"PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "GEOCCS"});
+    return is_any(word,
+                  {"PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "GEOCCS"});
 }
 bool is_geographic(std::string_view word) {
     return is_any(word, {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"});
@@ -118,7 +120,8 @@ CoordinateSystem wkt_system(std::string_view wkt) {
             const bool epsg = quoted(wkt, at) == std::optional<std::string_view>("EPSG");
             const auto code = epsg ? number_behind<uint32_t>(wkt, at) : 0;
             if (depth == 2 && system.epsg == 0) system.epsg = code;
-            if (depth == 3 && (holds_lengths(words[1]) || is_geographic(words[1])) && horizontal == 0) horizontal = code;
+            if (depth == 3 && (holds_lengths(words[1]) || is_geographic(words[1])) && horizontal == 0)
+                horizontal = code;
         }
         return false;
     });

@@ -22,12 +22,12 @@ struct CoordinateSystem {
     std::string name;   ///< printable ASCII; empty where there is none
     uint32_t epsg = 0;  ///< its code in the EPSG registry; 0 where there is none
 };
-/// The name of the outermost system, and its code or, where a compound system has none, that of its horizontal
-/// part.
+/// The name of the outermost system, and its code or, where a compound system has none, that of its
+/// horizontal part.
 CoordinateSystem wkt_system(std::string_view wkt);
 
-/// The text (WKT 1) of the UTM zones of WGS 84 (EPSG 32601 to 32660 and 32701 to 32760), ETRS89 (25828 to 25838) and
-/// NAD83 (26901 to 26923), whose parameters follow from their number. Empty for other codes.
+/// The text (WKT 1) of the UTM zones of WGS 84 (EPSG 32601 to 32660 and 32701 to 32760), ETRS89 (25828 to
+/// 25838) and NAD83 (26901 to 26923), whose parameters follow from their number. Empty for other codes.
 std::optional<std::string> utm_wkt(uint32_t epsg);
 
 }  // namespace lucarne::io

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/formats/e57/layout.h"
 #include "io/formats/common/format.h"
+#include "io/formats/e57/layout.h"
 
 namespace lucarne::io::e57 {
 namespace {
@@ -176,7 +176,7 @@ void write_colors(const Scan& scan, const ScanLayout& layout, const RecordReader
 }  // namespace
 
 Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
-                     const RecordReader& reader, size_t count, std::byte* to) {
+                        const RecordReader& reader, size_t count, std::byte* to) {
     std::array<Column, 3> p;
     Column states;
     find_positions(scan, layout, reader, count, p);

@@ -280,7 +280,8 @@ Result<Document> parse_document(const std::string& file, std::string& xml) {
 }
 
 E57Notes notes_of(const Document& document) {
-    E57Notes notes{document.guid, document.library, document.coordinate_system, {}, {}, document.images.size()};
+    E57Notes notes{document.guid,         document.library, document.coordinate_system, {}, {},
+                   document.images.size()};
     for (size_t i = 0; i < std::min(document.scans.size(), kMostListed); ++i)
         notes.scans.push_back(notes_of(document.scans[i]));
     for (size_t i = 0; i < std::min(document.images.size(), kMostListed); ++i)

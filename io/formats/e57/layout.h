@@ -44,6 +44,6 @@ struct Converted {
     size_t kept = 0, invalid = 0;
 };
 Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
-                     const RecordReader& reader, size_t count, std::byte* to);
+                        const RecordReader& reader, size_t count, std::byte* to);
 
 }  // namespace lucarne::io::e57

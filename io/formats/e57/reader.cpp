@@ -5,10 +5,10 @@
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
-#include "io/formats/e57/layout.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/value_range.h"
 #include "io/formats/crs/wkt.h"
+#include "io/formats/e57/layout.h"
 
 namespace lucarne::io {
 namespace {
@@ -117,7 +117,8 @@ class E57Source final : public PointSource {
             if (scan.records == 0 || !scan.find(names::intensity)) continue;
             if (!scan.intensity_limits) return std::nullopt;
             const auto [low, high] = *scan.intensity_limits;
-            all = all ? IntensityLimits{std::min(all->low, low), std::max(all->high, high)} : IntensityLimits{low, high};
+            all = all ? IntensityLimits{std::min(all->low, low), std::max(all->high, high)}
+                      : IntensityLimits{low, high};
         }
         return all;
     }
@@ -187,9 +188,10 @@ void warn_of_unit(const std::string& name, const e57::Document& document) {
     if (units.degrees)
         log::warn("{}: its coordinate system counts in degrees, but E57 in metres; metres are taken", name);
     else if (units.horizontal.value_or(1.0) != 1.0)
-        log::warn("{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
-                  "--unit if it does not",
-                  name, *units.horizontal);
+        log::warn(
+            "{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
+            "--unit if it does not",
+            name, *units.horizontal);
 }
 
 Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> file,

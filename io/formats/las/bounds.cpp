@@ -33,7 +33,9 @@ StatedBounds::StatedBounds(const Header& header) {
     }
     stated_ = longest > 0;
     for (int axis = 0; axis < 3 && stated_; ++axis) {
-        const auto integer = [&](double at) { return clamped((at - header.offset[axis]) / header.scale[axis]); };
+        const auto integer = [&](double at) {
+            return clamped((at - header.offset[axis]) / header.scale[axis]);
+        };
         range_[static_cast<size_t>(axis)] =
             std::minmax({integer(header.low[axis] - longest), integer(header.high[axis] + longest)});
     }

@@ -81,7 +81,8 @@ bool text_counts(const Header& header) {
 }
 
 Units units_of_text(std::string_view text) {
-    if (text.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == text.npos) return {};  // nothing is stated
+    if (text.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == text.npos)
+        return {};  // nothing is stated
     Units units{wkt_units(text), {}};
     if (units.known()) return units;
     if (const auto understood = understood_units(text)) static_cast<SystemUnits&>(units) = *understood;
@@ -89,7 +90,8 @@ Units units_of_text(std::string_view text) {
     return units;
 }
 
-/// The unit of heights: its own key, else that of their system. Codes below 4096 and user-defined ones tell nothing.
+/// The unit of heights: its own key, else that of their system. Codes below 4096 and user-defined ones tell
+/// nothing.
 std::optional<double> vertical_unit(const GeoKeys& keys) {
     if (keys.vertical_unit) return unit_of_code(*keys.vertical_unit);
     if (!keys.vertical || *keys.vertical == kUserDefined) return std::nullopt;
@@ -106,12 +108,14 @@ Units units_of_keys(const GeoKeys& keys) {
         units.horizontal = keys.unit_size;
     } else if (keys.unit && *keys.unit != kUserDefined) {
         units.horizontal = unit_of_code(*keys.unit);
-        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
+        if (!units.horizontal)
+            units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
     } else if (keys.projected && *keys.projected != kUserDefined) {
         const auto system = registered_units(*keys.projected);
         if (system) units.horizontal = system->horizontal;
         if (!units.vertical && system) units.vertical = system->vertical;
-        if (!units.horizontal) units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
+        if (!units.horizontal)
+            units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
     } else {
         units.unknown = "its GeoTIFF keys have none";
     }
@@ -130,12 +134,17 @@ Units units_of(const Header& header) {
 void warn_of_units(const std::string& file, const Units& units, bool given) {
     if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
     if (!units.unknown.empty() && !given)
-        log::warn("{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is another",
-                  file, units.unknown);
-    if (units.vertical && units.horizontal && std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
-        log::warn("{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for the latter, "
-                  "heights are not converted",
-                  file, *units.vertical, *units.horizontal);
+        log::warn(
+            "{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is "
+            "another",
+            file, units.unknown);
+    if (units.vertical && units.horizontal &&
+        std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
+        log::warn(
+            "{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for "
+            "the latter, "
+            "heights are not converted",
+            file, *units.vertical, *units.horizontal);
 }
 
 CoordinateSystem coordinate_system(const Header& header) {

@@ -81,8 +81,8 @@ std::optional<size_t> find_entry(const Vlr& record, std::string_view name, size_
     return std::nullopt;
 }
 
-/// The source's own entry of the extra bytes record for an attribute of this name, the `nth` of that name; empty where it
-/// had none.
+/// The source's own entry of the extra bytes record for an attribute of this name, the `nth` of that name;
+/// empty where it had none.
 std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribute, std::string_view name,
                                       size_t nth = 1) {
     const auto at = kept ? find_entry(*kept, name, nth) : std::nullopt;
@@ -119,7 +119,8 @@ void clear_options(Vlr& record, size_t entry, uint8_t bits) {
         options &= static_cast<std::byte>(~bits);  // else a size
 }
 
-/// That of an attribute whose name was numbered when it was read, as another or a field had it before: see unique_name.
+/// That of an attribute whose name was numbered when it was read, as another or a field had it before: see
+/// unique_name.
 std::span<const std::byte> numbered_entry(const Vlr* kept, const Attribute& attribute, const Schema& fields) {
     const size_t bar = attribute.name.rfind('_');
     if (bar == std::string::npos) return {};

@@ -13,8 +13,8 @@ namespace lucarne::io::las {
 namespace {
 
 constexpr size_t kVlrHeader = 54, kEvlrHeader = 60;
-/// Compressed scans of over so many bytes as records do not shrink to less than 1 / kMostRatio; one flat raster repeated
-/// may, but it is small.
+/// Compressed scans of over so many bytes as records do not shrink to less than 1 / kMostRatio; one flat
+/// raster repeated may, but it is small.
 constexpr uint64_t kLargeScan = uint64_t{256} << 20, kMostRatio = 4096;
 constexpr uint64_t kRoomOfNoPoints = 1024;  ///< bytes that an empty chunk table does not need
 
@@ -64,7 +64,8 @@ class RecordReader {
         return {};
     }
     Result<void> keep(Vlr vlr, uint64_t at, uint64_t bytes) {
-        if (vlr.is("copc", 1000)) return {};  // a hierarchy of nodes: for io/formats/copc/copc.h, page by page
+        if (vlr.is("copc", 1000))
+            return {};  // a hierarchy of nodes: for io/formats/copc/copc.h, page by page
         if (bytes > kMostRecordBytes - kept_) {
             log::warn("{}: the record {} {} of {} bytes is too large to be kept", file_.path().string(),
                       vlr.user_id, vlr.record_id, bytes);
@@ -132,10 +133,12 @@ Result<void> check_format(const std::string& name, const Header& h) {
         return rejected(name, fmt::format("has point format {}, which the LAS specification does not know",
                                           h.point_format));
     if (h.record_length < record_bytes(h.point_format) + h.wave_bytes)
-        return rejected(name, fmt::format("has records of {} bytes, but point format {} needs {}",
-                                          h.record_length, h.point_format, record_bytes(h.point_format) + h.wave_bytes));
+        return rejected(name,
+                        fmt::format("has records of {} bytes, but point format {} needs {}", h.record_length,
+                                    h.point_format, record_bytes(h.point_format) + h.wave_bytes));
     for (int axis = 0; axis < 3; ++axis)
-        if (!std::isnormal(h.scale[axis]) || !usable(std::abs(h.scale[axis]) * 0x1p31 + std::abs(h.offset[axis])))
+        if (!std::isnormal(h.scale[axis]) ||
+            !usable(std::abs(h.scale[axis]) * 0x1p31 + std::abs(h.offset[axis])))
             return rejected(name, fmt::format("has no usable scale and offset for {} ({}, {})", "xyz"[axis],
                                               h.scale[axis], h.offset[axis]));
     return {};
@@ -168,19 +171,18 @@ Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
         const bool bomb =
             h.points > kLargeScan / h.record_length && h.points / kMostRatio > bytes / h.record_length;
         if (h.points / kMostPointsAByte > bytes || bomb)
-            return rejected(
-                file.path().string(),
-                fmt::format("promises {}, more than its {} bytes can hold", counted(h.points, "points"), file.size()));
+            return rejected(file.path().string(), fmt::format("promises {}, more than its {} bytes can hold",
+                                                              counted(h.points, "points"), file.size()));
         if (h.points == 0 && bytes > kRoomOfNoPoints)
-            log::warn("{}: its header promises no points, but there are {} bytes for them", file.path().string(), bytes);
+            log::warn("{}: its header promises no points, but there are {} bytes for them",
+                      file.path().string(), bytes);
         return {};
     }
     const uint64_t there = bytes / h.record_length;
     if (h.points > there)
-        return rejected(
-            file.path().string(),
-            fmt::format("is truncated: its header promises {}, {} {} there", counted(h.points, "points"), there,
-                        there == 1 ? "is" : "are"));
+        return rejected(file.path().string(),
+                        fmt::format("is truncated: its header promises {}, {} {} there",
+                                    counted(h.points, "points"), there, there == 1 ? "is" : "are"));
     if (h.points == 0 && there > 0)  // a writer that was interrupted leaves such files
         log::warn("{}: its header promises no points, but there is room for {}", file.path().string(), there);
     return {};

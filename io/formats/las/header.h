@@ -21,11 +21,11 @@ inline constexpr uint16_t kGeoKeyRecord = 34735, kGeoDoublesRecord = 34736, kWkt
 
 struct Header : LasNotes {
     uint64_t points = 0;
-    uint64_t points_offset = 0;  ///< in the file; of no use for writing
-    bool compressed = false;     ///< LAZ: io/formats/las/laz; of no use for writing
-    uint16_t wave_bytes = 0;     ///< of the file's records behind their fields: skipped; 0 for writing
+    uint64_t points_offset = 0;      ///< in the file; of no use for writing
+    bool compressed = false;         ///< LAZ: io/formats/las/laz; of no use for writing
+    uint16_t wave_bytes = 0;         ///< of the file's records behind their fields: skipped; 0 for writing
     glm::dvec3 low{0.0}, high{0.0};  ///< the box it states, true or not; of no use for writing
-    Losses losses;  ///< found while reading; of no use for writing
+    Losses losses;                   ///< found while reading; of no use for writing
 
     const Vlr* find(std::string_view user, uint16_t record) const;
 };
@@ -59,8 +59,8 @@ constexpr bool has_color(uint8_t f) {
 
 /// Everything before the points, and the extended records behind them. Rejects what is not LAS
 /// of a known point format, and files that cannot hold the points they promise. Records that are broken or
-/// too large to keep (kMostRecordBytes in all) are left out with a warning. With `salvage` the points are those
-/// that are there, or could be, and the missing ones are a loss.
+/// too large to keep (kMostRecordBytes in all) are left out with a warning. With `salvage` the points are
+/// those that are there, or could be, and the missing ones are a loss.
 Result<Header> read_header(const ByteSource& file, bool salvage = false);
 
 inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
@@ -69,7 +69,8 @@ inline constexpr uint32_t kMostRecords = 100'000;
 /// (what changed: 128 symbols of 2^15; the numbers of bits of two differences: 33 each).
 inline constexpr uint64_t kMostPointsAByte = 1000;
 
-/// The header to write for the points of a LAS file. Errors: the notes of a cache are damaged. They have `las`.
+/// The header to write for the points of a LAS file. Errors: the notes of a cache are damaged. They have
+/// `las`.
 Result<Header> header_of(const std::string& file, const FormatNotes& notes);
 /// Where the integers of a scan's file stood; empty where it was no LAS.
 std::optional<Lattice> lattice_of(const ScanInfo& scan);

@@ -27,7 +27,8 @@ std::span<const std::byte> entries_of(std::span<const std::byte> record);
 std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor);
 std::string extra_name(std::span<const std::byte> descriptor);
 
-/// The largest value that the bits of a field take (LAS 1.4 R15, tables 7 and 16); UINT32_MAX where it has whole bytes.
+/// The largest value that the bits of a field take (LAS 1.4 R15, tables 7 and 16); UINT32_MAX where it has
+/// whole bytes.
 uint32_t largest_value(bool extended, std::string_view name);
 
 /// Unpacks `count` records of `header`'s format into records of make_schema(header).

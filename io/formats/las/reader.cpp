@@ -1,4 +1,6 @@
 // LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see las_header.h.
+#include "io/formats/las/laz/reader.h"
+
 #include <algorithm>
 #include <atomic>
 
@@ -7,13 +9,12 @@
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/pick.h"
+#include "io/formats/common/stations.h"
 #include "io/formats/las/bounds.h"
 #include "io/formats/las/crs.h"
 #include "io/formats/las/layout.h"
 #include "io/formats/las/writer.h"
-#include "io/formats/las/laz/reader.h"
-#include "io/formats/common/pick.h"
-#include "io/formats/common/stations.h"
 
 namespace lucarne::io {
 namespace {
@@ -53,12 +54,12 @@ class LasReader final : public PointReader {
     uint64_t left_;
 };
 
-/// Hands on what a reader gives and warns, once a source, of points that are far outside what the header states. It
-/// looks at every eighth point: what is damaged comes in longer runs.
+/// Hands on what a reader gives and warns, once a source, of points that are far outside what the header
+/// states. It looks at every eighth point: what is damaged comes in longer runs.
 class WatchedReader final : public PointReader {
  public:
-    WatchedReader(std::unique_ptr<PointReader> reader, const std::string& name, const las::StatedBounds& bounds,
-                  const Schema& schema, std::atomic<bool>& warned)
+    WatchedReader(std::unique_ptr<PointReader> reader, const std::string& name,
+                  const las::StatedBounds& bounds, const Schema& schema, std::atomic<bool>& warned)
         : reader_(std::move(reader)), name_(name), bounds_(bounds), schema_(schema), warned_(warned) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
@@ -67,9 +68,11 @@ class WatchedReader final : public PointReader {
         const auto found = bounds_.outside(batch.bytes.data(), got, schema_.stride, 8);
         if (!found || warned_.exchange(true)) return got;
         const glm::dvec3 at = position_of(schema_, &batch.bytes[*found * schema_.stride]);
-        log::warn("{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it may be "
-                  "damaged",
-                  name_, at.x, at.y, at.z);
+        log::warn(
+            "{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it "
+            "may be "
+            "damaged",
+            name_, at.x, at.y, at.z);
         return got;
     }
     uint64_t dropped() const override { return reader_->dropped(); }
@@ -86,7 +89,10 @@ class WatchedReader final : public PointReader {
 class LasSource final : public PointSource {
  public:
     LasSource(std::shared_ptr<const ByteSource> file, las::Header header)
-        : file_(std::move(file)), header_(std::move(header)), bounds_(header_), schema_(las::make_schema(header_)) {}
+        : file_(std::move(file)),
+          header_(std::move(header)),
+          bounds_(header_),
+          schema_(las::make_schema(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
         const std::string name = file_->path().string();
@@ -98,9 +104,11 @@ class LasSource final : public PointSource {
         if (header_.wave_bytes) skip_waves();
         if (!options.quiet) warn_of_mirrors(name);
         if (header_.find("lascompatible", 22204))
-            log::warn("{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns and "
-                      "angles that do not fit that stand in extra bytes only",
-                      name);
+            log::warn(
+                "{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns "
+                "and "
+                "angles that do not fit that stand in extra bytes only",
+                name);
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
         info_.modified = file_->modified();
@@ -108,7 +116,8 @@ class LasSource final : public PointSource {
         las::warn_of_units(name, units, options.metres_per_unit.has_value());
         const auto system = las::coordinate_system(header_);
         auto unit = units.horizontal;
-        if (!unit && (!system.name.empty() || system.epsg)) unit = 1.0;  // a system has a unit: the one that is assumed
+        if (!unit && (!system.name.empty() || system.epsg))
+            unit = 1.0;  // a system has a unit: the one that is assumed
         set_unit(info_, options, unit);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
@@ -118,7 +127,8 @@ class LasSource final : public PointSource {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
         const Attribute* color = schema_.find(names::color);
-        if (color && color->type == ScalarType::u16 && color->components == 3) {  // extra bytes may have that name
+        if (color && color->type == ScalarType::u16 &&
+            color->components == 3) {  // extra bytes may have that name
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
         LasNotes kept = header_;
@@ -154,8 +164,8 @@ class LasSource final : public PointSource {
     void warn_of_mirrors(const std::string& name) const {
         for (int axis = 0; axis < 3; ++axis)
             if (header_.scale[axis] < 0)
-                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it", name,
-                          "xyz"[axis], header_.scale[axis]);
+                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it",
+                          name, "xyz"[axis], header_.scale[axis]);
     }
 
     void skip_waves() {
@@ -185,8 +195,8 @@ class LasSource final : public PointSource {
         return {};
     }
 
-    /// Number `block` of `blocks` that are spread evenly over the file; of compressed points, which only come one after
-    /// the other, the front of a chunk.
+    /// Number `block` of `blocks` that are spread evenly over the file; of compressed points, which only come
+    /// one after the other, the front of a chunk.
     Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
         if (compressed_) {
             constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; of one
@@ -196,18 +206,18 @@ class LasSource final : public PointSource {
         }
         constexpr uint64_t kBlockPoints = 256;
         const uint64_t first = block * header_.points / blocks;
-        std::vector<std::byte> raw(static_cast<size_t>(std::min(kBlockPoints, header_.points - first) *
-                                                       header_.record_length));
+        std::vector<std::byte> raw(
+            static_cast<size_t>(std::min(kBlockPoints, header_.points - first) * header_.record_length));
         LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
         return raw;
     }
 
-    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by a sample from all over the
-    /// file. Nothing is converted, so a wrong guess loses nothing.
+    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by a sample from
+    /// all over the file. Nothing is converted, so a wrong guess loses nothing.
     Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
         constexpr uint64_t kBlocks = 64, kChunks = 16;
-        const uint64_t blocks =
-            compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size()) : std::min(kBlocks, header_.points);
+        const uint64_t blocks = compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size())
+                                            : std::min(kBlocks, header_.points);
         std::vector<std::byte> record(schema_.stride);
         for (uint64_t block = 0; block < blocks; ++block) {
             auto records = sample_block(block, blocks);
@@ -231,7 +241,8 @@ class LasSource final : public PointSource {
     mutable std::atomic<bool> warned_ = false;
 };
 
-Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_las(std::shared_ptr<const ByteSource> file,
+                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, las::read_header(*file, options.salvage));
     auto source = std::make_unique<LasSource>(std::move(file), std::move(header));
     LUCARNE_TRY(source->describe(options));

@@ -8,11 +8,11 @@
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/stations.h"
+#include "io/formats/common/value_range.h"
 #include "io/formats/las/crs.h"
 #include "io/formats/las/extras.h"
 #include "io/formats/merged_info.h"
-#include "io/formats/common/stations.h"
-#include "io/formats/common/value_range.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -22,7 +22,8 @@ constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
 /// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
 void choose_format(Header& header, const Schema& schema, bool from_las, Container container) {
     const auto has = [&](std::string_view name) { return schema.find(name) != nullptr; };
-    bool extended = container == Container::copc || has(names::scan_angle) || has(names::scanner_channel) || has(names::nir);
+    bool extended = container == Container::copc || has(names::scan_angle) || has(names::scanner_channel) ||
+                    has(names::nir);
     if (from_las)
         extended = extended || extended_format(header.point_format);
     else if (!has(names::scan_angle_rank))  // not out of an older LAS file: let every class and return fit
@@ -107,23 +108,27 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
 void state_merged(const std::string& path, Header& header, const FormatNotes& notes) {
     for (const std::string& note : {notes.system_note, notes.extras_note})
         if (!note.empty()) log::warn("{}: {}", path, note);
-    if (const auto extras = extras_record(notes)) record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
+    if (const auto extras = extras_record(notes))
+        record_of(header, kSpecUser, kExtraBytesRecord).data = extras->data;
     if (!notes.las || notes.projection) set_projection(header, projection_records(notes));
 }
 
-/// Says the unit of length where the header would be read as saying another. Without a coordinate system it gets a
-/// local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its own is kept.
+/// Says the unit of length where the header would be read as saying another. Without a coordinate system it
+/// gets a local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its
+/// own is kept.
 void state_unit(const std::string& path, Header& header, double metres) {
     const double stated = units_of(header).metres();
     if (same_unit(stated, metres)) return;
     if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
-        log::warn("{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open it",
-                  path, stated, metres, metres);
+        log::warn(
+            "{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open "
+            "it",
+            path, stated, metres, metres);
         return;
     }
     const std::string wkt = fmt::format(
-        R"(LOCAL_CS["{1}",LOCAL_DATUM["{1}",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])", metres,
-        kLocalSystem);
+        R"(LOCAL_CS["{1}",LOCAL_DATUM["{1}",32767],UNIT["{0} metres",{0}],AXIS["X",EAST],AXIS["Y",NORTH]])",
+        metres, kLocalSystem);
     set_projection(header, {wkt_record(wkt)});
 }
 
@@ -239,11 +244,13 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     add_stations(header, info.stations);
     state_merged(path, header, info.notes);
     state_unit(path, header, info.metres_per_unit);
-    if (extended_format(header.point_format) && (header.compressed || !was_extended)) prefer_wkt(path, header);
+    if (extended_format(header.point_format) && (header.compressed || !was_extended))
+        prefer_wkt(path, header);
 
     const auto extra = extra_attributes(header, schema);
     LUCARNE_TRY(describe_extras(path, header, extra));
-    LUCARNE_ASSIGN(const Survey survey, survey_of(schema, info.notes, wide_intensity(schema, extra), options));
+    LUCARNE_ASSIGN(const Survey survey,
+                   survey_of(schema, info.notes, wide_intensity(schema, extra), options));
     header.scale = survey.lattice.scale;
     header.offset = survey.lattice.offset;
     target.schema = make_schema(header);

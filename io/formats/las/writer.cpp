@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "io/files/file.h"
 #include "io/core/log.h"
+#include "io/files/file.h"
 #include "io/formats/las/extras.h"
 
 namespace lucarne::io::las {

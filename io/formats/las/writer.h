@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "io/formats/las/target.h"
 #include "io/formats/las/laz/writer.h"
+#include "io/formats/las/target.h"
 #include "io/formats/scan.h"
 
 namespace lucarne::io::las {

@@ -12,9 +12,9 @@
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 #include "io/formats/mesh/materials.h"
 #include "io/formats/mesh/source.h"
-#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {

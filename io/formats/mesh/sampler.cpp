@@ -53,16 +53,16 @@ size_t widest(double a, double b, double c) {
     return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
 }
 
-/// Whether a triangle reaches into a box, or misses it by less than rounding tells: they do not where an axis parts
-/// them, one of the box, the normal, or across an edge of each (Akenine-Moeller 2001, "Fast 3D triangle-box overlap
-/// testing").
+/// Whether a triangle reaches into a box, or misses it by less than rounding tells: they do not where an axis
+/// parts them, one of the box, the normal, or across an edge of each (Akenine-Moeller 2001, "Fast 3D
+/// triangle-box overlap testing").
 bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
     if (!overlap(low_of(p), high_of(p), low, high)) return false;
     const glm::dvec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
     const Points q = {p[0] - middle, p[1] - middle, p[2] - middle};
     const double far = glm::length(q[0]) + glm::length(q[1]) + glm::length(q[2]);
-    // `factors`: the product of the lengths that the axis was made from. The normal of a sliver is short beside them,
-    // and rounding turns it.
+    // `factors`: the product of the lengths that the axis was made from. The normal of a sliver is short
+    // beside them, and rounding turns it.
     const auto parts = [&](const glm::dvec3& axis, double factors) {
         const double a = glm::dot(axis, q[0]), b = glm::dot(axis, q[1]), c = glm::dot(axis, q[2]);
         const double reach = glm::dot(glm::abs(axis), half);
@@ -73,7 +73,8 @@ bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
     if (parts(glm::cross(edges[0], edges[1]), glm::length(edges[0]) * glm::length(edges[1]))) return false;
     return std::ranges::none_of(edges, [&](const glm::dvec3& e) {
         const double length = glm::length(e);
-        return parts({0, -e.z, e.y}, length) || parts({e.z, 0, -e.x}, length) || parts({-e.y, e.x, 0}, length);
+        return parts({0, -e.z, e.y}, length) || parts({e.z, 0, -e.x}, length) ||
+               parts({-e.y, e.x, 0}, length);
     });
 }
 

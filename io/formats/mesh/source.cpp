@@ -187,17 +187,18 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t 
         log::warn("{}: {} with a coordinate that is not finite: left out", info.path,
                   counted(mesh.not_finite, "triangles"));
     if (mesh.fanned > 0)
-        log::warn(
-            "{}: {} of over 256 corners, too many to be cut properly: wrong where not convex", info.path,
-            counted(mesh.fanned, "polygons"));
+        log::warn("{}: {} of over 256 corners, too many to be cut properly: wrong where not convex",
+                  info.path, counted(mesh.fanned, "polygons"));
     const double metres = info.metres_per_unit;
     info.declared_points = static_cast<uint64_t>(mesh.area() / (spacing * spacing));
     if (!options.quiet)
         log::info(
             "{}: a mesh of {:.6g} m2, sampled every {:.3g} m: about {}; --spacing or --mesh-points can say "
             "otherwise",
-            info.path, mesh.area() * metres * metres, spacing * metres, counted(info.declared_points, "points"));
-    note(mesh, info).samples = {mesh.area() * metres * metres, spacing * metres, info.declared_points, mesh.low, mesh.high};
+            info.path, mesh.area() * metres * metres, spacing * metres,
+            counted(info.declared_points, "points"));
+    note(mesh, info).samples = {mesh.area() * metres * metres, spacing * metres, info.declared_points,
+                                mesh.low, mesh.high};
     // A cache of these samples is another one as soon as any of this differs.
     info.modified = static_cast<int64_t>(
         mix64(mix64(static_cast<uint64_t>(info.modified), std::bit_cast<uint64_t>(spacing)), state));

@@ -13,8 +13,8 @@ inline constexpr uint64_t kMostSamples = uint64_t{1} << 30;
 /// than this.
 inline constexpr uint64_t kMostDefaultSamples = 20'000'000;
 
-/// Whether a scan's points are samples of a mesh, which take seconds to make. Its notes tell the mesh's size and about
-/// how many samples there are.
+/// Whether a scan's points are samples of a mesh, which take seconds to make. Its notes tell the mesh's size
+/// and about how many samples there are.
 bool is_sampled(const ScanInfo& info);
 
 /// What is lost of damaged files, beside what io::lost has.

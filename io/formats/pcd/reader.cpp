@@ -6,12 +6,12 @@
 
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/pick.h"
+#include "io/formats/common/text.h"
 #include "io/formats/pcd/header.h"
 #include "io/formats/pcd/layout.h"
 #include "io/formats/pcd/lzf.h"
 #include "io/formats/pcd/writer.h"
-#include "io/formats/common/pick.h"
-#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {
@@ -123,7 +123,10 @@ class CompressedReader final : public PointReader {
 class PcdSource final : public PointSource {
  public:
     PcdSource(std::shared_ptr<const ByteSource> file, Header header, bool salvage)
-        : file_(std::move(file)), header_(std::move(header)), salvage_(salvage), layout_(pcd::make_layout(header_)) {}
+        : file_(std::move(file)),
+          header_(std::move(header)),
+          salvage_(salvage),
+          layout_(pcd::make_layout(header_)) {}
 
     Result<void> describe(const ReadOptions& options) {
         const bool organised = header_.height > 1;
@@ -264,7 +267,8 @@ Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const ByteSource> 
 bool is_pcd(std::string_view head) {
     auto line = first_statement(head);
     const auto word = next_word(line);
-    return same_letters(word, "VERSION") || same_letters(word, "FIELDS") || without_mark(head).starts_with("# .PCD");
+    return same_letters(word, "VERSION") || same_letters(word, "FIELDS") ||
+           without_mark(head).starts_with("# .PCD");
 }
 
 }  // namespace

@@ -14,11 +14,13 @@ constexpr std::array<Triple, 3> kColorNames = {
     {{"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}}};
 constexpr std::array<Triple, 2> kNormalNames = {{{"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}}};
 
-constexpr std::array kKnown = {names::intensity,         names::classification,      names::return_number,
-                               names::number_of_returns, names::scan_direction,      names::edge_of_flight_line,
-                               names::class_flags,       names::scanner_channel,     names::scan_angle_rank,
-                               names::scan_angle,        names::user_data,           names::point_source_id,
-                               names::gps_time,          names::nir};
+constexpr std::array kKnown = {names::intensity,       names::classification,
+                               names::return_number,   names::number_of_returns,
+                               names::scan_direction,  names::edge_of_flight_line,
+                               names::class_flags,     names::scanner_channel,
+                               names::scan_angle_rank, names::scan_angle,
+                               names::user_data,       names::point_source_id,
+                               names::gps_time,        names::nir};
 
 class LayoutMaker {
  public:

@@ -9,11 +9,11 @@
 
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 #include "io/formats/mesh/source.h"
 #include "io/formats/mesh/textures.h"
 #include "io/formats/ply/layout.h"
 #include "io/formats/ply/values.h"
-#include "io/formats/common/text.h"
 
 namespace lucarne::io::ply {
 namespace {
@@ -269,7 +269,8 @@ Result<Faces> open_mesh(const std::shared_ptr<const ByteSource>& file, const Hea
     add_losses(info.losses, faces.losses);
     info.format += ", mesh";
     info.notes = {.mesh = MeshNotes{.faces = loader.faces()}};
-    LUCARNE_ASSIGN(faces.mesh, mesh::sampled(std::move(loader.mesh()), std::move(info), loader.state(), options));
+    LUCARNE_ASSIGN(faces.mesh,
+                   mesh::sampled(std::move(loader.mesh()), std::move(info), loader.state(), options));
     return faces;
 }
 

@@ -9,11 +9,11 @@
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
+#include "io/formats/common/text.h"
 #include "io/formats/ply/layout.h"
 #include "io/formats/ply/mesh.h"
 #include "io/formats/ply/values.h"
 #include "io/formats/ply/writer.h"
-#include "io/formats/common/text.h"
 
 namespace lucarne::io {
 namespace {
@@ -43,11 +43,10 @@ class PlyReader final : public PointReader {
                 continue;
             }
             const uint64_t before = input_.position();
-            auto done =
-                text ? parse_line()
-                     : walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data());
-            LUCARNE_ASSIGN(const auto fate,
-                           fate_of(std::move(done), input_, header_, header_.vertices(), before, left_, salvage_));
+            auto done = text ? parse_line()
+                             : walk_entry(input_, header_.vertices(), layout_.big_endian, packed_.data());
+            LUCARNE_ASSIGN(const auto fate, fate_of(std::move(done), input_, header_, header_.vertices(),
+                                                    before, left_, salvage_));
             if (fate == Fate::kept) {
                 take_point(packed_.data(), batch);
                 continue;
@@ -78,8 +77,7 @@ class PlyReader final : public PointReader {
         LUCARNE_ASSIGN(const auto bytes, input_.peek(layout_.packed_bytes));
         const auto count = static_cast<size_t>(
             std::min<uint64_t>({bytes.size() / layout_.packed_bytes, wanted - batch.count, left_}));
-        if (count == 0)
-            return ends_early(input_, header_.vertices(), header_.vertices().count - left_ + 1);
+        if (count == 0) return ends_early(input_, header_.vertices(), header_.vertices().count - left_ + 1);
         for (size_t i = 0; i < count; ++i) take_point(bytes.data() + i * layout_.packed_bytes, batch);
         input_.skip(count * layout_.packed_bytes);
         return {};
@@ -206,7 +204,8 @@ class PlySource final : public PointSource {
             const auto& element = header_.elements[e];
             if (faces_known_ && element.name == "face") continue;
             if (e != header_.vertex) {
-                add_loss(info_.losses, fmt::format("entries of '{}', which are not read", printable(element.name)),
+                add_loss(info_.losses,
+                         fmt::format("entries of '{}', which are not read", printable(element.name)),
                          element.count);
                 continue;
             }
@@ -286,7 +285,8 @@ class PlySource final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file, const ReadOptions& options) {
+Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file,
+                                              const ReadOptions& options) {
     LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);
@@ -301,7 +301,8 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> 
 
 bool is_ply(std::string_view head) {
     head = without_mark(head);
-    return head.size() > 3 && same_letters(head.substr(0, 3), "ply") && (is_blank(head[3]) || head[3] == '\n');
+    return head.size() > 3 && same_letters(head.substr(0, 3), "ply") &&
+           (is_blank(head[3]) || head[3] == '\n');
 }
 
 }  // namespace

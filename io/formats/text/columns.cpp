@@ -186,7 +186,8 @@ bool looks_like_color(const Sample& sample, size_t column) {
 /// Three columns of whole numbers from 0 to 255.
 bool looks_like_bytes(const Sample& sample, size_t column) {
     for (size_t c = column; c < column + 3; ++c)
-        if (const Look look = look_at(sample, c); !look.whole || look.least < 0 || look.most > 255) return false;
+        if (const Look look = look_at(sample, c); !look.whole || look.least < 0 || look.most > 255)
+            return false;
     return true;
 }
 

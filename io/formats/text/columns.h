@@ -23,7 +23,7 @@ struct Sample {
     std::vector<double> values;  ///< row by row; NaN where there is none
     /// Of each column: more than one cell in a hundred is no number. Fewer are damage, and to be told.
     std::vector<bool> words;
-    bool whole = true;           ///< every row is there
+    bool whole = true;  ///< every row is there
     size_t rows() const { return columns ? values.size() / columns : 0; }
     double at(size_t row, size_t column) const { return values[row * columns + column]; }
 };

@@ -10,9 +10,9 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/stations.h"
 #include "io/formats/common/text.h"
+#include "io/formats/common/value_range.h"
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
-#include "io/formats/common/value_range.h"
 
 namespace lucarne::io {
 namespace {
@@ -48,8 +48,8 @@ std::optional<uint64_t> whole(std::string_view line) {
 /// Finds the scans: the whole file is passed over, because only its lines tell where the next scan begins.
 class ScanFinder {
  public:
-    /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that can
-    /// be made out is left out.
+    /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that
+    /// can be made out is left out.
     ScanFinder(std::shared_ptr<const ByteSource> file, char line_end, bool salvage)
         : size_(file->size()), line_end_(line_end), salvage_(salvage), input_(std::move(file), 0, size_) {}
 
@@ -99,7 +99,8 @@ class ScanFinder {
     Result<Scan> read_scan() {
         LUCARNE_ASSIGN(Scan scan, read_header());
         auto done = pass_rows(scan);
-        if (!done && input_.position() >= size_ && (scan.values == 3 || scan.values == 4 || scan.values == 7)) {
+        if (!done && input_.position() >= size_ &&
+            (scan.values == 3 || scan.values == 4 || scan.values == 7)) {
             scan.end = size_;
             cut_off_ = scan;
         }

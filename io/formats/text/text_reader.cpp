@@ -8,11 +8,11 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/remarks.h"
 #include "io/formats/common/text.h"
+#include "io/formats/common/value_range.h"
 #include "io/formats/text/columns.h"
 #include "io/formats/text/rows.h"
 #include "io/formats/text/sample.h"
 #include "io/formats/text/writer.h"
-#include "io/formats/common/value_range.h"
 
 namespace lucarne::io {
 namespace {

@@ -7,20 +7,20 @@
 
 #include <fmt/format.h>
 
-#include "io/files/file.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
+#include "io/files/file.h"
+#include "io/formats/common/decimal.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/remarks.h"
 #include "io/formats/text/columns.h"
-#include "io/formats/common/decimal.h"
 
 namespace lucarne::io::text {
 namespace {
 
 constexpr size_t kPieceRows = 4096, kPieceBytes = size_t{1} << 20, kPiecesAtOnce = 64;  ///< at most
-constexpr size_t kLongestNumber = 32;   ///< characters, with its separator
-constexpr size_t kMostStations = 500;   ///< the first row has to be in the first 64 KiB of a file
+constexpr size_t kLongestNumber = 32;  ///< characters, with its separator
+constexpr size_t kMostStations = 500;  ///< the first row has to be in the first 64 KiB of a file
 
 struct Output {
     std::string name;
@@ -63,7 +63,7 @@ std::vector<Output> outputs_of(const Schema& schema) {
             const std::string name = a.name == names::color && a.components == 3    ? kColor[c]
                                      : a.name == names::normal && a.components == 3 ? kNormal[c]
                                      : a.components == 1                            ? a.name
-                                                                                    : fmt::format("{}_{}", a.name, c);
+                                                         : fmt::format("{}_{}", a.name, c);
             add(name, a.type, a.offset + c * static_cast<uint32_t>(scalar_bytes(a.type)));
         }
     }

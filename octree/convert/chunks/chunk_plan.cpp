@@ -12,7 +12,8 @@ namespace {
 
 constexpr uint64_t kMaxChunkPoints = 1'000'000;  // larger chunks sort slower and share out worse
 constexpr uint64_t kMinMemory = uint64_t{16} << 20;
-/// What a thread that decodes LAZ holds (io/formats/las/laz/reader.cpp), and the share of the memory for all of them.
+/// What a thread that decodes LAZ holds (io/formats/las/laz/reader.cpp), and the share of the memory for all
+/// of them.
 constexpr uint64_t kReaderBytes = uint64_t{8} << 20, kReaderShare = 8;
 constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, chunk number
 /// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,

@@ -14,7 +14,8 @@ struct Chunk {
     NodeKey key;
     uint64_t first = 0;  ///< its first point in the scratch file
     uint64_t count = 0;
-    uint64_t sum = 0;  ///< of its records as they were dealt out, `piece` bytes at a time, each seeded by the last
+    /// Of its records as they were dealt out, `piece` bytes at a time, each seeded by the last.
+    uint64_t sum = 0;
     uint32_t piece = 0;
 };
 

@@ -56,7 +56,7 @@ class ChunkStore {
     Cube root_;
     std::vector<Chunk> chunks_;
     std::vector<Chunk> dealt_;  ///< the same points as they were dealt out, before one place's were divided
-    uint64_t end_ = 0;  ///< points written so far, those of chunks split again included
+    uint64_t end_ = 0;          ///< points written so far, those of chunks split again included
 };
 
 }  // namespace lucarne::octree

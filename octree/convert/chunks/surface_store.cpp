@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "octree/cache/format.h"
 #include "octree/convert/chunks/record_bytes.h"
 #include "octree/convert/chunks/station_ids.h"
-#include "octree/cache/format.h"
 
 namespace lucarne::octree {
 namespace {

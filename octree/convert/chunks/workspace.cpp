@@ -126,7 +126,8 @@ void Workspace::tell_at_interrupt() const {
     const std::string how = resume_ == Resume::go_on ? "again" : "with --resume";
     at_interrupt(folder_, [folder = folder_, stage = records_.back().stage, how] {
         return fmt::format(
-            "{}: keeps {} of the interrupted conversion; give the same command {} to go on after '{}', or remove "
+            "{}: keeps {} of the interrupted conversion; give the same command {} to go on after '{}', or "
+            "remove "
             "the folder",
             folder.string(), bytes_text(folder_bytes(folder)), how, stage);
     });

@@ -21,8 +21,8 @@ enum class Resume {
 /// The scratch files of a build and the journal of its finished stages, in a folder of their own beside the
 /// output or in the temporary folder. Others can guess its name, so it is used only where it is private
 /// (io/files/private_file.h); else the scratch files are nameless, with a warning. Nothing in it is synced:
-/// every record of the journal has a checksum, and has those of the scratch files it speaks of, so that what a
-/// power cut took is noticed and done again.
+/// every record of the journal has a checksum, and has those of the scratch files it speaks of, so that what
+/// a power cut took is noticed and done again.
 class Workspace {
  public:
     /// `identity` says what is built from what with which options; another build's leftovers are not used.

@@ -12,8 +12,7 @@ bool is_ancestor(const NodeKey& above, const NodeKey& key) {
 }  // namespace
 
 Result<Assembler> Assembler::create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
-                                    const std::filesystem::path& temp_folder,
-                                    BuildListener* listener) {
+                                    const std::filesystem::path& temp_folder, BuildListener* listener) {
     LUCARNE_ASSIGN(ScratchFile samples, ScratchFile::create(temp_folder));
     return Assembler(writer, loader, limits, std::move(samples), listener);
 }

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "octree/cache/writer.h"
 #include "octree/convert/nodes/build_listener.h"
 #include "octree/convert/nodes/subtree.h"
-#include "octree/cache/writer.h"
 
 namespace lucarne::octree {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <string_view>
 
-#include "octree/convert/sampling/node_sampler.h"
 #include "octree/cache/format.h"
 #include "octree/cache/writer.h"
+#include "octree/convert/sampling/node_sampler.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::octree {

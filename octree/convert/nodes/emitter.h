@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "octree/convert/sampling/node_sampler.h"
+#include "octree/codec/payload.h"
 #include "octree/convert/chunks/record_loader.h"
 #include "octree/convert/nodes/surface_rounding.h"
-#include "octree/codec/payload.h"
+#include "octree/convert/sampling/node_sampler.h"
 
 namespace lucarne::octree {
 

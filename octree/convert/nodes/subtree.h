@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "octree/convert/nodes/emitter.h"
 #include "octree/convert/chunks/record_loader.h"
+#include "octree/convert/nodes/emitter.h"
 
 namespace lucarne::octree {
 

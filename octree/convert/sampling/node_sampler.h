@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "octree/convert/sampling/sampler.h"
 #include "octree/cache/format.h"
+#include "octree/convert/sampling/sampler.h"
 
 namespace lucarne::octree {
 
@@ -30,9 +30,9 @@ struct Pending {
     double surface = 0;   ///< in the cube, in faces of the root cube before it was doubled
 };
 
-/// Divides the samples of up to eight children between them and their parent. Areas and surfaces count in faces
-/// of the root cube before it was doubled, whose edge is `face_edge`: in squares of the unit, floats would not hold
-/// those of every cloud. Only the floors of a directory entry are in squares of the unit.
+/// Divides the samples of up to eight children between them and their parent. Areas and surfaces count in
+/// faces of the root cube before it was doubled, whose edge is `face_edge`: in squares of the unit, floats
+/// would not hold those of every cloud. Only the floors of a directory entry are in squares of the unit.
 class NodeSampler {
  public:
     NodeSampler(const NodeLimits& limits, double face_edge) : limits_(limits), face_edge_(face_edge) {}

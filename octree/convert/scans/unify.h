@@ -15,8 +15,8 @@ namespace lucarne::octree {
 /// Attributes of the inputs are called as octree/tree/stored_names.h says.
 class Unifier {
  public:
-    /// `sources` must outlive the unifier. `replace_normals`: estimated normals will stand in place of the inputs'
-    /// own. Errors: attributes that no common type can hold, too many inputs.
+    /// `sources` must outlive the unifier. `replace_normals`: estimated normals will stand in place of the
+    /// inputs' own. Errors: attributes that no common type can hold, too many inputs.
     static Result<Unifier> create(std::vector<const io::PointSource*> sources, bool replace_normals = false);
 
     const io::Schema& schema() const { return schema_; }

@@ -17,7 +17,7 @@ bool is_finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-constexpr int kExtentExponent = 50;     ///< the square of 2^50 leaves room to sum millions of them in a float
+constexpr int kExtentExponent = 50;  ///< the square of 2^50 leaves room to sum millions of them in a float
 constexpr int kMostScaleExponent = 1000;  ///< the scale and its inverse are ordinary doubles
 
 double scale_of(const ChunkAccess& chunks) {
@@ -30,10 +30,11 @@ double scale_of(const ChunkAccess& chunks) {
         all.max = glm::max(all.max, box.max);
     }
     const glm::dvec3 extent = all.max - all.min;
-    const double widest = std::min(std::max({extent.x, extent.y, extent.z}), std::numeric_limits<double>::max());
+    const double widest =
+        std::min(std::max({extent.x, extent.y, extent.z}), std::numeric_limits<double>::max());
     if (!(widest > 0)) return 1;  // no points, or all in one place
-    return std::ldexp(1.0, std::clamp(kExtentExponent - std::ilogb(widest), -kMostScaleExponent,
-                                      kMostScaleExponent));
+    return std::ldexp(
+        1.0, std::clamp(kExtentExponent - std::ilogb(widest), -kMostScaleExponent, kMostScaleExponent));
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ using Positions = std::shared_ptr<const std::vector<glm::dvec3>>;
 /// neighbours. Thread-safe. Holds at most `bytes` besides what callers hold themselves.
 ///
 /// Positions and bounds are multiplied by a power of two that brings the widest extent of the cloud to about
-/// 2^50: floats then hold the squares of all distances from the extent down to its 10^-34th part, whatever the
-/// cloud's unit and size. Scaling by a power of two rounds nothing.
+/// 2^50: floats then hold the squares of all distances from the extent down to its 10^-34th part, whatever
+/// the cloud's unit and size. Scaling by a power of two rounds nothing.
 class ChunkCache {
  public:
     ChunkCache(const ChunkAccess& chunks, uint64_t bytes);

@@ -7,8 +7,8 @@
 
 #include <glm/common.hpp>
 
-#include "octree/tree/radix_sort.h"
 #include "octree/tree/key.h"
+#include "octree/tree/radix_sort.h"
 
 namespace lucarne::octree {
 namespace {
@@ -32,7 +32,7 @@ struct MortonGrid {
 };
 
 template <class Points>
-Box bounds_of(const Points& points) {
+Box bounds_of_all(const Points& points) {
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     for (size_t i = 0; i < points.size(); ++i) {
         box.min = glm::min(box.min, points[i]);
@@ -48,7 +48,7 @@ bool less(const glm::dvec3& a, const glm::dvec3& b) {
 }  // namespace
 
 std::vector<uint32_t> morton_order(std::span<const glm::dvec3> points) {
-    const MortonGrid grid(bounds_of(points));
+    const MortonGrid grid(bounds_of_all(points));
     std::vector<CodeIndex> keys(points.size());
     for (size_t i = 0; i < points.size(); ++i) keys[i] = {grid.code(points[i]), static_cast<uint32_t>(i)};
     sort_by_code(keys, 3 * kMaxLevel);
@@ -64,7 +64,7 @@ std::vector<uint32_t> morton_order(std::span<const glm::dvec3> points) {
 }
 
 LeafIndex::LeafIndex(const PointArrays& points) : points_(&points) {
-    const MortonGrid grid(bounds_of(points));
+    const MortonGrid grid(bounds_of_all(points));
     std::vector<uint64_t> codes(points.size());
     for (size_t i = 0; i < points.size(); ++i) codes[i] = grid.code(points[i]);
     cut(0, static_cast<uint32_t>(points.size()), codes);

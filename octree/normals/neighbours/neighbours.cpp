@@ -13,8 +13,8 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/parallel.h"
-#include "octree/tree/key.h"
 #include "octree/normals/neighbours/leaf_index.h"
+#include "octree/tree/key.h"
 
 namespace lucarne::octree {
 namespace {
@@ -185,8 +185,7 @@ double ChunkNeighbours::first_radius(std::span<const Pending> pending) const {
 }
 
 Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t k, const Visit& visit) {
-    double radius = first_radius(pending),
-           widest_halo = kWidestHalo * widest(cache_->bounds(chunk_));
+    double radius = first_radius(pending), widest_halo = kWidestHalo * widest(cache_->bounds(chunk_));
     for (int narrowed = 0; !pending.empty();) {
         LUCARNE_ASSIGN(const bool complete, load_halo(pending, radius));
         if (!complete &&
@@ -226,7 +225,8 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t
         double farthest = 0;
         for (const Pending& p : still) farthest = std::max(farthest, p.radius);
         pending = std::move(still);
-        // Four times as wide, or as wide as is certainly enough. Places too near for floats are at distance 0.
+        // Four times as wide, or as wide as is certainly enough. Places too near for floats are at distance
+        // 0.
         radius = std::min({radius > 0 ? 4 * radius : farthest, farthest, widest_halo});
     }
     return {};

@@ -8,8 +8,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/normals/normals.h"
 #include "octree/normals/neighbours/tile.h"
+#include "octree/normals/normals.h"
 
 namespace lucarne::octree {
 

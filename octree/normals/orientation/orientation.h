@@ -6,9 +6,9 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/normals/surface/chunk_surface.h"
 #include "octree/normals/orientation/shell.h"
 #include "octree/normals/orientation/signed_forest.h"
+#include "octree/normals/surface/chunk_surface.h"
 
 namespace lucarne::octree {
 

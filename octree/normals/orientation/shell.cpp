@@ -9,11 +9,11 @@ namespace lucarne::octree {
 namespace {
 
 constexpr float kLevelNormal = 0.9f;  ///< |n.z| of floors: up to 25 degrees
-constexpr double kClearlyUp =
-    0.3;  ///< |sum of area n.z| over the sum of area |n.z|, of a top that is not a wall's
+/// |sum of area n.z| over the sum of area |n.z|, of a top that is not a wall's.
+constexpr double kClearlyUp = 0.3;
 constexpr double kClosed = 0.25;  ///< |sum of area n.z| over the sum of area |n.z|; 1 for a sheet
-constexpr double kCovered =
-    0.4;  ///< of the extent's rectangle, floor and ceiling each; L-shaped rooms have .5
+/// Of the extent's rectangle, floor and ceiling each; L-shaped rooms have .5.
+constexpr double kCovered = 0.4;
 
 }  // namespace
 

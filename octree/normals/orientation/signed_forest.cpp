@@ -3,8 +3,8 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr double kMostWork =
-    3e8;  ///< votes looked at again, so that no cloud takes more than a second or two
+/// Votes looked at again, so that no cloud takes more than a second or two.
+constexpr double kMostWork = 3e8;
 constexpr double kAgainst = -1e-6;  ///< less than this is a verdict and no rounding
 
 struct Vote {

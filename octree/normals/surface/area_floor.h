@@ -7,8 +7,8 @@
 
 namespace lucarne::octree {
 
-/// The floors of a node's surfel areas (octree/tree/footprint.h): for prefixes of 1, 1/2, 1/4 and 1/8 of its own
-/// points (count/2^i, at least one) the least c >= 0 such that
+/// The floors of a node's surfel areas (octree/tree/footprint.h): for prefixes of 1, 1/2, 1/4 and 1/8 of its
+/// own points (count/2^i, at least one) the least c >= 0 such that
 ///     sum over inherited and prefix points of max(area_i, c) = surface,
 /// which is the dual variable of a projection onto a simplex (Held, Wolfe, Crowder 1974), found by selection
 /// in linear expected time. 0 where the areas alone exceed the surface; surface/n where all are unknown (0).

@@ -27,8 +27,8 @@ struct ChunkSurface {
     std::vector<float> areas;        ///< of the site, to be shared by its points; 0: unknown
     std::vector<SiteEdges> edges;
     std::vector<BorderEdge> border;  ///< sorted by site and other point
-    std::vector<uint32_t>
-        apart;  ///< sites whose share is that of a sparse surface beside a dense patch; sorted
+    /// Sites whose share is that of a sparse surface beside a dense patch; sorted.
+    std::vector<uint32_t> apart;
 };
 
 /// Normals and areas of all sites from `k` neighbours, and from four times as many where those leave the

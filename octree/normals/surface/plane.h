@@ -4,8 +4,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "octree/normals/normals.h"
 #include "octree/normals/neighbours/tile.h"
+#include "octree/normals/normals.h"
 
 namespace lucarne::octree {
 
@@ -16,8 +16,8 @@ struct Plane {
         variances{};  ///< eigenvalues of the covariance, rising; variances[0] along the normal
 };
 
-/// The plane of the points of which these are the sums, by PCL: pcl::eigen33, which pcl::solvePlaneParameters and so
-/// pcl::NormalEstimation call, in double precision. No point at all has the plane z = 0.
+/// The plane of the points of which these are the sums, by PCL: pcl::eigen33, which pcl::solvePlaneParameters
+/// and so pcl::NormalEstimation call, in double precision. No point at all has the plane z = 0.
 Plane plane_of(const Moments& moments);
 
 }  // namespace lucarne::octree

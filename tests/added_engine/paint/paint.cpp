@@ -7,11 +7,12 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPatterns = {"plain", "stripes"};
 
-constexpr Option<glm::dvec3> kTint{{.kind = OptionKind::colour,
-                                    .key = "tint",
-                                    .label = "tint",
-                                    .help = "Colour of all surfaces",
-                                    .defaults = {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}}};
+constexpr Option<glm::dvec3> kTint{
+    {.kind = OptionKind::colour,
+     .key = "tint",
+     .label = "tint",
+     .help = "Colour of all surfaces",
+     .defaults = {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}}};
 constexpr Option<double> kGain{{.kind = OptionKind::number,
                                 .key = "paint_gain",
                                 .label = "gain",
@@ -43,7 +44,8 @@ constexpr Option<bool> kPaintSky{{.kind = OptionKind::flag,
                                   .help = "Paint where no surface is, too",
                                   .defaults = {false, false, false}}};
 
-constexpr const OptionInfo* kOptions[] = {&kTint.info, &kGain.info, &kWidth.info, &kPattern.info, &kPaintSky.info};
+constexpr const OptionInfo* kOptions[] = {&kTint.info, &kGain.info, &kWidth.info, &kPattern.info,
+                                          &kPaintSky.info};
 constexpr EngineInfo kInfo{.name = "paint", .description = "one colour", .options = kOptions};
 
 class PaintEngine final : public Engine {

@@ -1,25 +1,26 @@
 // A library that LD_PRELOAD puts between the program and the C library: it counts the calls that change files
-// or folders, and the end of the program as the last one, and at one of them does what a disk, a signal or a power
-// cut would. LUCARNE_FAULT says what:
+// or folders, and the end of the program as the last one, and at one of them does what a disk, a signal or a
+// power cut would. LUCARNE_FAULT says what:
 //
 //   count:FILE       nothing; writes the number of calls to FILE at the end
 //   trace:FILE       nothing; writes the calls' names to FILE at the end, one a line
 //   kill:N           SIGKILL before the N-th call (from 1)
 //   signal:N:NUMBER  signal NUMBER before the N-th call, which is never made unless the signal is ignored
 //   full:N           from the N-th call on, every write fails with ENOSPC
-//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given, unless it gives space back
-//   power:N:SEED     before the N-th call the power goes: of what was written since each file's last sync every
-//                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; of the names that
-//                    were given since their folder's last sync the last ones are lost; then SIGKILL
+//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given, unless it gives
+//   space back power:N:SEED     before the N-th call the power goes: of what was written since each file's
+//   last sync every
+//                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; of the names
+//                    that were given since their folder's last sync the last ones are lost; then SIGKILL
 //
 // LUCARNE_NO_TMPFILE: files cannot be made without a name.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstdarg>
 #include <cstring>
 #include <mutex>
 #include <random>
@@ -102,7 +103,8 @@ class Faults {
             return same;
         });
     }
-    /// Keeps what stands under `name`, before another takes its place; returns the name that it is kept under.
+    /// Keeps what stands under `name`, before another takes its place; returns the name that it is kept
+    /// under.
     std::string keep(const std::string& name) {
         static const auto link = next<int(int, const char*, int, const char*, int)>("linkat");
         if (kind_ != "power") return {};
@@ -185,7 +187,8 @@ class Faults {
 
     std::recursive_mutex mutex_;
     std::string kind_, argument_, trace_;
-    unsigned long long at_ = 0, seed_ = 0, calls_ = 0;  ///< `seed_`: the number after the call's, whatever it means
+    unsigned long long at_ = 0, seed_ = 0,
+                       calls_ = 0;  ///< `seed_`: the number after the call's, whatever it means
     std::vector<Undo> undos_;
     std::vector<UndoName> undo_names_;
 };

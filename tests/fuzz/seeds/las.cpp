@@ -1,5 +1,5 @@
-// LAS of every version and point format by hand (tests/io/formats/las/las_builder.h), without and with all that may stand
-// beside the points.
+// LAS of every version and point format by hand (tests/io/formats/las/las_builder.h), without and with all
+// that may stand beside the points.
 #include <fmt/format.h>
 
 #include "io/formats/las/header.h"

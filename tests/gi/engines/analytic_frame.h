@@ -82,7 +82,8 @@ struct AnalyticScene {
     CameraView camera;
     EngineSettings settings = test_settings();
     std::shared_ptr<const Environment> environment = nullptr;
-    size_t packed_materials = 0;  ///< materials of the scene that the surfels were packed for, where it had more
+    /// Materials of the scene that the surfels were packed for, where it had more.
+    size_t packed_materials = 0;
 };
 
 /// A square picture seen from `eye` toward `target`, `tangent` of half its field.

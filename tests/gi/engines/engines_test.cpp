@@ -6,19 +6,18 @@
 
 #include <gtest/gtest.h>
 
+#include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/reference/options.h"
+#include "gi/engines/vpl/options.h"
 #include "gi/shared/brdf.h"
 #include "tests/gi/engines/analytic_frame.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "gi/bounce_options.h"
-#include "gi/engines/reference/options.h"
-#include "gi/engines/vpl/options.h"
 
 namespace lucarne::gi {
 namespace {
 
 using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
-
 
 /// What an engine claims to compute, beyond direct light: the tests that apply to it.
 struct Claims {
@@ -264,7 +263,8 @@ INSTANTIATE_TEST_SUITE_P(All, Engines, testing::ValuesIn(registered()),
 
 TEST(EngineTable, EveryEngineIsTested) {
     // Those that know light; gi/engines/unlit has tests of its own.
-    const auto lit = std::ranges::count_if(engines(), [](const auto& entry) { return entry.info.name != "unlit"; });
+    const auto lit =
+        std::ranges::count_if(engines(), [](const auto& entry) { return entry.info.name != "unlit"; });
     EXPECT_EQ(registered().size(), static_cast<size_t>(lit));
 }
 

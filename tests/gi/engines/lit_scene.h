@@ -10,7 +10,7 @@
 namespace lucarne::gi {
 
 inline Light make_spot(const glm::vec3& from, const glm::vec3& to, float half_angle, float intensity,
-                           float softness = 0.0f) {
+                       float softness = 0.0f) {
     const glm::vec3 d = glm::normalize(to - from);
     return {{from.x, from.y, from.z, std::cos(half_angle)},
             {d.x, d.y, d.z, std::cos(half_angle * (1 - softness))},

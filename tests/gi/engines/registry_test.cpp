@@ -38,7 +38,8 @@ TEST(Options, HaveDefaultsThatTheyThemselvesAllow) {
 
 TEST(Options, OfOneKeyAreTheSameInEveryEngine) {
     for (const EngineEntry& entry : engines())
-        for (const OptionInfo* option : entry.info.options) EXPECT_EQ(find_option(option->key), option) << option->key;
+        for (const OptionInfo* option : entry.info.options)
+            EXPECT_EQ(find_option(option->key), option) << option->key;
 }
 
 TEST(Options, ReadWhatTheyAllowAndNothingElse) {
@@ -46,9 +47,10 @@ TEST(Options, ReadWhatTheyAllowAndNothingElse) {
         if (option->kind != OptionKind::integer) continue;
         for (const double value : {option->least, option->most})
             EXPECT_TRUE(parse_option(*option, fmt::format("{:.0f}", value))) << option->key;
-        for (const std::string& wrong : {fmt::format("{:.0f}", option->least - 1), fmt::format("{:.0f}", option->most + 1),
-                                         std::string(), std::string("1x"), std::string("0x10"), std::string(" 1"),
-                                         std::string("nan"), std::string(400, '9')})
+        for (const std::string& wrong :
+             {fmt::format("{:.0f}", option->least - 1), fmt::format("{:.0f}", option->most + 1),
+              std::string(), std::string("1x"), std::string("0x10"), std::string(" 1"), std::string("nan"),
+              std::string(400, '9')})
             EXPECT_FALSE(parse_option(*option, wrong)) << option->key << " " << wrong;
     }
 }
@@ -70,7 +72,9 @@ TEST(EngineSettings, HaveTheDefaultsOfInteractiveUntilTheyAreSet) {
 
 /// The rows of data/README.md.
 std::string options_table() {
-    std::string table = "| key | values | preview, interactive, high | engines | meaning |\n| --- | --- | --- | --- | --- |\n";
+    std::string table =
+        "| key | values | preview, interactive, high | engines | meaning |\n| --- | --- | --- | --- | --- "
+        "|\n";
     for (const OptionInfo* option : engine_options()) {
         std::string owners, defaults;
         for (const EngineEntry& entry : engines())
@@ -79,8 +83,8 @@ std::string options_table() {
         for (const OptionValue& value : option->defaults)
             defaults += (defaults.empty() ? "" : ", ") + option_text(*option, value);
         std::string name = option->flag_name();
-        table += fmt::format("| `{}`, `{}` | {} | {} | {} | {} |\n", option->key, name, range_text(*option), defaults, owners,
-                             option->help);
+        table += fmt::format("| `{}`, `{}` | {} | {} | {} | {} |\n", option->key, name, range_text(*option),
+                             defaults, owners, option->help);
     }
     return table;
 }
@@ -89,7 +93,8 @@ TEST(Options, TableOfTheDocumentsIsThatOfTheEngines) {
     std::stringstream document;
     document << std::ifstream(LUCARNE_SOURCE_DIR "/data/README.md").rdbuf();
     EXPECT_NE(document.str().find(options_table()), std::string::npos)
-        << "put this table into data/README.md:\n" << options_table();
+        << "put this table into data/README.md:\n"
+        << options_table();
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/surfel_pool.h"
 #include "octree/tree/source.h"
 #include "tests/gi/engines/even_order.h"
 

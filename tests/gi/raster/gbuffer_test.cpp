@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

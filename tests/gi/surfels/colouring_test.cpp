@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/surfels/surfel_pool.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
 
 namespace lucarne::gi {

@@ -9,8 +9,8 @@
 
 #include "octree/tree/attributes.h"
 #include "octree/tree/footprint.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_cloud.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

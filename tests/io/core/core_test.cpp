@@ -10,11 +10,11 @@
 #include <sys/wait.h>
 
 #include "io/core/counted.h"
-#include "io/files/file.h"
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 #include "io/core/terminal.h"
+#include "io/files/file.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne {
@@ -282,9 +282,15 @@ TEST(Options, BytesAreWrittenAsPeopleReadThem) {
 TEST(Shown, HasNoControlCharactersAndIsValidUtf8) {
     EXPECT_EQ(shown("Straße 日本 🙂"), "Straße 日本 🙂");
     EXPECT_EQ(shown("\x1b[2J\r\n\t\x7f"), "?[2J????");
-    EXPECT_EQ(shown("a\xc2\x9b" "2Jb"), "a??2Jb") << "the control characters of 8 bits";
+    EXPECT_EQ(shown("a\xc2\x9b"
+                    "2Jb"),
+              "a??2Jb")
+        << "the control characters of 8 bits";
     EXPECT_EQ(shown("a\xffz\xc3"), "a?z?") << "bytes that are no UTF-8";
-    EXPECT_EQ(shown("\xe2\x80\xae" "fdp.exe"), "???fdp.exe") << "the mark that turns the direction";
+    EXPECT_EQ(shown("\xe2\x80\xae"
+                    "fdp.exe"),
+              "???fdp.exe")
+        << "the mark that turns the direction";
     EXPECT_EQ(shown(""), "");
 }
 

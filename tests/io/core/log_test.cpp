@@ -35,9 +35,10 @@ TEST(Log, AWarningIsSaidOnceInAnOperationAndAgainInTheNext) {
 }
 
 TEST(Log, OutsideOfOperationsEveryWarningIsSaid) {
-    EXPECT_EQ(times_said("no space", [] {
-                  for (int i = 0; i < 3; ++i) log::warn("no space");
-              }),
+    EXPECT_EQ(times_said("no space",
+                         [] {
+                             for (int i = 0; i < 3; ++i) log::warn("no space");
+                         }),
               3);
 }
 

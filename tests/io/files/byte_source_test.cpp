@@ -34,8 +34,13 @@ TEST_F(ByteSources, ReadsGiveWhatIsThere) {
     for (const auto& source : sources_) {
         EXPECT_EQ(source->size(), kText.size());
         for (const auto& [offset, wanted, there] :
-             std::vector<std::tuple<uint64_t, size_t, std::string_view>>{
-                 {0, 10, "0123456789"}, {3, 4, "3456"}, {8, 4, "89"}, {10, 1, ""}, {11, 5, ""}, {1ull << 62, 5, ""}, {4, 0, ""}}) {
+             std::vector<std::tuple<uint64_t, size_t, std::string_view>>{{0, 10, "0123456789"},
+                                                                         {3, 4, "3456"},
+                                                                         {8, 4, "89"},
+                                                                         {10, 1, ""},
+                                                                         {11, 5, ""},
+                                                                         {1ull << 62, 5, ""},
+                                                                         {4, 0, ""}}) {
             std::string text(wanted, ' ');
             const auto out = std::as_writable_bytes(std::span(text));
             EXPECT_EQ(source->read_some(offset, out).value(), there.size());
@@ -51,7 +56,8 @@ TEST_F(ByteSources, AReadPastTheEndNamesTheSourceAndSaysHowMuchWasThere) {
         const auto read = source->read_at(8, out);
         ASSERT_FALSE(read);
         EXPECT_EQ(read.error().kind, ErrorKind::input_rejected);
-        EXPECT_THAT(read.error().line(), ::testing::HasSubstr(source->path().string() + ": ends early: 4 bytes wanted at 8, 2 there"));
+        EXPECT_THAT(read.error().line(), ::testing::HasSubstr(source->path().string() +
+                                                              ": ends early: 4 bytes wanted at 8, 2 there"));
     }
 }
 
@@ -59,7 +65,8 @@ TEST_F(ByteSources, TheStateOfAFileShowsThatItWasChanged) {
     EXPECT_EQ(sources_[1]->modified(), 7);
     EXPECT_EQ(sources_[2]->modified(), 0);
     const auto before = sources_[0];
-    std::filesystem::last_write_time(folder_ / "a", std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
+    std::filesystem::last_write_time(folder_ / "a",
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
     const auto after = InputFile::open_shared(folder_ / "a").value();
     EXPECT_GT(after->modified(), before->modified());
 }
@@ -75,7 +82,8 @@ TEST(MemoryScans, EverySharedScanReadsTheSameOutOfMemory) {
         if (!entry.is_regular_file() || entry.file_size() > kLargest) continue;
         const auto file = InputFile::open_shared(entry.path()).value();
         const auto bytes = bytes_of(io::testing::read_bytes(entry.path()));
-        const auto memory = std::make_shared<const MemorySource>(entry.path(), std::span(bytes), file->modified());
+        const auto memory =
+            std::make_shared<const MemorySource>(entry.path(), std::span(bytes), file->modified());
         const auto a = io::open_scan(file, options), b = io::open_scan(memory, options);
         ASSERT_EQ(a.has_value(), b.has_value()) << entry.path();
         if (!a) {

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "io/files/file.h"
 #include "io/core/machine.h"
+#include "io/files/file.h"
 #include "io/files/page_cache.h"
 #include "tests/io/io_testing.h"
 

@@ -31,7 +31,8 @@ TEST(Json, ASyntaxErrorNamesItsLineAndColumn) {
 TEST(Json, ASyntaxErrorIsOneShortLineInOurWords) {
     const std::string digits(5000, '9');
     const std::pair<std::string, std::string> cases[] = {
-        {"{\n  \"a\": 1e999\n}", "f: line 2, column 8: the number 1e999 is too large; correct the JSON there"},
+        {"{\n  \"a\": 1e999\n}",
+         "f: line 2, column 8: the number 1e999 is too large; correct the JSON there"},
         {"{\n  \"a\": -" + digits + "e9\n}", "line 2, column 8: the number -99"},
         {"{\"a\": 1", "line 1, column 8: the text ends early"},
         {"", "line 1, column 1: the text ends early"},

@@ -1,4 +1,5 @@
-// The notes of a scan as the JSON text that caches hold: the texts here stand in caches that were written before.
+// The notes of a scan as the JSON text that caches hold: the texts here stand in caches that were written
+// before.
 #include "io/formats/notes_json.h"
 
 #include <cmath>
@@ -28,20 +29,23 @@ const std::array kTexts = {
     std::string(kLas),
     std::string(R"({"color_bits":8,"comments":["a","b c"],"format":"ply","obj_info":[],"properties":[)"
                 R"({"name":"x","type":"double"},{"name":"red","type":"uchar"}]})"),
-    std::string(R"({"color_bits":8,"format":"pcd","height":1,"viewpoint":[1.5,0.0,0.0,1.0,0.0,0.0,0.0],"width":213})"),
+    std::string(
+        R"({"color_bits":8,"format":"pcd","height":1,"viewpoint":[1.5,0.0,0.0,1.0,0.0,0.0,0.0],"width":213})"),
     std::string(
         R"({"color_bits":8,"coordinate_system":"","guid":"{F}","image_count":2000,"images":[{"bytes":1,"encoding":"jpeg",)"
         R"("height":2,"name":"front","representation":"spherical","width":3}],"intensity_limits":[0.0,1.0],"library":"L",)"
         R"("scans":[{"color_maximum":255.0,"fields":["cartesianX"],"guid":"{G}","intensity_limits":[0.0,1.0],"name":"one",)"
         R"("points":9,"position":[1.0,2.0,3.0],"rotation":[[0.0,-1.0,0.0],[1.0,0.0,0.0],[0.0,0.0,1.0]],)"
         R"("stated_max":[9.0,8.0,null],"stated_min":[0.0,0.0,0.0]},{"fields":[],"guid":"","name":"two","points":0}]})"),
-    std::string(R"({"color_bits":8,"mesh":{"area_m2":2.5,"coordinates_and_normals_not_there":5,"faces":2,)"
-                R"("left_out_lines_points_curves":1,"left_out_not_finite":3,"left_out_without_area":4,"max":[1.0,1.0,0.0],)"
-                R"("min":[0.0,0.0,0.0],"samples":1000,"spacing_m":0.05,"textures":0,"triangles":4,"vertices":6}})"),
+    std::string(
+        R"({"color_bits":8,"mesh":{"area_m2":2.5,"coordinates_and_normals_not_there":5,"faces":2,)"
+        R"("left_out_lines_points_curves":1,"left_out_not_finite":3,"left_out_without_area":4,"max":[1.0,1.0,0.0],)"
+        R"("min":[0.0,0.0,0.0],"samples":1000,"spacing_m":0.05,"textures":0,"triangles":4,"vertices":6}})"),
     std::string(R"({"color_bits":8,"mesh":{"textures":0,"triangles":0,"vertices":3}})"),
     std::string(R"({"color_bits":8,"intensity_limits":[-2048,2047]})"),
-    std::string(R"({"extras":[{"data":"","description":"","extended":false,"record_id":4,"user_id":"LASF_Spec"}],)"
-                R"("extras_note":"b","projection":[],"system_note":"a"})"),
+    std::string(
+        R"({"extras":[{"data":"","description":"","extended":false,"record_id":4,"user_id":"LASF_Spec"}],)"
+        R"("extras_note":"b","projection":[],"system_note":"a"})"),
 };
 
 TEST(NotesJson, TheTextsOfOlderCachesComeBackByteByByte) {
@@ -77,16 +81,17 @@ TEST(NotesJson, WhatIsNoObjectHoldsNothing) {
 }
 
 TEST(NotesJson, ADamagedLasHeaderStaysDamaged) {
-    for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{{"\"minor_version\":4", "\"minor_version\":5"},
-                                                                                  {"\"point_format\":7", "\"point_format\":-1"},
-                                                                                  {"\"point_format\":7", "\"point_format\":5"},
-                                                                                  {"\"point_format\":7", "\"point_format\":7e300"},
-                                                                                  {"\"record_length\":40", "\"record_length\":35"},
-                                                                                  {"\"software\":\"S\"", "\"software\":3"},
-                                                                                  {"\"guid\":\"AA", "\"guid\":\"A"},
-                                                                                  {"\"data\":\"a", "\"data\":\"!"},
-                                                                                  {"\"record_id\":7", "\"record_id\":70000"},
-                                                                                  {"\"records\":[", "\"recards\":["}}) {
+    for (const auto& [from, to] :
+         std::vector<std::pair<std::string, std::string>>{{"\"minor_version\":4", "\"minor_version\":5"},
+                                                          {"\"point_format\":7", "\"point_format\":-1"},
+                                                          {"\"point_format\":7", "\"point_format\":5"},
+                                                          {"\"point_format\":7", "\"point_format\":7e300"},
+                                                          {"\"record_length\":40", "\"record_length\":35"},
+                                                          {"\"software\":\"S\"", "\"software\":3"},
+                                                          {"\"guid\":\"AA", "\"guid\":\"A"},
+                                                          {"\"data\":\"a", "\"data\":\"!"},
+                                                          {"\"record_id\":7", "\"record_id\":70000"},
+                                                          {"\"records\":[", "\"recards\":["}}) {
         std::string text(kLas);
         ASSERT_NE(text.find(from), text.npos) << from;
         text.replace(text.find(from), from.size(), to);
@@ -108,8 +113,9 @@ TEST(NotesJson, TheLatticeAndTheRecordsOfADamagedLasHeaderStillCount) {
     ASSERT_TRUE(las::lattice_of(info));
     EXPECT_EQ(las::lattice_of(info)->scale.x, .01);
     EXPECT_EQ(info.notes.las->vlrs.size(), 1u);
-    for (const auto& [from, to] : {std::pair("\"scale\":[0.01", "\"scale\":[0"), std::pair("\"scale\":[0.01", "\"scale\":[null"),
-                                   std::pair("\"scale\"", "\"skale\""), std::pair("1e+20", "1e+40")}) {
+    for (const auto& [from, to] :
+         {std::pair("\"scale\":[0.01", "\"scale\":[0"), std::pair("\"scale\":[0.01", "\"scale\":[null"),
+          std::pair("\"scale\"", "\"skale\""), std::pair("1e+20", "1e+40")}) {
         text = kLas;
         text.replace(text.find(from), std::string_view(from).size(), to);
         info.notes = notes_of_text(text);

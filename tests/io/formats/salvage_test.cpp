@@ -11,15 +11,15 @@
 #include "io/formats/las/header.h"
 #include "io/formats/las/laz/chunk_table.h"
 #include "tests/io/formats/e57/e57_builder.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::io {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::read_all;
 using testing::Records;
-using ::testing::HasSubstr;
 
 const ReadOptions kSalvage{"", true, {0, 0, true}, true};
 
@@ -99,10 +99,11 @@ void cut_everywhere(const std::string& name, const std::string& bytes, const Exp
         ++rejected;
         const Error advice = with_salvage_advice(usual.error(), path, {"", true, {0, 0, true}});
         if (saved && saved->records.count > 0) {
-            ASSERT_THAT(advice.line(),
-                        HasSubstr("; " + counted(saved->records.count, "points") + " can be saved with --salvage"));
+            ASSERT_THAT(advice.line(), HasSubstr("; " + counted(saved->records.count, "points") +
+                                                 " can be saved with --salvage"));
         } else if (saved) {
-            ASSERT_THAT(advice.line(), HasSubstr("none of its points can be saved")) << name << " cut to " << cut;
+            ASSERT_THAT(advice.line(), HasSubstr("none of its points can be saved"))
+                << name << " cut to " << cut;
         } else {
             ASSERT_EQ(advice.line(), usual.error().line());
         }
@@ -140,11 +141,13 @@ TEST_F(SharedSalvage, OfBinaryPlyAndPcdEveryWholeRecord) {
     const std::string ply = shared_bytes("ply/statue_lion_takanawa_big_endian.ply");
     const size_t ply_begin = ply.find("end_header\n") + 11;
     const size_t ply_length = (ply.size() - ply_begin) / 341989;
-    cut_everywhere("a.ply", ply, [=](size_t cut) { return cut < ply_begin ? 0 : (cut - ply_begin) / ply_length; });
+    cut_everywhere("a.ply", ply,
+                   [=](size_t cut) { return cut < ply_begin ? 0 : (cut - ply_begin) / ply_length; });
     const std::string pcd = shared_bytes("pcd/open3d_fragment.pcd");
     const size_t pcd_begin = pcd.find("DATA binary\n") + 12;
     const size_t pcd_length = (pcd.size() - pcd_begin) / 113662;
-    cut_everywhere("a.pcd", pcd, [=](size_t cut) { return cut < pcd_begin ? 0 : (cut - pcd_begin) / pcd_length; });
+    cut_everywhere("a.pcd", pcd,
+                   [=](size_t cut) { return cut < pcd_begin ? 0 : (cut - pcd_begin) / pcd_length; });
 }
 
 /// Rows end with the line: those whose line end is there. The last may lack it.
@@ -302,7 +305,8 @@ std::string description_first(uint64_t points) {
     file.resize(kPoints);
     file += usual.substr(e57::kHeaderBytes, section);
     testing::put(file, kPoints + 16, testing::physical(kPoints + 32));
-    testing::put(file, 16, uint64_t{(file.size() + e57::kPageContent - 1) / e57::kPageContent * e57::kPageBytes});
+    testing::put(file, 16,
+                 uint64_t{(file.size() + e57::kPageContent - 1) / e57::kPageContent * e57::kPageBytes});
     return testing::with_checksums(file);
 }
 
@@ -349,7 +353,8 @@ TEST(Salvage, GivesNoAdviceAboutFilesThatAreSound) {
     testing::LasFile las;
     las.records = {testing::record0(1, 2, 3)};
     testing::write_bytes(folder / "a.las", las.bytes());
-    const Error other{ErrorKind::input_rejected, (folder / "a.las").string(), "is in another unit", "so what"};
+    const Error other{ErrorKind::input_rejected, (folder / "a.las").string(), "is in another unit",
+                      "so what"};
     EXPECT_EQ(with_salvage_advice(other, folder / "a.las", {}).line(), other.line());
 }
 
@@ -360,9 +365,10 @@ TEST(Salvage, LooksAtHostileCountsNoLongerThanTheFileIs) {
     las.records = {testing::record0(1, 2, 3), testing::record0(4, 5, 6)};
     las.said_points = INT64_MAX;
     testing::write_bytes(folder / "a.las", las.bytes());
-    testing::write_bytes(folder / "a.ptx",
-                         "60000\n60000\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 "
-                         "0.5\n4 5 6 0.5\n");
+    testing::write_bytes(
+        folder / "a.ptx",
+        "60000\n60000\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 "
+        "0.5\n4 5 6 0.5\n");
     testing::write_bytes(folder / "a.pts", "18446744073709551615\n1 2 3\n4 5 6\n");
     testing::write_bytes(folder / "a.pcd",
                          "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 18446744073709551615\nHEIGHT 1\nDATA "
@@ -385,8 +391,9 @@ TEST(Losses, OfOneKindAreAddedUpAndNothingIsNoLoss) {
 TEST(ReadOptions, ThatChangeThePointsHaveATextOfTheirOwn) {
     EXPECT_EQ(options_text({}), "");
     EXPECT_EQ(options_text({"", true, {}, false}), "");
-    const std::set<std::string> texts = {options_text({"x,y,z", false, {}, false}), options_text({"", false, {}, true}),
-                                         options_text({"x,y,z", false, {}, true}), options_text({"z,y,x", false, {}, true})};
+    const std::set<std::string> texts = {
+        options_text({"x,y,z", false, {}, false}), options_text({"", false, {}, true}),
+        options_text({"x,y,z", false, {}, true}), options_text({"z,y,x", false, {}, true})};
     EXPECT_EQ(texts.size(), 4u);
 }
 

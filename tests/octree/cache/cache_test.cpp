@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/convert/build.h"
 #include "octree/cache/file.h"
+#include "octree/convert/build.h"
 #include "octree/open.h"
 #include "tests/octree/test_sources.h"
 

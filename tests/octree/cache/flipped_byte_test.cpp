@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/file.h"
+#include "octree/convert/build.h"
 #include "octree/edit/edit.h"
 #include "tests/octree/test_sources.h"
 
@@ -42,7 +42,8 @@ ComputedSource described_scan() {
     return source;
 }
 
-void build(std::vector<const io::PointSource*> inputs, const std::filesystem::path& output, NormalsMode normals) {
+void build(std::vector<const io::PointSource*> inputs, const std::filesystem::path& output,
+           NormalsMode normals) {
     BuildOptions options;
     options.inputs = std::move(inputs);
     options.output = output;
@@ -58,8 +59,8 @@ void append(const std::filesystem::path& cache, const io::PointSource& added) {
 }
 
 void remove_points(const std::filesystem::path& cache) {
-    const auto done =
-        delete_from_cache({.box = Box{glm::dvec3(-1), glm::dvec3(.3, 2, 2)}, .scan = {}}, {.cache = cache, .threads = 1});
+    const auto done = delete_from_cache({.box = Box{glm::dvec3(-1), glm::dvec3(.3, 2, 2)}, .scan = {}},
+                                        {.cache = cache, .threads = 1});
     ASSERT_TRUE(done) << done.error().line();
 }
 
@@ -74,38 +75,46 @@ std::ostream& operator<<(std::ostream& out, const Kind& kind) {
 }
 
 const Kind kKinds[] = {
-    {"Fresh", false, [](const auto& path) {
+    {"Fresh", false,
+     [](const auto& path) {
          const auto a = scan(200, 1);
          build({&a}, path, NormalsMode::none);
      }},
-    {"WithNormals", false, [](const auto& path) {
+    {"WithNormals", false,
+     [](const auto& path) {
          const auto a = scan(200, 1);
          build({&a}, path, NormalsMode::estimate);
      }},
-    {"OfSeveralLevels", false, [](const auto& path) {
+    {"OfSeveralLevels", false,
+     [](const auto& path) {
          const auto a = scan(11'000, 1);
          build({&a}, path, NormalsMode::none);
      }},
-    {"OfSeveralScans", false, [](const auto& path) {
+    {"OfSeveralScans", false,
+     [](const auto& path) {
          const auto a = scan(200, 1), b = scan(100, 2);
          build({&a, &b}, path, NormalsMode::estimate);
      }},
-    {"WithDescriptions", false, [](const auto& path) {
+    {"WithDescriptions", false,
+     [](const auto& path) {
          const auto a = described_scan();
          build({&a}, path, NormalsMode::none);
      }},
-    {"Appended", true, [](const auto& path) {
+    {"Appended", true,
+     [](const auto& path) {
          const auto a = scan(200, 1), b = scan(100, 2), c = scan(50, 3);
          build({&a}, path, NormalsMode::estimate);
          append(path, b);
          append(path, c);
      }},
-    {"Edited", true, [](const auto& path) {
+    {"Edited", true,
+     [](const auto& path) {
          const auto a = scan(200, 1);
          build({&a}, path, NormalsMode::estimate);
          remove_points(path);
      }},
-    {"Compacted", false, [](const auto& path) {
+    {"Compacted", false,
+     [](const auto& path) {
          const auto a = scan(200, 1), b = scan(100, 2);
          build({&a}, path, NormalsMode::estimate);
          append(path, b);

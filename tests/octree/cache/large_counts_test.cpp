@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "octree/convert/chunks/chunk_plan.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/format.h"
 #include "octree/cache/metadata.h"
+#include "octree/convert/chunks/chunk_plan.h"
 #include "octree/stream/cut.h"
 #include "tests/octree/plane_source.h"
 #include "tests/octree/test_sources.h"

@@ -12,8 +12,8 @@
 #include "io/core/options.h"
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 extern char** environ;
@@ -161,8 +161,8 @@ TEST(OutOfCore, StaysUnderTheMemoryCapWhileItReadsLaz) {
     const Measured full = build_in_child(folder / "laz.luc", 1);
     ::unsetenv("LUCARNE_TEST_SCAN");
     const uint64_t held = full.peak - std::min(full.peak, base.peak);
-    std::printf("LAZ: %s resident, %s of it for an empty process; the cap is %s\n", bytes_text(full.peak).c_str(),
-                bytes_text(base.peak).c_str(), bytes_text(kMemory).c_str());
+    std::printf("LAZ: %s resident, %s of it for an empty process; the cap is %s\n",
+                bytes_text(full.peak).c_str(), bytes_text(base.peak).c_str(), bytes_text(kMemory).c_str());
     EXPECT_LE(held, kMemory + kSlack);
     EXPECT_GT(full.chunks, 1u);
 }

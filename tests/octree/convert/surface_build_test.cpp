@@ -8,9 +8,9 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/tree/attributes.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
+#include "octree/tree/attributes.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

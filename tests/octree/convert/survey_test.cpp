@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "io/synthetic/synthetic.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -6,10 +6,10 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/tree/attributes.h"
 #include "octree/convert/build.h"
 #include "octree/export/export.h"
 #include "octree/open.h"
+#include "octree/tree/attributes.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

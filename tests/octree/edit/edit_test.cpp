@@ -11,11 +11,11 @@
 
 #include "io/core/random.h"
 #include "io/files/update_file.h"
-#include "octree/tree/attributes.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
 #include "octree/cache/file.h"
+#include "octree/convert/build.h"
 #include "octree/edit/edit_plan.h"
+#include "octree/tree/attributes.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

@@ -1,10 +1,11 @@
-// Which normals a cache shows and gives back: the file's own, or the estimated ones that were asked for instead.
+// Which normals a cache shows and gives back: the file's own, or the estimated ones that were asked for
+// instead.
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "octree/edit/edit.h"
 #include "octree/export/export.h"
 #include "octree/tree/point_normals.h"
@@ -42,7 +43,8 @@ Result<std::unique_ptr<NodeSource>> converted(std::vector<const io::PointSource*
     return open_cache(cache);
 }
 
-Result<std::unique_ptr<io::PointSource>> exported(const NodeSource& source, const std::filesystem::path& output,
+Result<std::unique_ptr<io::PointSource>> exported(const NodeSource& source,
+                                                  const std::filesystem::path& output,
                                                   const ExportOptions& options = {}) {
     const Exporter exporter(source, options);
     LUCARNE_ASSIGN(const auto writer,
@@ -161,8 +163,8 @@ TEST(ReplacedNormals, WhatIsAppendedIsEstimatedToo) {
 }
 
 TEST(StoredNames, GiveEveryNameBack) {
-    for (const std::string name : {"normal", "area", "scan", "normal_oct", "color", "heat_in_file", "area_in_file",
-                                   "normal_in_file", "normal_in_file_in_file"})
+    for (const std::string name : {"normal", "area", "scan", "normal_oct", "color", "heat_in_file",
+                                   "area_in_file", "normal_in_file", "normal_in_file_in_file"})
         for (const bool replace : {false, true}) {
             const io::Attribute attribute{name, io::ScalarType::f32, 3, 0};
             EXPECT_EQ(name_in_file(stored_name(attribute, replace)), name);

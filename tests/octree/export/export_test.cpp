@@ -5,8 +5,8 @@
 
 #include "io/core/random.h"
 #include "io/formats/scan.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

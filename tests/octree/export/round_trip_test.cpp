@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include "io/formats/copc/copc.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "octree/export/export.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::octree {
 namespace {
@@ -109,9 +109,9 @@ struct Coordinates {
     uint16_t unit;  ///< EPSG code of its unit of length
 };
 const Coordinates kPlaces[] = {{"UTM", 0.001, 500'000, 4'649'776, 0, 9001},
-                         {"LV95", 0.0001, 2'600'000, 1'200'000, 400, 9001},
-                         {"Oregon, US survey feet", 0.01, 636'000, 848'000, 0, 9003},
-                         {"feet from nowhere", 0.00025, 0, 0, 0, 9002}};
+                               {"LV95", 0.0001, 2'600'000, 1'200'000, 400, 9001},
+                               {"Oregon, US survey feet", 0.01, 636'000, 848'000, 0, 9003},
+                               {"feet from nowhere", 0.00025, 0, 0, 0, 9002}};
 
 /// Points of a place at the ends of what 32 bits hold and near its middle, with every field in use.
 io::testing::LasFile scan_of(const Coordinates& place, uint8_t format) {
@@ -127,7 +127,8 @@ io::testing::LasFile scan_of(const Coordinates& place, uint8_t format) {
     for (const uint16_t number : {1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, int{place.unit}})
         io::testing::append(keys, number);
     las.add_vlr("LASF_Projection", 34735, keys);
-    las.add_vlr("LASF_Spec", 4, io::testing::extra_descriptor(9, "deviation") + io::testing::extra_descriptor(4, "pulse"));
+    las.add_vlr("LASF_Spec", 4,
+                io::testing::extra_descriptor(9, "deviation") + io::testing::extra_descriptor(4, "pulse"));
     for (int32_t i = 0; i < 500; ++i) {
         const int32_t x = i * 7919 % 100'003, y = i * 104'729 % 99'991, z = -i * 13;
         std::string record =

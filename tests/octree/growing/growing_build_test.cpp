@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/tree/attributes.h"
 #include "octree/cache/cache.h"
+#include "octree/tree/attributes.h"
 #include "octree/tree/footprint.h"
 #include "tests/octree/test_sources.h"
 
@@ -70,7 +70,8 @@ GrowingOptions options_for(const std::filesystem::path& output, NormalsMode norm
 std::vector<std::shared_ptr<const NodeSource>> all_sources(GrowingBuild& build) {
     std::vector<std::shared_ptr<const NodeSource>> sources = {build.state().source};
     build.begin([&] {
-        if (auto source = build.state().source; source != sources.back()) sources.push_back(std::move(source));
+        if (auto source = build.state().source; source != sources.back())
+            sources.push_back(std::move(source));
     });
     build.wait();
     return sources;

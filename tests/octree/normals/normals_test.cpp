@@ -203,7 +203,8 @@ TEST(Normals, CoordinatesThatAreNoNumbersAreRefused) {
         Cloud cloud = plane(100);
         const MemoryChunks chunks(cloud, 1);
         cloud.points[50].y = bad;
-        const auto found = estimate_normals(chunks, {}, [](size_t, ChunkNormals&&) { return Result<void>(); });
+        const auto found =
+            estimate_normals(chunks, {}, [](size_t, ChunkNormals&&) { return Result<void>(); });
         ASSERT_FALSE(found);
         EXPECT_NE(found.error().line().find("not a finite number"), std::string::npos);
     }

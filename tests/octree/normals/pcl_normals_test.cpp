@@ -60,11 +60,14 @@ TEST(PclNormals, PlanesAreThePrincipalAxesOfTheirPoints) {
             }
             const auto [least, middle, widest] = plane.variances;
             EXPECT_NEAR(glm::length(plane.normal), 1, 1e-12);
-            EXPECT_LT(glm::length(covariance * plane.normal - least * plane.normal), 1e-5 * widest) << thickness;
+            EXPECT_LT(glm::length(covariance * plane.normal - least * plane.normal), 1e-5 * widest)
+                << thickness;
             EXPECT_LE(least, middle);
             EXPECT_LE(middle, widest);
-            EXPECT_NEAR(least + middle + widest, covariance[0][0] + covariance[1][1] + covariance[2][2], 1e-5 * widest);
-            EXPECT_NEAR(least * middle * widest, glm::determinant(covariance), 1e-5 * widest * widest * widest);
+            EXPECT_NEAR(least + middle + widest, covariance[0][0] + covariance[1][1] + covariance[2][2],
+                        1e-5 * widest);
+            EXPECT_NEAR(least * middle * widest, glm::determinant(covariance),
+                        1e-5 * widest * widest * widest);
         }
     }
 }

@@ -3,8 +3,8 @@
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "octree/stream/cut.h"
 #include "octree/stream/residency.h"
 #include "tests/octree/plane_source.h"

@@ -239,10 +239,11 @@ TEST(Residency, DropsLoadsNotStartedThatNobodyWantsAnyMore) {
 TEST(Residency, WhateverALoadOrItsPreparationThrowsIsAnErrorOfItsNodeAlone) {
     PlaneSource source(2, kPoints, 10.0);  // a root and its four children
     source.throw_at(2);
-    Residency residency(source, {.memory = 100 * kNode, .threads = 2, .prepare = [](uint32_t node, NodeData&& data) {
-                                     if (node == 3) throw node;  // no std::exception
-                                     return std::move(data);
-                                 }});
+    Residency residency(source,
+                        {.memory = 100 * kNode, .threads = 2, .prepare = [](uint32_t node, NodeData&& data) {
+                             if (node == 3) throw node;  // no std::exception
+                             return std::move(data);
+                         }});
     const Cut cut = full_cut(source);
     want(residency, cut);
     EXPECT_TRUE(residency.wait());

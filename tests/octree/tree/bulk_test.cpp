@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {
@@ -54,7 +54,8 @@ TEST(Bulk, IsEverythingWhereNothingStraysOrTooManyDo) {
 TEST(Bulk, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
     const auto [low, high] = bulk_with_strays(9'999, 0);
     EXPECT_LT(high.x - low.x, 9);
-    const auto far = bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as everything
+    const auto far =
+        bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as everything
     EXPECT_GT(far[1].x - far[0].x, 1e6);
 }
 

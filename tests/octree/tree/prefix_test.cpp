@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {

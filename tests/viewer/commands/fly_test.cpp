@@ -40,8 +40,9 @@ TEST(Fly, WaitingGivesTheSamePicturesOnEveryRunAndAReport) {
 
     std::filesystem::create_directory(folder.path() / "other");
     write(folder / "other/frame_00120.png", "of another flight");
-    const Outcome mixed = test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48" +
-                                        " --frames-dir " + (folder / "other") + " -o " + (folder / "c.json"));
+    const Outcome mixed =
+        test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48" +
+                      " --frames-dir " + (folder / "other") + " -o " + (folder / "c.json"));
     EXPECT_EQ(mixed.code, 1) << mixed.output;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "other/frame_00001.png")) << "two flights are mixed";
 
@@ -63,9 +64,9 @@ TEST(Fly, NamesOfAnyBytesAreReported) {
     const std::string cache = folder / "\xff.luc";
     std::filesystem::rename(make_cornell(folder), cache);
     write(folder / "path.json", kPath);
-    const Outcome flown =
-        test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48 --engine direct" +
-                      " -o " + (folder / "report.json") + " --html " + (folder / "report.html"));
+    const Outcome flown = test::lucarne("fly " + cache + " --path " + (folder / "path.json") +
+                                        " --wait --size 64x48 --engine direct" + " -o " +
+                                        (folder / "report.json") + " --html " + (folder / "report.html"));
     EXPECT_EQ(flown.code, 0) << flown.output;
     EXPECT_THAT(bytes_of(folder / "report.json"), HasSubstr("\xef\xbf\xbd.luc"));
     const Outcome rendered = test::lucarne("render " + cache + " --size 64x48 --engine direct -o " +

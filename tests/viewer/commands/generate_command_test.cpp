@@ -84,7 +84,7 @@ TEST_F(GenerateCommand, AnUnknownSceneIsAnsweredWithThoseThereAre) {
 
 TEST_F(GenerateCommand, BadArgumentsLeaveNothingBehind) {
     for (const std::string bad : {"--points 5Q", "--points -3", "--points 0", "--noise -1", "--noise nan",
-                                   "--stations 2000", "--stations x", "--even --stations 2", "--seed x"}) {
+                                  "--stations 2000", "--stations x", "--even --stations 2", "--seed x"}) {
         const auto outcome = lucarne("generate cornell -o " + path("a.las") + " " + bad);
         EXPECT_EQ(outcome.code, 2) << bad << ": " << outcome.output;
         EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;

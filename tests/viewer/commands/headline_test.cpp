@@ -76,8 +76,8 @@ TEST_F(Headline, UnderCapsOfATenthOfTheCacheThreeBouncesKeepTheirEnergyAndMemory
     const uint64_t peak = capped["resident_memory"]["max"], base = tiny["resident_memory"]["max"];
     std::printf("resident: %.1f MiB, of which %.1f MiB for a tiny cloud\n",
                 static_cast<double>(peak) / 1048576, static_cast<double>(base) / 1048576);
-    // The caps are of what is asked for (above); what malloc holds back of it between threads comes on top, and
-    // depends on how they are scheduled: 1.4 MiB on a crowded machine.
+    // The caps are of what is asked for (above); what malloc holds back of it between threads comes on top,
+    // and depends on how they are scheduled: 1.4 MiB on a crowded machine.
     EXPECT_LE(peak, base + 2 * kCap + kCap / 4);
     uint64_t early = 0, late = 0;
     const size_t frames = capped["each_frame"].size();

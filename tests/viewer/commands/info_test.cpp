@@ -12,7 +12,8 @@ namespace {
 TEST(InfoCommand, ListsTheScansAndStationsOfAnE57File) {
     const TemporaryFolder folder;
     const std::string json_file = folder / "info.json";
-    const auto outcome = lucarne("info " LUCARNE_SOURCE_DIR "/tests/io/formats/e57/posed.e57 --json " + json_file);
+    const auto outcome =
+        lucarne("info " LUCARNE_SOURCE_DIR "/tests/io/formats/e57/posed.e57 --json " + json_file);
     ASSERT_EQ(outcome.code, 0) << outcome.output;
     EXPECT_THAT(outcome.output, testing::HasSubstr("E57 1.0, 3 scans, 0 images"));
     std::ifstream in(json_file);
@@ -27,7 +28,9 @@ TEST(InfoCommand, ListsTheScansAndStationsOfAnE57File) {
 
 TEST(InfoCommand, WritesNoControlCharacterOfAFileOrItsNameToTheTerminal) {
     const TemporaryFolder folder;
-    const std::string hostile = "\x1b]0;title\x07 \xc2\x9b" "2J \xff";
+    const std::string hostile =
+        "\x1b]0;title\x07 \xc2\x9b"
+        "2J \xff";
     const auto is_clean = [](const std::string& output) {
         for (size_t i = 0; i < output.size(); ++i) {
             const auto byte = static_cast<unsigned char>(output[i]);
@@ -38,8 +41,10 @@ TEST(InfoCommand, WritesNoControlCharacterOfAFileOrItsNameToTheTerminal) {
     };
     const std::string ply = folder / (hostile + ".ply"), cut = folder / (hostile + "cut.ply"),
                       xyz = folder / (hostile + ".xyz");
-    const std::string head = "ply\nformat ascii 1.0\ncomment " + hostile + "\nelement vertex 2\nproperty float x\n"
-                             "property float y\nproperty float z\nproperty float " + hostile + "q\nend_header\n";
+    const std::string head = "ply\nformat ascii 1.0\ncomment " + hostile +
+                             "\nelement vertex 2\nproperty float x\n"
+                             "property float y\nproperty float z\nproperty float " +
+                             hostile + "q\nend_header\n";
     std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                           "property float z\nproperty float \x1bq\nend_header\n1 2 3 4\n";
     std::ofstream(cut) << head << "1 2 3";
@@ -79,9 +84,10 @@ TEST(InfoCommand, SaysWhatAMeshHoldsWithoutSamplingIt) {
     const TemporaryFolder folder;
     const std::string obj = folder / "square.obj", ply = folder / "square.ply";
     std::ofstream(obj) << "v 0 0 0\nv 100 0 0\nv 100 100 5\nv 0 100 5\nv 999 0 0\nf 1 2 3 4\n";
-    std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-                          "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                          "0 0 0\n100 0 0\n100 100 5\n0 100 5\n4 0 1 2 3\n";
+    std::ofstream(ply)
+        << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+           "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n100 0 0\n100 100 5\n0 100 5\n4 0 1 2 3\n";
     for (const std::string& path : {obj, ply}) {
         const auto info = info_of(folder, path + " --mesh-points 1G");  // minutes, if they were made
         EXPECT_FALSE(info.contains("points"));
@@ -96,8 +102,8 @@ TEST(InfoCommand, SaysWhatAMeshHoldsWithoutSamplingIt) {
 
 TEST(InfoCommand, TellsTheBoxOfThePointsFromTheOneThatAHeaderStates) {
     const TemporaryFolder folder;
-    const std::string las = folder / "cornell.las", cache = folder / "cornell.luc", copc = folder / "cornell.copc.laz",
-                      laz = folder / "cornell.laz";
+    const std::string las = folder / "cornell.las", cache = folder / "cornell.luc",
+                      copc = folder / "cornell.copc.laz", laz = folder / "cornell.laz";
     ASSERT_EQ(lucarne("generate cornell --points 2k -o " + las).code, 0);
     ASSERT_EQ(lucarne("convert " + las + " -o " + cache).code, 0);
     ASSERT_EQ(lucarne("export " + cache + " -o " + copc).code, 0);

@@ -355,14 +355,18 @@ TEST_F(RenderCommand, PicturesOfMorePixelsThanOneRowOfGroupsAreWhole) {
 
 TEST_F(RenderCommand, ShaderOfAFolderThatDoesNotCompileIsNamed) {
     std::filesystem::create_directories(at("shaders/gi/lighting"));
-    std::ofstream(at("shaders/gi/lighting/light.comp")) << "layout(local_size_x = 8) in;\nvoid main() { none(); }\n";
-    const Outcome ran = test::shell("LUCARNE_SHADERS=" + at("shaders") + " " LUCARNE_BINARY " render " + cache_ + " -o " +
-                                    at("shaders.exr") + kScene + " --size 64x48 --engine direct --overwrite");
+    std::ofstream(at("shaders/gi/lighting/light.comp"))
+        << "layout(local_size_x = 8) in;\nvoid main() { none(); }\n";
+    const Outcome ran =
+        test::shell("LUCARNE_SHADERS=" + at("shaders") + " " LUCARNE_BINARY " render " + cache_ + " -o " +
+                    at("shaders.exr") + kScene + " --size 64x48 --engine direct --overwrite");
     EXPECT_EQ(ran.code, 0) << ran.output;
-    EXPECT_NE(ran.output.find("shader gi/lighting/light.comp: gi/lighting/light.comp:2: error"), std::string::npos)
+    EXPECT_NE(ran.output.find("shader gi/lighting/light.comp: gi/lighting/light.comp:2: error"),
+              std::string::npos)
         << ran.output;
     ASSERT_EQ(render("built-in.exr", "--engine direct").code, 0);
-    EXPECT_EQ(bytes_of(at("shaders.exr")), bytes_of(at("built-in.exr"))) << "the program's own shader is used instead";
+    EXPECT_EQ(bytes_of(at("shaders.exr")), bytes_of(at("built-in.exr")))
+        << "the program's own shader is used instead";
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ TEST_F(Worker, MakesThePictureOfTheNewestRequest) {
 }
 
 TEST_F(Worker, ADeviceThatThrowsCountsAsOneThatCannotBeMade) {
-    const WorkerDevice throwing{[]() -> Result<std::unique_ptr<gi::Device>> { throw std::bad_alloc(); }, [] {}};
+    const WorkerDevice throwing{[]() -> Result<std::unique_ptr<gi::Device>> { throw std::bad_alloc(); },
+                                [] {}};
     const auto never = PictureWorker::start(throwing, source_, {}, [] {});
     ASSERT_FALSE(never);
     EXPECT_THAT(never.error().line(), testing::HasSubstr("graphics device: there is not enough memory"));

@@ -1,8 +1,9 @@
 #include "viewer/frame/quality.h"
-#include "gi/bounce_options.h"
-#include "gi/engines/vpl/options.h"
 
 #include <gtest/gtest.h>
+
+#include "gi/bounce_options.h"
+#include "gi/engines/vpl/options.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "viewer/frame/presets.h"
 #include "gi/engines/vpl/options.h"
+#include "viewer/frame/presets.h"
 
 namespace lucarne::viewer {
 namespace {

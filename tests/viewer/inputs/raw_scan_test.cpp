@@ -4,9 +4,9 @@
 
 #include "gi/device/gl/device.h"
 #include "tests/viewer/program.h"
+#include "viewer/frame/pipeline.h"
 #include "viewer/inputs/input.h"
 #include "viewer/inputs/kept_cache.h"
-#include "viewer/frame/pipeline.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -134,8 +134,10 @@ TEST_F(RawScan, IsReadAsItsColumnsAndUnitAreSaid) {
     ASSERT_EQ(render("-o " + picture_).code, 0);
     EXPECT_THAT(lucarne("measure " + scan_ + ".luc " + text + at + " --columns y,x,z").output,
                 HasSubstr("10 20 5"));
-    const Outcome flown = lucarne("fly " + text + " --no-cache --columns x,y --path " LUCARNE_SOURCE_DIR
-                                  "/data/flythroughs/cornell.json -o " + (folder_ / "r.json"));
+    const Outcome flown =
+        lucarne("fly " + text +
+                " --no-cache --columns x,y --path " LUCARNE_SOURCE_DIR "/data/flythroughs/cornell.json -o " +
+                (folder_ / "r.json"));
     EXPECT_NE(flown.code, 0);
     EXPECT_THAT(flown.output, HasSubstr("columns"));
 }

@@ -9,12 +9,12 @@
 #include "io/core/random.h"
 #include "tests/viewer/measure/measured_scan.h"
 #include "tests/viewer/program.h"
-#include "viewer/overlay/axis_marks.h"
 #include "viewer/measure/file.h"
 #include "viewer/measure/model.h"
-#include "viewer/picking/nearest.h"
 #include "viewer/measure/profile_raster.h"
 #include "viewer/measure/section.h"
+#include "viewer/overlay/axis_marks.h"
+#include "viewer/picking/nearest.h"
 
 namespace lucarne::viewer {
 namespace {

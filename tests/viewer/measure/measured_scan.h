@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "octree/convert/build.h"
 #include "octree/cache/cache.h"
+#include "octree/convert/build.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::test {

@@ -110,7 +110,8 @@ TEST(ClipHandles, ABoxTurnsWithItsCornerToWhereTheCursorIs) {
     gi::Clip clip;
     clip.boxes = {box};
     const dvec3 corner = handle_place(clip, {false, 0, ClipHandle::kCorner}).position;
-    EXPECT_NEAR(glm::distance(corner, dvec3(10, 20 + std::sqrt(2.0), 4)), 0, 1e-12) << "the handle went along";
+    EXPECT_NEAR(glm::distance(corner, dvec3(10, 20 + std::sqrt(2.0), 4)), 0, 1e-12)
+        << "the handle went along";
     EXPECT_FALSE(turned_to(box, {0, 0, 4}, {1, 1, 0})) << "level with it";
     EXPECT_FALSE(turned_to(box, {0, 0, 50}, {0, 0, 1})) << "away from it";
 }

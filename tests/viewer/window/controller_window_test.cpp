@@ -17,8 +17,8 @@ TEST_F(ViewerWindow, ASixDofControllerMovesTheCameraAndMayBeUnpluggedInTheMiddle
     xdo("key ctrl+q");
     ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
 
-    // Replayed as fast as they are asked for: so many that the push lasts until there is a view to move, also on a
-    // crowded machine.
+    // Replayed as fast as they are asked for: so many that the push lasts until there is a view to move, also
+    // on a crowded machine.
     std::vector<io::test::Answer> answers(40'000, {io::test::axes_report(1, 120, 0, 0)});
     answers.push_back({{}, -19});
     std::string device;

@@ -37,7 +37,8 @@ class Newcomer : public ManagedWindow {
     void close_window(const std::string& answer = "") {
         xdo("key alt+F4");
         if (!answer.empty()) {
-            ASSERT_TRUE(eventually([&] { return log().find("asked whether to close") != std::string::npos; })) << log();
+            ASSERT_TRUE(eventually([&] { return log().find("asked whether to close") != std::string::npos; }))
+                << log();
             xdo("key " + answer);
         }
         ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << "it does not close";
@@ -107,8 +108,7 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
         if (nearer(now, *above, *front)) return true;
         xdo("key alt+Left sleep 2");
         return false;
-    }))
-        << "a flythrough's first key frame";
+    })) << "a flythrough's first key frame";
     xdo("key space");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *front, *above); }))
         << "playing ends at the last one";

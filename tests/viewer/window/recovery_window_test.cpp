@@ -15,7 +15,8 @@ TEST_F(RecoveringWindow, GoesOnWithTheSamePictureAfterDeviceAndWindowWereLost) {
     viewer_.reset();
     start_with(cache_, "LUCARNE_TEST_LOSE_CONTEXT=2 LUCARNE_TEST_LOSE_WINDOW=10");
     for (const char* loss : {"graphics device: its context was lost", "has lost the window"}) {
-        ASSERT_TRUE(eventually([&] { return log().find(loss) != std::string::npos; })) << loss << '\n' << log();
+        ASSERT_TRUE(eventually([&] { return log().find(loss) != std::string::npos; })) << loss << '\n'
+                                                                                       << log();
     }
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) < 0.5; })) << log();
     xdo("key ctrl+q");

@@ -5,13 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gi/scene/render_settings_file.h"
-#include "tests/viewer/window/measuring_window.h"
-#include "viewer/light/edits.h"
 #include "gi/bounce_options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/lighting/light_options.h"
+#include "gi/scene/render_settings_file.h"
+#include "tests/viewer/window/measuring_window.h"
+#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
-#include "viewer/frame/picture_worker.h"
 #include "viewer/bookmarks/bookmarks.h"
-#include "viewer/scans/file_browser.h"
 #include "viewer/camera/floor_finder.h"
+#include "viewer/frame/picture_worker.h"
+#include "viewer/scans/file_browser.h"
 #include "viewer/scans/native_dialog.h"
 #include "viewer/scans/scan_set.h"
 #include "viewer/window/settings.h"
@@ -61,8 +61,8 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
 
 TEST(Settings, ABrokenFileIsPutAsideAndReported) {
     for (const std::string text :
-         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})",
-          R"({"side_bar": {"width": 1e9}})", R"({"side_bar": {"open": "light"}})", R"({"side_bar": {"open": [1]}})",
+         {"{", "[]", R"({"text_size": "large"})", R"({"recent": [1]})", R"({"side_bar": {"width": 1e9}})",
+          R"({"side_bar": {"open": "light"}})", R"({"side_bar": {"open": [1]}})",
           R"({"controller": {"up": {"from": "left"}}})", R"({"window": {"width": 0}})"}) {
         const TemporaryFolder folder;
         write(folder / "settings.json", text);

@@ -41,7 +41,8 @@ class UnsavedWork : public testing::Test {
     }
     std::vector<std::string> named(SaveTo to = SaveTo::own_files) const {
         std::vector<std::string> all;
-        for (const Unsaved& one : unsaved(model_, to)) all.push_back(one.what + " -> " + one.file.filename().string());
+        for (const Unsaved& one : unsaved(model_, to))
+            all.push_back(one.what + " -> " + one.file.filename().string());
         return all;
     }
     void change_everything() {
@@ -123,7 +124,8 @@ TEST_F(UnsavedWork, CountsAMeasurementWhosePointsAreEnough) {
 }
 
 TEST_F(UnsavedWork, NeverReplacesFilesOfOthers) {
-    for (const char* name : {"measurements.json", "measurements-0001.json", "flythrough.json", "scene-0001.json"})
+    for (const char* name :
+         {"measurements.json", "measurements-0001.json", "flythrough.json", "scene-0001.json"})
         ASSERT_TRUE(write_file(folder_ / name, "mine", false));
     change_everything();
     EXPECT_THAT(named(), ElementsAre("1 measurement -> measurements-0002.json",
@@ -139,7 +141,8 @@ TEST_F(UnsavedWork, WithoutAQuestionGoesBesideItsOwnFiles) {
     ASSERT_TRUE(save_unsaved(model_));
     change_everything();
     ASSERT_TRUE(save_unsaved(model_, SaveTo::free_names));
-    EXPECT_EQ(load_measurements(folder_ / "measurements.json", std::nullopt)->size(), 1u) << "as it was saved";
+    EXPECT_EQ(load_measurements(folder_ / "measurements.json", std::nullopt)->size(), 1u)
+        << "as it was saved";
     EXPECT_EQ(load_measurements(folder_ / "measurements-0001.json", std::nullopt)->size(), 2u);
     EXPECT_EQ(load_path(folder_ / "flythrough-0001.json")->keys.size(), 2u);
     EXPECT_EQ(gi::load_scene(folder_ / "scene-0001-0001.json")->lights.size(), 3u);
@@ -149,7 +152,8 @@ TEST_F(UnsavedWork, WithoutAQuestionGoesIntoNoFolderOfAnotherFile) {
     std::filesystem::create_directory(folder_ / "theirs");
     ASSERT_TRUE(save_scene_as(model_, folder_ / "theirs/lit.json"));
     add_light(model_, gi::LightKind::point);
-    EXPECT_THAT(named(), ElementsAre("the scene: lights, look or clips were changed -> lit.json")) << "as it asks";
+    EXPECT_THAT(named(), ElementsAre("the scene: lights, look or clips were changed -> lit.json"))
+        << "as it asks";
     ASSERT_TRUE(save_unsaved(model_, SaveTo::free_names));
     EXPECT_EQ(gi::load_scene(folder_ / "theirs/lit.json")->lights.size(), 1u);
     EXPECT_EQ(gi::load_scene(folder_ / "lit.json")->lights.size(), 2u);

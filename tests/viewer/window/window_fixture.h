@@ -16,8 +16,8 @@
 namespace lucarne::test {
 
 inline constexpr int kWidth = 480, kHeight = 360;  ///< of the window
-inline constexpr auto kPatience =
-    std::chrono::seconds(120);  ///< ends a test that hangs; nothing is measured by it
+/// Ends a test that hangs; nothing is measured by it.
+inline constexpr auto kPatience = std::chrono::seconds(120);
 
 inline bool installed(const std::string& program) {
     return shell("command -v " + program).code == 0;
@@ -143,7 +143,8 @@ class ViewerWindow : public testing::Test {
             if (times_saved() == before) return false;
             const auto saved = io::read_png(file);
             if (!saved || saved->width != kWidth * scale_ * resolution_ ||
-                saved->height != kHeight * scale_ * resolution_ || !wanted(*saved)) return false;
+                saved->height != kHeight * scale_ * resolution_ || !wanted(*saved))
+                return false;
             result = *saved;
             return true;
         });
@@ -171,7 +172,7 @@ class ViewerWindow : public testing::Test {
     TemporaryFolder folder_;
     std::optional<Background> server_, viewer_;
     std::string display_, cache_;
-    uint32_t scale_ = 1;      ///< pixels of the screen along a side of what a desktop counts as one
+    uint32_t scale_ = 1;     ///< pixels of the screen along a side of what a desktop counts as one
     double resolution_ = 1;  ///< of the window's sides that pictures are made at (--scale)
 };
 

@@ -1,9 +1,8 @@
 // The viewer in a real window, see window_fixture.h.
-#include "tests/viewer/window/window_fixture.h"
-
 #include <fstream>
 
 #include "tests/viewer/window/measuring_window.h"
+#include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
 namespace {
@@ -121,9 +120,9 @@ TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
     cache_ = folder_ / "cornell.las";
     start();
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(cache_ + ".luc"); })) << "no cache is kept";
-    EXPECT_TRUE(
-        picture([&](const io::Image8& now) { return finished() && difference(now, *of_cache) < 0.05; }))
-        << "the picture stays another than the cache's";
+    EXPECT_TRUE(picture([&](const io::Image8& now) {
+        return finished() && difference(now, *of_cache) < 0.05;
+    })) << "the picture stays another than the cache's";
 }
 
 TEST_F(MeasuringWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnDigits) {
@@ -193,8 +192,7 @@ TEST_F(ViewerWindow, AFlythroughIsMadePlayedSavedAndRenderedByKeys) {
         if (nearer(now, *first, *turned)) return true;
         xdo("key alt+Left sleep 2");
         return false;
-    }))
-        << "the key frame before is not where it was set";
+    })) << "the key frame before is not where it was set";
     xdo("key space");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *turned, *first); }))
         << "playing does not end at the last key frame";

@@ -3,8 +3,8 @@
 
 #include <imgui.h>
 
-#include "viewer/window/panels/panels.h"
 #include "viewer/scans/scan_set.h"
+#include "viewer/window/panels/panels.h"
 #include "viewer/window/unsaved.h"
 
 namespace lucarne::viewer {
@@ -25,7 +25,8 @@ void list_running(const ViewModel& model) {
         ImGui::Text("%s is not finished, and would be given up.", model.show.rendering.file.c_str());
     if (model.shell.scans && model.shell.scans->converting())
         ImGui::TextUnformatted(
-            "A scan is being converted. What is finished of it is kept: the conversion goes on from there when the scan "
+            "A scan is being converted. What is finished of it is kept: the conversion goes on from there "
+            "when the scan "
             "is opened again.");
 }
 

@@ -32,7 +32,8 @@ void draw_axis(io::SixDofMapping& mapping, size_t axis) {
         mapping.from[axis] = static_cast<uint8_t>(from);
     ImGui::SameLine();
     auto scale = static_cast<float>(mapping.scale[axis]);
-    if (ImGui::SliderFloat(kAxes[axis], &scale, -3, 3, "%.2f times", ImGuiSliderFlags_AlwaysClamp)) mapping.scale[axis] = scale;
+    if (ImGui::SliderFloat(kAxes[axis], &scale, -3, 3, "%.2f times", ImGuiSliderFlags_AlwaysClamp))
+        mapping.scale[axis] = scale;
     ImGui::PopID();
 }
 
@@ -53,7 +54,8 @@ void draw_controller_panel(ViewModel& model) {
     if (ImGui::SliderFloat("sensitivity", &sensitivity, 0.05f, 10, "%.2f",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         mapping.sensitivity = sensitivity;
-    if (ImGui::SliderFloat("dead zone", &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp)) mapping.dead_zone = dead / 100;
+    if (ImGui::SliderFloat("dead zone", &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+        mapping.dead_zone = dead / 100;
     ImGui::TextUnformatted("What moves the view, by which axis of the device:");
     for (size_t axis = 0; axis < kAxes.size(); ++axis) draw_axis(mapping, axis);
     if (ImGui::Button("as it came")) mapping = {};

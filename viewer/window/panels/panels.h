@@ -15,14 +15,14 @@ void draw_closing_question(ViewModel& model);  ///< where work is unsaved or sti
 /// The sections that are open. Before the first view there are only those that need none.
 void draw_side_bar(ViewModel& model, bool has_view);
 // Each draws a section of it and writes the user's changes into the model.
-void draw_scans_panel(ViewModel& model);       ///< the tree of open scans, and how far loads and conversions are
-void draw_rendering_panel(ViewModel& model);   ///< engine, preset, bounces, exposure
-void draw_look_panel(ViewModel& model);        ///< colours, sizes, shading, classes, clips
-void draw_light_panel(ViewModel& model);       ///< lamps, suns, sky, classes that shine
-void draw_sun(ViewModel& model);               ///< inside it: where the selected sun stands
+void draw_scans_panel(ViewModel& model);  ///< the tree of open scans, and how far loads and conversions are
+void draw_rendering_panel(ViewModel& model);  ///< engine, preset, bounces, exposure
+void draw_look_panel(ViewModel& model);       ///< colours, sizes, shading, classes, clips
+void draw_light_panel(ViewModel& model);      ///< lamps, suns, sky, classes that shine
+void draw_sun(ViewModel& model);              ///< inside it: where the selected sun stands
 void draw_sky(ViewModel& model);
 void draw_emitters(ViewModel& model);
-void draw_measure_panel(ViewModel& model);     ///< tools, measurements, points
+void draw_measure_panel(ViewModel& model);  ///< tools, measurements, points
 void draw_bookmarks_panel(ViewModel& model);
 void draw_flythrough_panel(ViewModel& model);  ///< key frames, preview, rendering
 void draw_picture_panel(ViewModel& model);     ///< a picture of any size
@@ -33,8 +33,8 @@ bool fold(const char* label);
 
 void draw_measurements(ViewModel& model);      ///< over the picture
 void draw_flythrough(const ViewModel& model);  ///< the path over it
-void draw_help(ViewModel& model);          ///< every action and gesture
-void draw_overlay(const ViewModel& model);    ///< legend, axes, scale bar
+void draw_help(ViewModel& model);              ///< every action and gesture
+void draw_overlay(const ViewModel& model);     ///< legend, axes, scale bar
 /// Draws clip boxes and their handles, and lets the mouse drag those; true while it does.
 bool take_clip_handles(ViewModel& model);
 /// The same of lights' handles and of the border of a comparison.

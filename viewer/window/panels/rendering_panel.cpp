@@ -78,7 +78,8 @@ void tell_cost(const char* text) {
 
 /// A slider over the powers of two within the option's slider; true where the user moved it.
 bool choose_power(const char* label, const gi::SliderRange& slider, int64_t& value) {
-    const int least = static_cast<int>(std::log2(slider.least)), most = static_cast<int>(std::log2(slider.most));
+    const int least = static_cast<int>(std::log2(slider.least)),
+              most = static_cast<int>(std::log2(slider.most));
     int power = least;
     while (power < most && (int64_t{1} << power) < value) ++power;
     if (!ImGui::SliderInt(label, &power, least, most, std::to_string(int64_t{1} << power).c_str(),
@@ -93,7 +94,8 @@ bool edit_integer(const gi::OptionInfo& option, const char* label, gi::OptionVal
     if (option.slider.logarithmic) return choose_power(label, option.slider, whole);
     int now = static_cast<int>(whole);
     const bool unset = !option.unset.empty() && now < option.least;
-    if (!ImGui::SliderInt(label, &now, static_cast<int>(option.slider.least), static_cast<int>(option.slider.most),
+    if (!ImGui::SliderInt(label, &now, static_cast<int>(option.slider.least),
+                          static_cast<int>(option.slider.most),
                           unset ? std::string(option.unset).c_str() : "%d", ImGuiSliderFlags_AlwaysClamp))
         return false;
     whole = now;
@@ -103,8 +105,10 @@ bool edit_integer(const gi::OptionInfo& option, const char* label, gi::OptionVal
 bool edit_number(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
     auto now = static_cast<float>(std::get<double>(value));
     const auto least = static_cast<float>(option.slider.least), most = static_cast<float>(option.slider.most);
-    const ImGuiSliderFlags scale = option.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-    if (!ImGui::SliderFloat(label, &now, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp | scale)) return false;
+    const ImGuiSliderFlags scale =
+        option.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+    if (!ImGui::SliderFloat(label, &now, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp | scale))
+        return false;
     value = static_cast<double>(now);
     return true;
 }
@@ -115,7 +119,8 @@ bool edit_choice(const gi::OptionInfo& option, const char* label, gi::OptionValu
     if (!ImGui::BeginCombo(label, shown.c_str())) return false;
     bool changed = false;
     for (size_t i = 0; i < option.choices.size(); ++i) {
-        if (!ImGui::Selectable(std::string(option.choices[i]).c_str(), chosen == static_cast<int64_t>(i))) continue;
+        if (!ImGui::Selectable(std::string(option.choices[i]).c_str(), chosen == static_cast<int64_t>(i)))
+            continue;
         chosen = static_cast<int64_t>(i);
         changed = true;
     }
@@ -125,7 +130,8 @@ bool edit_choice(const gi::OptionInfo& option, const char* label, gi::OptionValu
 
 bool edit_colour(const char* label, gi::OptionValue& value) {
     auto& colour = std::get<glm::dvec3>(value);
-    float shown[3] = {static_cast<float>(colour.x), static_cast<float>(colour.y), static_cast<float>(colour.z)};
+    float shown[3] = {static_cast<float>(colour.x), static_cast<float>(colour.y),
+                      static_cast<float>(colour.z)};
     if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return false;
     colour = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
     return true;
@@ -135,11 +141,16 @@ bool edit_colour(const char* label, gi::OptionValue& value) {
 bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
     const std::string label(option.label);
     switch (option.kind) {
-        case gi::OptionKind::flag: return ImGui::Checkbox(label.c_str(), &std::get<bool>(value));
-        case gi::OptionKind::integer: return edit_integer(option, label.c_str(), value);
-        case gi::OptionKind::number: return edit_number(option, label.c_str(), value);
-        case gi::OptionKind::choice: return edit_choice(option, label.c_str(), value);
-        case gi::OptionKind::colour: return edit_colour(label.c_str(), value);
+        case gi::OptionKind::flag:
+            return ImGui::Checkbox(label.c_str(), &std::get<bool>(value));
+        case gi::OptionKind::integer:
+            return edit_integer(option, label.c_str(), value);
+        case gi::OptionKind::number:
+            return edit_number(option, label.c_str(), value);
+        case gi::OptionKind::choice:
+            return edit_choice(option, label.c_str(), value);
+        case gi::OptionKind::colour:
+            return edit_colour(label.c_str(), value);
     }
     return false;
 }

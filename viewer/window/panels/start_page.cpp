@@ -37,7 +37,8 @@ void draw_start_page(ViewModel& model) {
         if (ImGui::Button("Open scans...")) model.shell.want_file = true;
         ImGui::SameLine();
         ImGui::TextDisabled("Ctrl+O");
-        ImGui::TextWrapped("Lucarne's own caches (.luc), LAS, LAZ, COPC, E57, PLY, PCD, PTX, PTS, OBJ and text.");
+        ImGui::TextWrapped(
+            "Lucarne's own caches (.luc), LAS, LAZ, COPC, E57, PLY, PCD, PTX, PTS, OBJ and text.");
         recent_files(model.shell);
         ImGui::Spacing();
         ImGui::Separator();

@@ -10,8 +10,10 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
     Defines defines;
     if (glossy) defines.emplace_back("LUCARNE_GLOSSY", "1");
     if (scratch.best_candidate) defines.emplace_back("LUCARNE_BEST_CANDIDATE", "1");
-    LUCARNE_ASSIGN(const Program* race, device.program("gi/engines/vpl/redistribution/redistribute.comp", defines));
-    LUCARNE_ASSIGN(const Program* combine, device.program("gi/engines/vpl/redistribution/combine.comp", defines));
+    LUCARNE_ASSIGN(const Program* race,
+                   device.program("gi/engines/vpl/redistribution/redistribute.comp", defines));
+    LUCARNE_ASSIGN(const Program* combine,
+                   device.program("gi/engines/vpl/redistribution/combine.comp", defines));
     const uint32_t count = maps.layout.maps;
     LUCARNE_TRY(device.reserve(to.lights, count * sizeof(VplLight), "virtual point lights"));
     LUCARNE_TRY(device.reserve(scratch.odds, count * sizeof(float), "virtual point lights"));

@@ -1,16 +1,16 @@
 #pragma once
 
 #include "gi/device/gl/device.h"
-#include "gi/surfels/surfel_pool.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/surfels/surfel_pool.h"
 
 namespace lucarne::gi::vpl {
 
 /// What redistribution needs besides the VPLs.
 struct Redistribution {
     Buffer odds;
-    bool best_candidate = false;     ///< the paper's choice: biased, for comparison
+    bool best_candidate = false;      ///< the paper's choice: biased, for comparison
     float footprint_variance = 6.0f;  ///< lobes.h
 };
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "gi/shared/surfel.h"
 #include "gi/engines/vpl/bindings.h"
+#include "gi/shared/surfel.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::vpl {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "gi/device/gl/device.h"
-#include "gi/surfels/surfel_pool.h"
 #include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/surfels/surfel_pool.h"
 
 namespace lucarne::gi::vpl {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "gi/engine.h"
-#include "gi/lighting/light_view.h"
 #include "gi/engines/vpl/seeding/emitters.h"
 #include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/lighting/light_view.h"
 
 namespace lucarne::gi::vpl {
 

@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 
-#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/raster/uniforms.h"
 #include "gi/shared/luminance.h"
 
 namespace lucarne::gi::vpl {

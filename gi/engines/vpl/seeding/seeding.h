@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 
 #include "gi/device/gl/device.h"
-#include "gi/raster/gbuffer.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/raster/gbuffer.h"
 
 namespace lucarne::gi::vpl {
 

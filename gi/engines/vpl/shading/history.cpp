@@ -2,14 +2,14 @@
 
 #include <utility>
 
-#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
+#include "gi/raster/uniforms.h"
 
 namespace lucarne::gi::vpl {
 namespace {
 
-// Frames that the average remembers: what differs between them is which panes a point is lit by and from where, and,
-// where cuts changed, the VPLs. Old light has to go within a blink of the eye.
+// Frames that the average remembers: what differs between them is which panes a point is lit by and from
+// where, and, where cuts changed, the VPLs. Old light has to go within a blink of the eye.
 constexpr float kMostFrames = 8;
 
 }  // namespace

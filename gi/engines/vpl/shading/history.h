@@ -10,8 +10,8 @@ namespace lucarne::gi::vpl {
 /// same surface (history.glsl). It holds while lights, materials and settings do.
 class History {
  public:
-    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no device
-    /// memory.
+    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no
+    /// device memory.
     Result<void> begin(const Frame& frame);
     void bind(const Frame& frame, const Program& merge) const;
     /// The frame was merged: it is the last one now.

@@ -1,9 +1,9 @@
 #include "gi/engines/vpl/shading/shading.h"
 
-#include "gi/raster/uniforms.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/raster/uniforms.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -43,7 +43,8 @@ Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
 
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
                          Panes& target) {
-    LUCARNE_ASSIGN(const Program* shade, frame.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
+    LUCARNE_ASSIGN(const Program* shade,
+                   frame.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
     LUCARNE_ASSIGN(const Program* shade_lonely,
                    frame.device.program("gi/engines/vpl/shading/shade_lonely.comp", defines(target)));
     materials.bind(kBindMaterials);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "gi/engine.h"
-#include "gi/engines/vpl/shading/history.h"
 #include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/engines/vpl/shading/history.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 
 namespace lucarne::gi::vpl {

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "gi/shared/surfel.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/shared/surfel.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -58,7 +58,8 @@ Defines source_defines(const ShadowMaps& maps) {
 
 /// The cores that were drawn, and of the fringes what closes holes between them: the atlas (fringe.glsl).
 Result<void> close(Device& device, ShadowMaps& maps) {
-    LUCARNE_ASSIGN(const Program* close, device.program("gi/engines/vpl/shadow_maps/close.comp", source_defines(maps)));
+    LUCARNE_ASSIGN(const Program* close,
+                   device.program("gi/engines/vpl/shadow_maps/close.comp", source_defines(maps)));
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
     maps.fringe.bind(kBindFringe);
     if (maps.id_bits) {
@@ -111,7 +112,8 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/engines/vpl/shadow_maps/enter.comp"));
     const Defines defines = source_defines(target);
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/engines/vpl/shadow_maps/splat.comp", defines));
-    LUCARNE_ASSIGN(const Program* draw_large, device.program("gi/engines/vpl/shadow_maps/splat_large.comp", defines));
+    LUCARNE_ASSIGN(const Program* draw_large,
+                   device.program("gi/engines/vpl/shadow_maps/splat_large.comp", defines));
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
     LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
     const uint32_t places = queue_places(device);

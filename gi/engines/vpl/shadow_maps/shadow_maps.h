@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "gi/device/gl/device.h"
-#include "gi/surfels/surfel_pool.h"
 #include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/surfels/surfel_pool.h"
 
 namespace lucarne::gi::vpl {
 

@@ -18,10 +18,12 @@ void code_rest(Coding& coding, Records records, size_t record_bytes) {
     }
 }
 
-std::vector<std::byte> encode_point_wise(const Compression& compression, Records records, size_t record_bytes) {
+std::vector<std::byte> encode_point_wise(const Compression& compression, Records records,
+                                         size_t record_bytes) {
     PointWise<Encoder> points(compression, Encoder(), records.data());
     code_rest(points, records, record_bytes);
-    std::vector<std::byte> chunk(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
+    std::vector<std::byte> chunk(records.begin(),
+                                 records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
     const auto code = points.coder().finish();
     chunk.insert(chunk.end(), code.begin(), code.end());
     return chunk;
@@ -29,7 +31,8 @@ std::vector<std::byte> encode_point_wise(const Compression& compression, Records
 
 std::vector<std::byte> encode_layered(const Compression& compression, Records records, size_t record_bytes) {
     const auto count = static_cast<uint32_t>(records.size() / record_bytes);
-    std::vector<std::byte> chunk(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
+    std::vector<std::byte> chunk(records.begin(),
+                                 records.begin() + static_cast<std::ptrdiff_t>(record_bytes));
     Layered<Encoder> layered(
         compression, std::vector<Layer<Encoder>>(Layered<Encoder>::layer_count(compression)), records.data());
     code_rest(layered, records, record_bytes);

@@ -78,7 +78,11 @@ Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::H
 class Walk {
  public:
     Walk(const ByteSource& file, const las::Header& header, const Compression& compression)
-        : file_(file), header_(header), compression_(compression), bounds_(header), name_(file.path().string()) {}
+        : file_(file),
+          header_(header),
+          compression_(compression),
+          bounds_(header),
+          name_(file.path().string()) {}
 
     Result<std::vector<ChunkPlace>> go(bool salvage) {
         if (compression_.chunk_points == kVariableChunks && !compression_.layered)
@@ -124,8 +128,8 @@ class Walk {
         }
     }
 
-    /// How many of so many bytes the chunk takes. Bytes that are none of a chunk decode to something, too: to places far
-    /// outside the scan, by which it is rejected.
+    /// How many of so many bytes the chunk takes. Bytes that are none of a chunk decode to something, too: to
+    /// places far outside the scan, by which it is rejected.
     Result<uint64_t> decode_all(const ChunkPlace& chunk, uint64_t most_bytes) const {
         LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, most_bytes));
         LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name_, compression_, chunk.points, bytes));

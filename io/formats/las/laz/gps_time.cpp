@@ -87,8 +87,8 @@ void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {
 uint32_t GpsTimeModel::steps_symbol(int32_t by, int32_t step) {
     // In single precision, as LASzip computes it, so that its bytes come out.
     const float steps = static_cast<float>(by) / static_cast<float>(step);
-    const float count = std::trunc(
-        std::clamp(steps + (steps < 0 ? -0.5f : 0.5f), -float{kMostBackward}, float{kMostSteps}));
+    const float count =
+        std::trunc(std::clamp(steps + (steps < 0 ? -0.5f : 0.5f), -float{kMostBackward}, float{kMostSteps}));
     return count < 0 ? kMostSteps + static_cast<uint32_t>(-count) : static_cast<uint32_t>(count);
 }
 

@@ -9,9 +9,9 @@
 
 namespace lucarne::io::laz {
 
-/// Models and last values of an item for each scanner channel. Two slips of LASzip's are part of version 3, and mended
-/// in 4: an item takes the models of channel 0 for every point whose channel is not another than the point's before, and
-/// coming back to a channel it goes on from the values of the models before.
+/// Models and last values of an item for each scanner channel. Two slips of LASzip's are part of version 3,
+/// and mended in 4: an item takes the models of channel 0 for every point whose channel is not another than
+/// the point's before, and coming back to a channel it goes on from the values of the models before.
 template <class Models, class Last>
 class Channels {
  public:
@@ -24,7 +24,8 @@ class Channels {
         Models models;
         Last last;
     };
-    /// The models for a point and the last values to go on from. `changed`: its channel is not that of the point before.
+    /// The models for a point and the last values to go on from. `changed`: its channel is not that of the
+    /// point before.
     std::pair<Models&, Last&> at(uint32_t channel, bool changed) {
         if (slips_ && !changed) channel = 0;
         Channel& before = *channels_[current_];

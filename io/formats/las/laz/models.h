@@ -43,8 +43,8 @@ class SymbolModel {
 
     uint32_t symbols_, total_ = 0, cycle_, until_update_ = 0, part_shift_ = 0;
     std::vector<uint16_t> begins_, counts_;
-    std::vector<uint16_t>
-        first_;  ///< the symbol at the start of each part of the range: where the search starts
+    /// The symbol at the start of each part of the range: where the search starts.
+    std::vector<uint16_t> first_;
 };
 
 /// The same for one bit.

@@ -76,8 +76,8 @@ void Point10Coder<Coder>::code_place(Coder& coder, const Point& next, uint32_t c
     const uint32_t number = last_.returns & 7, count = last_.returns >> 3 & 7, single = count == 1;
     const int32_t x_step = dx_.code(coder, x_steps_[context].get(), minus(next.x, last_.x), single);
     x_steps_[context].add(x_step);
-    const int32_t y_step = dy_.code(coder, y_steps_[context].get(), minus(next.y, last_.y),
-                                    single + even_up_to(dx_.k(), 20));
+    const int32_t y_step =
+        dy_.code(coder, y_steps_[context].get(), minus(next.y, last_.y), single + even_up_to(dx_.k(), 20));
     y_steps_[context].add(y_step);
     int32_t& height = heights_[count > number ? count - number : number - count];
     height = z_.code(coder, height, next.z, single + even_up_to((dx_.k() + dy_.k()) / 2, 18));
@@ -93,8 +93,8 @@ void Point10Coder<Coder>::code_changed(Coder& coder, const Point& next, uint32_t
             static_cast<uint8_t>(coder.symbol(classification_[last_.classification], next.classification));
     if (changed & kScanAngle) {
         const uint32_t off = static_cast<uint8_t>(next.scan_angle - last_.scan_angle);
-        last_.scan_angle = static_cast<uint8_t>(
-            last_.scan_angle + coder.symbol(scan_angle_[last_.returns >> 6 & 1], off));
+        last_.scan_angle =
+            static_cast<uint8_t>(last_.scan_angle + coder.symbol(scan_angle_[last_.returns >> 6 & 1], off));
     }
     if (changed & kUserData)
         last_.user_data = static_cast<uint8_t>(coder.symbol(user_data_[last_.user_data], next.user_data));

@@ -53,7 +53,8 @@ class PointWise {
             record += sizeof last_color_;
         }
         for (size_t i = 0; i < extra_.size(); ++i) {
-            const auto before = static_cast<uint32_t>(last_extra_[i]), next = static_cast<uint32_t>(record[i]);
+            const auto before = static_cast<uint32_t>(last_extra_[i]),
+                       next = static_cast<uint32_t>(record[i]);
             record[i] = last_extra_[i] =
                 static_cast<std::byte>(before + coder_.symbol(extra_[i], (next - before) & 255));
         }

@@ -56,7 +56,8 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
 }
 
 /// How many points of a damaged chunk can be trusted: where the file ends within one whose points follow each
-/// other, those before that; else none. A table behind the last point, where the header promises more, is none.
+/// other, those before that; else none. A table behind the last point, where the header promises more, is
+/// none.
 Result<uint64_t> sound_points(const Points& points, size_t index) {
     const ChunkPlace& place = points.chunks[index];
     if (points.compression.layered || !ends_with_file(points, index)) return 0u;
@@ -209,7 +210,7 @@ class Reader final : public PointReader {
     const Points& points_;
     const Schema& schema_;
     size_t side_by_side_;  ///< threads that may decode: one chunk is held for one, several for each of many
-    size_t next_ = 0;  ///< chunk
+    size_t next_ = 0;      ///< chunk
     OpenChunk large_;
     std::vector<std::byte> ready_;
     size_t taken_ = 0;

@@ -35,7 +35,7 @@ Compression usual_compression(const las::Header& header, uint32_t chunk_points) 
 las::Vlr compression_record(const Compression& compression) {
     las::Vlr record{std::string(kUser), kRecord, "LAZ compressed points", false, {}};
     std::vector<std::byte>& data = record.data;
-    put<uint16_t>(data, compression.layered    ? kLayeredChunked
+    put<uint16_t>(data, compression.layered   ? kLayeredChunked
                         : compression.chunked ? kPointWiseChunked
                                               : kPointWise);
     put<uint16_t>(data, 0);  // the arithmetic coder

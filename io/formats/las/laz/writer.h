@@ -6,8 +6,8 @@
 namespace lucarne::io::laz {
 
 inline constexpr uint32_t kUsualChunk = 50'000;  ///< points; LASzip's own
-/// How a file is compressed: point formats 0 to 3 point by point (item version 2, which LASzip 2 reads as well), 6 to 8
-/// in layers (item version 3).
+/// How a file is compressed: point formats 0 to 3 point by point (item version 2, which LASzip 2 reads as
+/// well), 6 to 8 in layers (item version 3).
 Compression usual_compression(const las::Header& header, uint32_t chunk_points = kUsualChunk);
 /// The record that says so.
 las::Vlr compression_record(const Compression& compression);

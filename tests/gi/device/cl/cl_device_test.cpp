@@ -95,8 +95,9 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
     }
     // And both are the surface: six faces of 4 m by 4 m, as the pool's own decoding has them.
     const auto decoded = (*scene)->pool.download(cut);
-    const double truth = std::accumulate(decoded.begin(), decoded.end(), 0.0,
-                                         [](double sum, const Surfel& surfel) { return sum + double(surfel.area); });
+    const double truth =
+        std::accumulate(decoded.begin(), decoded.end(), 0.0,
+                        [](double sum, const Surfel& surfel) { return sum + double(surfel.area); });
     EXPECT_NEAR(all, truth, 1e-4 * truth);
     EXPECT_NEAR(all, 96, 8);
 }
@@ -115,7 +116,9 @@ TEST_F(ClDeviceTest, BuffersGoThereAndBackUnchanged) {
 }
 
 TEST_F(ClDeviceTest, ErrorsOfKernelsNameFileAndLine) {
-    const auto broken = opencl->kernel("test.cl", "sum", {}, texts_with("#include \"gi/shared/flat_surfel.h\"\n\nkernel void sum() {\n  none();\n}\n"));
+    const auto broken = opencl->kernel(
+        "test.cl", "sum", {},
+        texts_with("#include \"gi/shared/flat_surfel.h\"\n\nkernel void sum() {\n  none();\n}\n"));
     ASSERT_FALSE(broken);
     EXPECT_THAT(broken.error().why, HasSubstr("test.cl:4:"));
     const auto missing = opencl->kernel("test.cl", "none", {}, texts_with(kSum));
@@ -142,14 +145,17 @@ TEST_F(ClDeviceTest, MemoryCountsUnderTheCapOfBoth) {
     EXPECT_EQ(device->memory_used(), before);
 }
 
-/// What OpenGL draws is the same before and after OpenCL has started in the same process: both use LLVM on processors.
+/// What OpenGL draws is the same before and after OpenCL has started in the same process: both use LLVM on
+/// processors.
 using OpenClBesideOpenGl = OnDevice;
 TEST_F(OpenClBesideOpenGl, ChangesNoPicture) {
     const SurfelCloud cloud(scenes::closed_box(4, 60, glm::vec3(.5f)));
     const CameraView camera = look({2, 1, 2}, {2, 4, 2}, 48, 48);
     LitOptions options;
     options.lights = {make_spot({2, 1, 2}, {2, 4, 2}, 0.6f, 10)};
-    const auto picture = [&] { return light_up(*device, **make_engine("direct"), cloud, camera, options).radiance; };
+    const auto picture = [&] {
+        return light_up(*device, **make_engine("direct"), cloud, camera, options).radiance;
+    };
     const auto before = picture();
     auto opened = ClDevice::open(*device);
     ASSERT_TRUE(opened) << opened.error().line();

@@ -138,9 +138,10 @@ TEST(ShaderSource, FileIsIncludedOnceAndBracketsAreDropped) {
 }
 
 TEST(ShaderSource, UniformsAreFoundByTheirDeclarations) {
-    EXPECT_EQ(declared_uniforms("uniform uint pixels;  // uniform uint no;\nuniform vec4 ramp[RAMP], other;\n"
-                                "layout(binding = 3) uniform usamplerBuffer texels;\nfloat uniformity; uniform CameraView\n"
-                                "    camera;\nvoid main() { nonuniform(x); }"),
+    EXPECT_EQ(declared_uniforms(
+                  "uniform uint pixels;  // uniform uint no;\nuniform vec4 ramp[RAMP], other;\n"
+                  "layout(binding = 3) uniform usamplerBuffer texels;\nfloat uniformity; uniform CameraView\n"
+                  "    camera;\nvoid main() { nonuniform(x); }"),
               (std::set<std::string, std::less<>>{"camera", "other", "pixels", "ramp", "texels"}));
 }
 

@@ -23,7 +23,8 @@ std::vector<std::string> switches_of(const std::string& text) {
     std::set<std::string> names;
     for (std::sregex_iterator line(text.begin(), text.end(), conditional), end; line != end; ++line) {
         const std::string words = line->str();
-        for (std::sregex_iterator word(words.begin(), words.end(), name); word != end; ++word) names.insert(word->str());
+        for (std::sregex_iterator word(words.begin(), words.end(), name); word != end; ++word)
+            names.insert(word->str());
     }
     return {names.begin(), names.end()};
 }

@@ -6,12 +6,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/lighting/light_options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "gi/bounce_options.h"
+#include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/light.h"
 #include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "gi/bounce_options.h"
-#include "gi/lighting/light_options.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

@@ -6,22 +6,21 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/compare/metrics.h"
-#include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/soft_light_scenes.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/lighting/light_options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/soft_light_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {
 
 using scenes::AnalyticScene;
 using SoftLights = OnDevice;
-
 
 /// A floor with a block that hovers over it, seen from above.
 AnalyticScene floor_and_block() {

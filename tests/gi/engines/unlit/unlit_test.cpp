@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "gi/bounce_options.h"
 #include "gi/registry.h"
 #include "gi/scene/clip.h"
 #include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "gi/bounce_options.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

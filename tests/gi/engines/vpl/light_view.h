@@ -7,11 +7,11 @@
 #include <glm/geometric.hpp>
 
 #include "gi/device/gl/device.h"
-#include "gi/raster/gbuffer.h"
-#include "gi/shared/surfel_code.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/raster/gbuffer.h"
+#include "gi/shared/surfel_code.h"
 #include "tests/gi/engines/surfel_cloud.h"
 
 namespace lucarne::gi::vpl::testing {

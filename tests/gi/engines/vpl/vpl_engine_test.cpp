@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/compare/metrics.h"
-#include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -228,9 +228,9 @@ TEST_F(VplEngineTest, surfelsWithoutNormalsGiveAFinitePicture) {
 }
 
 TEST_F(VplEngineTest, settingsItCannotKeepAreRefused) {
-    for (const auto& spoil :
-         {+[](EngineSettings& s) { s.set(vpl::kInterleave, 3); }, +[](EngineSettings& s) { s.set(vpl::kVpls, 0); },
-          +[](EngineSettings& s) { s.set(vpl::kAtlas, 16); }}) {
+    for (const auto& spoil : {+[](EngineSettings& s) { s.set(vpl::kInterleave, 3); },
+                              +[](EngineSettings& s) { s.set(vpl::kVpls, 0); },
+                              +[](EngineSettings& s) { s.set(vpl::kAtlas, 16); }}) {
         AnalyticScene scene = box_with_a_block();
         spoil(scene.settings);
         const auto rendered = scenes::render(*device, "vpl", scene);

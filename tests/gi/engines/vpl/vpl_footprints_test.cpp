@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/vpl/footprints.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 namespace {

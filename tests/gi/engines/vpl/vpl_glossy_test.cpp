@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/compare/metrics.h"
-#include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 namespace {

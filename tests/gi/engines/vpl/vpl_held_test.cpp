@@ -1,12 +1,12 @@
 // VPLs and maps hold from frame to frame: what they follow from decides, and nothing else does.
 #include <gtest/gtest.h>
 
-#include "gi/registry.h"
-#include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/registry.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

@@ -2,13 +2,13 @@
 // tests/viewer/commands/fly_test.cpp's.
 #include <cmath>
 
+#include "gi/bounce_options.h"
 #include "gi/compare/metrics.h"
+#include "gi/engines/vpl/options.h"
 #include "gi/registry.h"
 #include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "gi/bounce_options.h"
-#include "gi/engines/vpl/options.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/lighting/direct_light.h"
 #include "gi/engines/vpl/redistribution/redistribution.h"
-#include "tests/gi/on_device.h"
+#include "gi/lighting/direct_light.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 namespace {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
-#include "tests/gi/on_device.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi::vpl {
 namespace {

@@ -5,23 +5,22 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/compare/metrics.h"
-#include "tests/gi/engines/analytic_frame.h"
-#include "tests/gi/engines/lit_scene.h"
-#include "tests/gi/on_device.h"
-#include "tests/gi/engines/soft_light_scenes.h"
-#include "tests/gi/engines/surfel_scenes.h"
 #include "gi/bounce_options.h"
+#include "gi/compare/metrics.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/lighting/light_options.h"
+#include "tests/gi/engines/analytic_frame.h"
+#include "tests/gi/engines/lit_scene.h"
+#include "tests/gi/engines/soft_light_scenes.h"
+#include "tests/gi/engines/surfel_scenes.h"
+#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {
 
 using scenes::AnalyticScene;
 using VplSoftLights = OnDevice;
-
 
 /// A room of 2 m, without its ceiling where the sky shall come in, with a block in it, seen from within.
 AnalyticScene room(bool open) {

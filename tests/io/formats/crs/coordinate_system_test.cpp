@@ -2,8 +2,8 @@
 #include "io/files/file.h"
 #include "io/formats/crs/registry.h"
 #include "io/formats/las/crs.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::io {
 namespace {
@@ -71,7 +71,9 @@ void add_keys(testing::LasFile& las, const std::vector<std::array<uint16_t, 4>>&
 TEST(CoordinateSystem, OfGeoTiffKeysIsTheirCodeAndCitation) {
     testing::LasFile las;
     las.records = {testing::record0(1, 2, 3)};
-    add_keys(las, {{1024, 0, 1, 1}, {1026, 34737, 8, 0}, {3072, 0, 1, 2992}, {3073, 34737, 21, 8}, {3076, 0, 1, 9002}});
+    add_keys(
+        las,
+        {{1024, 0, 1, 1}, {1026, 34737, 8, 0}, {3072, 0, 1, 2992}, {3073, 34737, 21, 8}, {3076, 0, 1, 9002}});
     las.add_vlr("LASF_Projection", 34737, "general|NAD83 / Oregon (ft)|");
     const testing::MemoryFile file;
     file.set(las.bytes());
@@ -110,16 +112,19 @@ TEST(CoordinateSystem, WhoseUnitNobodyKnowsSaysSo) {
     EXPECT_NE(units_of_keys({{1024, 0, 1, 1}, {3072, 0, 1, 60000}}).unknown, "");
     EXPECT_NE(units_of_keys({{3072, 0, 1, 32633}, {3076, 0, 1, 1}}).unknown, "");
     EXPECT_NE(units_of_keys({{3072, 0, 1, 32767}}).unknown, "");
-    EXPECT_NE(units_of_keys({{3072, 0, 1, 32633}, {3076, 0, 1, 9102}}).unknown, "") << "a degree is no length";
+    EXPECT_NE(units_of_keys({{3072, 0, 1, 32633}, {3076, 0, 1, 9102}}).unknown, "")
+        << "a degree is no length";
     EXPECT_EQ(units_of_keys({{3072, 0, 1, 60000}}).metres(), 1.0);
 }
 
 TEST(CoordinateSystem, OfDegreesIsKnownWhateverSaysIt) {
     EXPECT_TRUE(units_of_keys({{1024, 0, 1, 2}, {2048, 0, 1, 4326}}).degrees);
     EXPECT_TRUE(units_of_keys({{2048, 0, 1, 4326}}).degrees);
-    EXPECT_FALSE(units_of_keys({{2048, 0, 1, 4326}, {3072, 0, 1, 32633}}).degrees) << "the base of a projection";
+    EXPECT_FALSE(units_of_keys({{2048, 0, 1, 4326}, {3072, 0, 1, 32633}}).degrees)
+        << "the base of a projection";
     EXPECT_TRUE(wkt_units(R"(GEOGCRS["a",CS[ellipsoidal,2]])").degrees);
-    EXPECT_TRUE(wkt_units(R"(COMPD_CS["c",GEOGCS["b",UNIT["degree",0.01745]],VERT_CS["v",UNIT["metre",1]]])").degrees);
+    EXPECT_TRUE(wkt_units(R"(COMPD_CS["c",GEOGCS["b",UNIT["degree",0.01745]],VERT_CS["v",UNIT["metre",1]]])")
+                    .degrees);
     EXPECT_FALSE(wkt_units(kUtm).degrees);
     EXPECT_TRUE(registered_units(4326)->degrees);
 }

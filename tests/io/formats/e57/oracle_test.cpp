@@ -83,7 +83,8 @@ class E57Oracle : public ::testing::Test {
 
 TEST_F(E57Oracle, TurnedAndMovedScansAreWhatLibE57FormatReads) {
     const std::string name = "e57_posed.e57";  // to the oracle
-    expect_file(std::filesystem::path(LUCARNE_SOURCE_DIR) / "tests/io/formats/e57/posed.e57", expected().at(name));
+    expect_file(std::filesystem::path(LUCARNE_SOURCE_DIR) / "tests/io/formats/e57/posed.e57",
+                expected().at(name));
 }
 
 TEST_F(E57Oracle, EveryValueOfEveryAttributeIsWhatLibE57FormatReads) {

@@ -9,8 +9,8 @@
 #include "io/formats/las/laz/decoder.h"
 #include "io/formats/las/laz/encoder.h"
 #include "io/formats/las/laz/integers.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::io {
 namespace {
@@ -227,9 +227,7 @@ class LazChannels : public ::testing::TestWithParam<int> {
     static uint32_t value(uint64_t i, uint64_t k) {
         return static_cast<uint32_t>(i / (1 + k % 4) * 2654435761 + k * 2246822519) >> 16;
     }
-    static uint32_t channel(uint64_t i) {
-        return i < 80 ? i / 5 % 4 : i < 160 ? value(4 * i, 3) % 4 : 2;
-    }
+    static uint32_t channel(uint64_t i) { return i < 80 ? i / 5 % 4 : i < 160 ? value(4 * i, 3) % 4 : 2; }
 };
 
 TEST_P(LazChannels, EveryValueIsThatOfItsPoint) {
@@ -246,14 +244,16 @@ TEST_P(LazChannels, EveryValueIsThatOfItsPoint) {
                                  {names::user_data, 0, 5, 8},       {names::scan_angle, 0, 6, 12},
                                  {names::point_source_id, 0, 7, 2}, {names::gps_time, 0, 8, 10}};
     size_t k = 9;
-    for (size_t c = 0; c < 3 && GetParam() > 6; ++c) values.push_back({names::color, c, k++, c < 2 ? 16u : 8u});
+    for (size_t c = 0; c < 3 && GetParam() > 6; ++c)
+        values.push_back({names::color, c, k++, c < 2 ? 16u : 8u});
     if (GetParam() == 8) values.push_back({names::nir, 0, k++, 16});
     values.push_back({"first", 0, k++, 8});
     values.push_back({"second", 0, k, 2});
     const Schema& schema = (*scan)->schema();
     const auto at = [&](uint64_t i, const Value& v) {
         const Attribute& a = *schema.find(v.name);
-        return scalar_at(a.type, &all->bytes[i * schema.stride + a.offset + v.component * scalar_bytes(a.type)]);
+        return scalar_at(a.type,
+                         &all->bytes[i * schema.stride + a.offset + v.component * scalar_bytes(a.type)]);
     };
     for (uint64_t i = 0; i < kPoints; ++i) {
         EXPECT_EQ(at(i, {names::scanner_channel, 0, 0, 0}), channel(i)) << i;

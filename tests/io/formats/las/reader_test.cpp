@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
-#include "io/formats/notes_json.h"
-#include "tests/io/io_testing.h"
 #include "io/formats/las/bounds.h"
+#include "io/formats/notes_json.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::io {
 namespace {
@@ -171,7 +171,9 @@ TEST_F(Las, PointsFarOutsideTheStatedBoxAreTold) {
     };
     const auto outside = [](const las::Header& h, int32_t x, int32_t z) {
         const std::string records = raw(0) + raw(0) + raw(0) + raw(x) + raw(0) + raw(z);
-        return las::StatedBounds(h).outside(reinterpret_cast<const std::byte*>(records.data()), 2, 12).has_value();
+        return las::StatedBounds(h)
+            .outside(reinterpret_cast<const std::byte*>(records.data()), 2, 12)
+            .has_value();
     };
     // 0 to 20 units, and as far again on each side, are the integers -60 to 60.
     EXPECT_FALSE(outside(header(0, 20), -60, 60));
@@ -295,7 +297,8 @@ TEST_F(Las, WavePacketsAreSkippedAndTheBytesBehindThemAreNot) {
         EXPECT_EQ((*a)->schema(), (*b)->schema());
         EXPECT_EQ(testing::read_all(**a)->bytes, testing::read_all(**b)->bytes) << format;
         EXPECT_EQ((*b)->info().format, "LAS 1.4, point format " + std::to_string(format));
-        EXPECT_EQ(notes_text((*b)->info().notes).find("100"), std::string::npos) << "the wave's description is kept";
+        EXPECT_EQ(notes_text((*b)->info().notes).find("100"), std::string::npos)
+            << "the wave's description is kept";
     }
     LasFile small;
     small.minor = 4;
@@ -389,7 +392,8 @@ TEST_F(Las, WarningsAreOfTheFileTheyAreAbout) {
     EXPECT_THAT(said(), HasSubstr("compatibility mode"));
     file.vlrs.clear();
     file.scale[1] = -0.01;
-    EXPECT_THAT(said(), HasSubstr("its scale for y is negative (-0.01): the scan is mirrored, if nobody meant it"));
+    EXPECT_THAT(said(),
+                HasSubstr("its scale for y is negative (-0.01): the scan is mirrored, if nobody meant it"));
     const auto mirrored = open(file);
     EXPECT_EQ(position_of(mirrored->schema(), read_all(*mirrored)->bytes.data()).y, -0.02);
     file.scale[1] = 0.01;

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 
 #include "io/formats/notes_json.h"
-#include "tests/io/io_testing.h"
 #include "tests/io/formats/las/las_builder.h"
+#include "tests/io/io_testing.h"
 
 namespace lucarne::io {
 namespace {

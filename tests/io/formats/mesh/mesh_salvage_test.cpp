@@ -43,9 +43,10 @@ Strip strip(const std::string& encoding, bool faces_first = false) {
         if (text) made.bytes.back() = '\n';
         ends.push_back(made.bytes.size());
     };
-    const std::string vertex =
-        fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", kVertexCount);
-    const std::string face = fmt::format("element face {}\nproperty list uchar int vertex_indices\n", kFaceCount);
+    const std::string vertex = fmt::format(
+        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", kVertexCount);
+    const std::string face =
+        fmt::format("element face {}\nproperty list uchar int vertex_indices\n", kFaceCount);
     made.bytes =
         "ply\nformat " + encoding + " 1.0\n" + (faces_first ? face + vertex : vertex + face) + "end_header\n";
     const auto put_vertices = [&] {
@@ -73,9 +74,7 @@ class MeshSalvage : public testing::TextScan {
         return 0;
     }
     bool is_mesh() const { return source_->info().format.ends_with("mesh"); }
-    uint64_t triangles() const {
-        return source_->info().notes.mesh->triangles;
-    }
+    uint64_t triangles() const { return source_->info().notes.mesh->triangles; }
     /// The line of a file that is rejected as usual.
     std::string refusal(std::string_view bytes) {
         return with_salvage_advice(error_of(bytes, kUsual), file_.path(), kUsual).line();

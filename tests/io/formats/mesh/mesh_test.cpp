@@ -181,7 +181,8 @@ TEST_F(MeshScan, ASliverIsSampledAlongItsLength) {
     read("v 0 0 0\nv 1 1 1\nv 1 1 1.00001\nf 1 2 3\n", every(1e-3));
     std::vector<glm::dvec3> at;
     for (size_t i = 0; i < points(); ++i) at.push_back(position(i));
-    // What area it has is that of 7 samples; they stand anywhere along it, each at its distance from the others.
+    // What area it has is that of 7 samples; they stand anywhere along it, each at its distance from the
+    // others.
     EXPECT_GT(at.size(), 7u);
     EXPECT_LT(at.size(), 8 * 8u);
     for (size_t i = 0; i < at.size(); ++i) {

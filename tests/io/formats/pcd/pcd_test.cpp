@@ -95,9 +95,12 @@ std::string ascii() {
 TEST_F(Pcd, TheCaseOfFieldsAndEntriesDoesNotMatter) {
     const std::string rows = "1 2 3 255 0.5\n4 5 6 65280 0.25\n";
     for (const std::string& file :
-         {"VERSION 0.7\nFIELDS X Y Z RGB Intensity\nSIZE 4 4 4 4 4\nTYPE F F F U F\nCOUNT 1 1 1 1 1\n" + grid(2, 1, "ASCII") + rows,
-          "version 0.7\nfields x y z rgb intensity\nsize 4 4 4 4 4\ntype f f f u f\ncount 1 1 1 1 1\nwidth 2\n"
-          "height 1\nviewpoint 0 0 0 1 0 0 0\npoints 2\ndata ascii\n" + rows}) {
+         {"VERSION 0.7\nFIELDS X Y Z RGB Intensity\nSIZE 4 4 4 4 4\nTYPE F F F U F\nCOUNT 1 1 1 1 1\n" +
+              grid(2, 1, "ASCII") + rows,
+          "version 0.7\nfields x y z rgb intensity\nsize 4 4 4 4 4\ntype f f f u f\ncount 1 1 1 1 1\nwidth "
+          "2\n"
+          "height 1\nviewpoint 0 0 0 1 0 0 0\npoints 2\ndata ascii\n" +
+              rows}) {
         read(file);
         ASSERT_EQ(points(), 2u) << file;
         EXPECT_EQ(position(1), glm::dvec3(4, 5, 6));
@@ -107,8 +110,9 @@ TEST_F(Pcd, TheCaseOfFieldsAndEntriesDoesNotMatter) {
     read("FIELDS X x y z\nSIZE 4 4 4 4\nTYPE F F F F\n" + grid(1, 1, "ascii") + "9 1 2 3\n");
     EXPECT_EQ(position(0), glm::dvec3(1, 2, 3)) << "x goes before X";
     EXPECT_EQ(value(0, "X"), 9);
-    EXPECT_THAT(error_of("FIELDS X X Y Z\nSIZE 4 4 4 4\nTYPE F F F F\n" + grid(1, 1, "ascii") + "9 1 2 3\n").line(),
-                HasSubstr("does not have one field x"));
+    EXPECT_THAT(
+        error_of("FIELDS X X Y Z\nSIZE 4 4 4 4\nTYPE F F F F\n" + grid(1, 1, "ascii") + "9 1 2 3\n").line(),
+        HasSubstr("does not have one field x"));
 }
 
 TEST_F(Pcd, AllEncodingsGiveTheSamePoints) {

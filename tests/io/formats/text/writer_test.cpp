@@ -10,11 +10,11 @@
 namespace lucarne::io {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::read_all;
 using testing::read_bytes;
-using testing::TemporaryFolder;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
+using testing::TemporaryFolder;
 
 std::string decimal(double scale, double offset, int32_t integer) {
     const auto made = text::Decimal::of(scale, offset);
@@ -68,8 +68,9 @@ Made everything(PositionType position, size_t points) {
     scan.schema_.stride = static_cast<uint32_t>(position_bytes(position));
     scan.schema_.add("color", ScalarType::u16, 3);
     scan.schema_.add("normal", ScalarType::f32, 3);
-    for (const auto type : {ScalarType::u8, ScalarType::i8, ScalarType::u16, ScalarType::i16, ScalarType::u32,
-                            ScalarType::i32, ScalarType::u64, ScalarType::i64, ScalarType::f32, ScalarType::f64})
+    for (const auto type :
+         {ScalarType::u8, ScalarType::i8, ScalarType::u16, ScalarType::i16, ScalarType::u32, ScalarType::i32,
+          ScalarType::u64, ScalarType::i64, ScalarType::f32, ScalarType::f64})
         scan.schema_.add(std::string("a:") + std::string(scalar_name(type)), type);
     scan.schema_.add("Amplitude", ScalarType::f32);  // which others call an intensity
     scan.schema_.add("Größe", ScalarType::u8);
@@ -82,7 +83,8 @@ Made everything(PositionType position, size_t points) {
     for (size_t i = 0; i < points; ++i) {
         std::byte* at = &scan.records[i * scan.schema_.stride];
         for (int axis = 0; axis < 3; ++axis) {
-            const double value = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 60) - 50);
+            const double value =
+                std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 60) - 50);
             if (position == PositionType::f32) store(at + 4 * axis, static_cast<float>(value));
             if (position == PositionType::f64) store(at + 8 * axis, value);
         }

@@ -1,0 +1,59 @@
+#include "viewer/frame/presentation.h"
+
+#include "gi/post/accumulate.h"
+#include "gi/post/backdrop.h"
+#include "gi/post/false_colour.h"
+#include "gi/post/tone_map.h"
+
+namespace lucarne::viewer {
+
+Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
+                                  const gi::GBuffer& gbuffer, bool average) {
+    const uint32_t pixels = gbuffer.width * gbuffer.height;
+    ++accumulated_;
+    averaged_ = average;
+    if (averaged_) LUCARNE_TRY(add_to_average(own_, pixels));
+    exposure_ev_ = 0;  // of an unlit engine: its colours are the screen's already
+    if (!engine.info().unlit) {
+        if (scene.exposure_ev) {
+            exposure_ev_ = *scene.exposure_ev;
+        } else {
+            LUCARNE_ASSIGN(exposure_ev_, gi::automatic_exposure(device_, radiance(), pixels));
+        }
+    }
+    LUCARNE_TRY(show(engine, scene, pixels, own_));
+    if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
+    return gi::draw_backdrop(device_, gbuffer, scene.look.backdrop, own_.picture);
+}
+
+Result<void> Presentation::add_to_average(Images& images, uint32_t pixels) {
+    LUCARNE_TRY(device_.reserve(images.mean, pixels * sizeof(glm::vec4), "the picture's average"));
+    return gi::accumulate(device_, images.sample, pixels, accumulated_, images.mean);
+}
+
+Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels,
+                                Images& images) {
+    const gi::Buffer& radiance = images.radiance(averaged_);
+    const bool unlit = lit_by.info().unlit;
+    if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
+        return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_ev_),
+                                images.picture);
+    return gi::tone_map(device_, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
+                        unlit ? 0 : exposure_ev_, images.picture);
+}
+
+/// Brings the other engine's light into the picture.
+Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene,
+                                   const gi::GBuffer& gbuffer) {
+    using Show = gi::Comparison::Show;
+    const uint32_t pixels = gbuffer.width * gbuffer.height;
+    if (averaged_) LUCARNE_TRY(add_to_average(other_, pixels));
+    const gi::Comparison& how = *scene.comparison;
+    if (how.show != Show::split)
+        return gi::difference(device_, radiance(), other_.radiance(averaged_), pixels,
+                              how.show == Show::absolute_difference, exposure_ev_, how.range, own_.picture);
+    LUCARNE_TRY(show(other, scene, pixels, other_));
+    return gi::split(device_, other_.picture, gbuffer.width, gbuffer.height, how.border, own_.picture);
+}
+
+}  // namespace lucarne::viewer
