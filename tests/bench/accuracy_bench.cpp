@@ -35,8 +35,12 @@ void row(const std::string& scene, const std::string& measure, double value, dou
     std::fflush(stdout);
 }
 
-gi::EngineSettings high() {
-    return viewer::find_preset("high")->engine;
+gi::EngineSettings high(const BenchRun& run) {
+    return viewer::find_preset(run.trial() ? "preview" : "high")->engine;
+}
+/// The side of a square picture, pixels.
+uint32_t side(const BenchRun& run, uint32_t full) {
+    return run.trial() ? 32 : full;
 }
 
 std::string samples(const BenchRun& run, uint64_t full) {
@@ -52,13 +56,14 @@ double brightest(const std::vector<glm::vec4>& picture) {
     return most;
 }
 
-Result<void> furnace(gi::Device& device) {
+Result<void> furnace(gi::Device& device, const BenchRun& run) {
     gi::scenes::AnalyticScene scene;
     scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
     scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
-    scene.camera = gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 128);
-    scene.settings = high();
-    for (uint32_t bounces = 1; bounces <= 4; ++bounces) {
+    scene.camera =
+        gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, side(run, 128));
+    scene.settings = high(run);
+    for (const uint32_t bounces : run.cases<uint32_t>({1, 2, 3, 4})) {
         scene.settings.set(gi::kBounces, bounces);
         const double truth = 1 - std::pow(0.5, bounces + 1);
         double sum = 0;
@@ -80,8 +85,8 @@ Result<void> furnace(gi::Device& device) {
 
 /// The mean radiance of a unit square of albedo .5 by another that shines with radiance 1, over .5: the form
 /// factor between them (Howell's catalogue, C-11 and C-14).
-Result<void> form_factor(gi::Device& device, const std::string& name, const glm::vec3& corner,
-                         const glm::vec3& u, const glm::vec3& v, double truth) {
+Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::string& name,
+                         const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, double truth) {
     gi::scenes::AnalyticScene scene;
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), o(0.0f);
     gi::scenes::add_rectangle(scene.surfels, o, x, y, 150, glm::vec3(.5f), 0);
@@ -89,8 +94,8 @@ Result<void> form_factor(gi::Device& device, const std::string& name, const glm:
     scene.materials = {gi::scenes::material(1, 0, 1, 0), gi::scenes::material(0, 0, 1, 1)};
     // From far away and low, so that every part of the receiver counts alike and the emitter is not in the
     // way.
-    scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, 256);
-    scene.settings = high();
+    scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, side(run, 256));
+    scene.settings = high(run);
     scene.settings.set(gi::kOnlyBounce, 1);
     double sum = 0;
     constexpr int kFrames = 4;
@@ -129,11 +134,11 @@ Result<void> judge(const std::string& what, const std::vector<glm::vec4>& pictur
 Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera, const BenchRun& run,
                          double rel_mse) {
     scan.light_by(bench::scene_file(scene));
-    const std::string common = "--size 128x128 --preset interactive --camera " + camera + " ";
-    for (const std::string bounce : {"0", "1"}) {
+    const std::string common = run.picture(128, "interactive") + "--camera " + camera + " ";
+    for (const std::string& bounce : run.cases<std::string>({"0", "1"})) {
         const std::string only = common + "--only-bounce " + bounce + " ";
         LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + samples(run, 512)));
-        for (const uint64_t count : {uint64_t{1}, run.count(16)}) {
+        for (const uint64_t count : run.cases<uint64_t>({1, run.count(16)})) {
             LUCARNE_ASSIGN(const auto picture,
                            scan.picture("soft-vpl", fmt::format("{} --frames {}", only, count)));
             LUCARNE_TRY(judge(fmt::format("{}, bounce {}, {} frames", scene, bounce, count), picture, truth,
@@ -145,16 +150,16 @@ Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string
 
 Result<void> cornell(const BenchRun& run) {
     LUCARNE_ASSIGN(Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
-    const std::string size = "--size 256x256 --preset high ";
+    const std::string size = run.picture(256, "high");
     Scan::Truth first;
-    for (const std::string preset : {"interactive", "high"}) {
-        const std::string common = "--size 256x256 --only-bounce 1 --preset " + preset;
+    for (const std::string& preset : run.cases<std::string>({"interactive", "high"})) {
+        const std::string common = run.picture(256, preset) + "--only-bounce 1";
         LUCARNE_ASSIGN(first, scan.truth("b1", common + samples(run, 256)));
         LUCARNE_ASSIGN(const auto picture, scan.picture(preset, common));
         LUCARNE_TRY(
             judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
     }
-    for (const int bounce : {2, 3, 4}) {
+    for (const int bounce : run.cases({2, 3, 4})) {
         const std::string only = fmt::format("--only-bounce {} ", bounce);
         LUCARNE_ASSIGN(const auto truth, scan.truth("b", size + only + samples(run, 128)));
         LUCARNE_ASSIGN(const auto picture, scan.picture("p", size + only));
@@ -167,7 +172,7 @@ Result<void> cornell(const BenchRun& run) {
     LUCARNE_TRY(judge("cornell, bounce 1, high, 60 s", minute, first, .001, .01));
 
     double whole = 0;
-    for (const std::string n : {"1", "2", "4"}) {
+    for (const std::string& n : run.cases<std::string>({"1", "2", "4"})) {
         LUCARNE_ASSIGN(const auto picture, scan.picture("n", size + "--only-bounce 1 --interleave " + n));
         const double mean = gi::mean_luminance(picture);
         if (n == "1") whole = mean;
@@ -175,10 +180,9 @@ Result<void> cornell(const BenchRun& run) {
             true);
     }
     double small = 0;
-    for (const std::string atlas : {"1024", "2048", "4096"}) {
-        LUCARNE_ASSIGN(
-            const auto picture,
-            scan.picture("a", "--size 256x256 --preset interactive --only-bounce 1 --atlas " + atlas));
+    for (const std::string& atlas : run.cases<std::string>({"1024", "2048", "4096"})) {
+        LUCARNE_ASSIGN(const auto picture, scan.picture("a", run.picture(256, "interactive") +
+                                                                 "--only-bounce 1 --atlas " + atlas));
         const double mean = gi::mean_luminance(picture);
         if (atlas == "1024") small = mean;
         row("cornell, bounce 1, interactive, atlas " + atlas, "mean against atlas 1024", mean / small - 1,
@@ -192,18 +196,19 @@ Result<void> invariance(gi::Device& device, const BenchRun& run) {
     gi::scenes::AnalyticScene scene;
     scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
     scene.materials = {gi::scenes::material(1, 0, 1, 0.5f)};
-    scene.camera = gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, 128);
-    scene.settings = high();
+    scene.camera =
+        gi::scenes::look(glm::vec3(0.3f, 0.4f, 0.5f), glm::vec3(1.2f, 1.3f, 0.9f), 1.0f, side(run, 128));
+    scene.settings = high(run);
     LUCARNE_ASSIGN(const auto in_order, gi::scenes::render(device, "vpl", scene));
     std::shuffle(scene.surfels.begin(), scene.surfels.end(), std::mt19937(7));
     LUCARNE_ASSIGN(const auto shuffled, gi::scenes::render(device, "vpl", scene));
     row("closed furnace, points shuffled, high", "mean against in order",
         gi::mean_luminance(shuffled.radiance) / gi::mean_luminance(in_order.radiance) - 1, .01, true);
     double usual = 0;
-    for (const int millions : {2, 1, 4}) {
+    for (const int millions : run.cases({2, 1, 4})) {
         LUCARNE_ASSIGN(const Scan scan,
                        Scan::create("cornell", run.points(millions * 1'000'000ull), run.folder));
-        LUCARNE_ASSIGN(const auto picture, scan.picture("n", "--size 256x256 --preset high --only-bounce 1"));
+        LUCARNE_ASSIGN(const auto picture, scan.picture("n", run.picture(256, "high") + "--only-bounce 1"));
         const double mean = gi::mean_luminance(picture);
         if (millions == 2) usual = mean;
         row(fmt::format("cornell, bounce 1, high, {}M points", millions), "mean against 2M points",
@@ -215,7 +220,7 @@ Result<void> invariance(gi::Device& device, const BenchRun& run) {
 /// A second of either engine, after the cloud is loaded.
 Result<void> equal_time(const BenchRun& run) {
     LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
-    const std::string common = "--size 256x256 --preset interactive --only-bounce 1 ";
+    const std::string common = run.picture(256, "interactive") + "--only-bounce 1 ";
     LUCARNE_ASSIGN(const auto truth, scan.truth("truth", common + samples(run, 1024)));
     LUCARNE_ASSIGN(const auto by_vpl, scan.picture("second", common + seconds(run, 1)));
     LUCARNE_ASSIGN(const auto by_paths,
@@ -229,8 +234,8 @@ Result<void> equal_time(const BenchRun& run) {
 
 Result<void> nave(const BenchRun& run) {
     LUCARNE_ASSIGN(Scan scan, Scan::create("nave", run.points(8'000'000), run.folder));
-    for (const std::string camera : {"nave", "carpet", "aisle", "altar", "vault"}) {
-        const std::string common = "--size 192x192 --preset high --bounces 3 --camera " + camera + " ";
+    for (const std::string& camera : run.cases<std::string>({"nave", "carpet", "aisle", "altar", "vault"})) {
+        const std::string common = run.picture(192, "high") + "--bounces 3 --camera " + camera + " ";
         LUCARNE_ASSIGN(const auto truth, scan.truth(camera, common + samples(run, 256)));
         LUCARNE_ASSIGN(const auto picture, scan.picture(camera + "-vpl", common));
         LUCARNE_TRY(judge("nave, " + camera + ", bounces 0 to 3, high", picture, truth, .03, .03));
@@ -242,8 +247,9 @@ Result<void> nave(const BenchRun& run) {
 /// chance: the picture is small, so that the reference can have many paths a pixel.
 Result<void> glossy(const BenchRun& run) {
     LUCARNE_ASSIGN(Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
-    const std::string common = "--size 64x64 --preset high --only-bounce 1 ";
-    for (const auto& [exponent, paths] : {std::pair{10, 4096}, {100, 8192}, {1000, 32768}}) {
+    const std::string common = run.picture(64, "high") + "--only-bounce 1 ";
+    using Glossy = std::pair<int, int>;  // the lobe's exponent, paths a pixel of the reference
+    for (const auto& [exponent, paths] : run.cases<Glossy>({{10, 4096}, {100, 8192}, {1000, 32768}})) {
         std::ifstream file(bench::scene_file("cornell-glossy"));
         auto scene = nlohmann::json::parse(file);
         scene["materials"][0]["shininess"] = exponent;
@@ -268,11 +274,11 @@ Result<void> glossy(const BenchRun& run) {
 
 Result<void> measure(const BenchRun& run) {
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());
-    LUCARNE_TRY(furnace(*device));
+    LUCARNE_TRY(furnace(*device, run));
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f);
-    LUCARNE_TRY(form_factor(*device, "parallel at 1", z, y, x, .199825));
-    LUCARNE_TRY(form_factor(*device, "parallel at .5", .5f * z, y, x, .415253));
-    LUCARNE_TRY(form_factor(*device, "at a right angle", o, y, z, .200044));
+    LUCARNE_TRY(form_factor(*device, run, "parallel at 1", z, y, x, .199825));
+    LUCARNE_TRY(form_factor(*device, run, "parallel at .5", .5f * z, y, x, .415253));
+    LUCARNE_TRY(form_factor(*device, run, "at a right angle", o, y, z, .200044));
     LUCARNE_TRY(cornell(run));
     LUCARNE_TRY(invariance(*device, run));
     LUCARNE_TRY(equal_time(run));

@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -28,6 +29,19 @@ struct BenchRun {
     uint64_t points(uint64_t full) const { return std::max<uint64_t>(scaled(full), 10'000); }
     uint64_t count(uint64_t full) const { return std::max<uint64_t>(scaled(full), 1); }
     double seconds(double full) const { return full * scale; }
+    /// Whether the run shall only show that the program works.
+    bool trial() const { return scale < 0.05; }
+    /// Of the cases that a benchmark measures one after the other: all, or the first alone in a trial.
+    template <class Case>
+    std::vector<Case> cases(std::vector<Case> all) const {
+        if (trial()) all.resize(1);
+        return all;
+    }
+    /// Options for a square picture: of `side` pixels by the preset, or small and fast in a trial.
+    std::string picture(unsigned side, const std::string& preset) const {
+        return trial() ? "--size 32x32 --preset preview "
+                       : fmt::format("--size {0}x{0} --preset {1} ", side, preset);
+    }
     double option(const std::string& name, double otherwise) const {
         const auto found = options.find(name);
         return found == options.end() ? otherwise : found->second;

@@ -220,7 +220,7 @@ Result<void> figure_13(const BenchRun& run) {
         "fig. 13: caustics, the first bounce alone, preset high, means of 4 x 4 of 128 x 128 pixels, against "
         "the reference");
     constexpr size_t kSide = 128;
-    for (const std::string scene : {"ring", "paraboloid"}) {
+    for (const std::string& scene : run.cases<std::string>({"ring", "paraboloid"})) {
         LUCARNE_ASSIGN(const Scan scan, Scan::create(scene, run.points(2'000'000), run.folder));
         const std::string common = fmt::format("--size {0}x{0} --preset high --only-bounce 1 ", kSide);
         LUCARNE_ASSIGN(Scan::Truth truth,
@@ -231,7 +231,7 @@ Result<void> figure_13(const BenchRun& run) {
         const double limit = brightest(truth.whole) / 3;
         for (const glm::vec4& pixel : truth.whole) mask.push_back(gi::luminance(pixel) > limit);
         const Spot right = spot_within(truth.whole, mask, kSide / 4);
-        for (const uint64_t frames : {uint64_t{1}, run.count(16)}) {
+        for (const uint64_t frames : run.cases<uint64_t>({1, run.count(16)})) {
             LUCARNE_ASSIGN(const auto picture, scan.picture(fmt::format("frames-{}", frames),
                                                             common + fmt::format("--frames {}", frames)));
             const auto means = coarse(picture, kSide);
@@ -241,7 +241,7 @@ Result<void> figure_13(const BenchRun& run) {
                        100 * (spot.light / right.light - 1),
                        4 * std::hypot(spot.x - right.x, spot.y - right.y));
         }
-        LUCARNE_TRY(scan.render("fig-13.png", "--size 512x512 --preset high --bounces 2"));
+        LUCARNE_TRY(scan.render("fig-13.png", run.picture(512, "high") + "--bounces 2"));
     }
     return {};
 }
@@ -259,9 +259,8 @@ Result<void> figure_14(Scan& scan, const BenchRun& run) {
     LUCARNE_ASSIGN(const auto averaged,
                    scan.picture("averaged", common + fmt::format("high --seconds {}", run.seconds(30))));
     judge("1024 VPLs, averaged for 30 s", averaged, truth);
-    for (const std::string preset : {"interactive", "high"})
-        LUCARNE_TRY(
-            scan.render("fig-14-" + preset + ".png", "--size 512x512 --bounces 2 --preset " + preset));
+    for (const std::string& preset : run.cases<std::string>({"interactive", "high"}))
+        LUCARNE_TRY(scan.render("fig-14-" + preset + ".png", run.picture(512, preset) + "--bounces 2"));
     return {};
 }
 

@@ -126,7 +126,9 @@ TEST(Structure, NoFileIsADumpingGround) {
             std::ifstream in(entry.path());
             size_t lines = 0;
             for (std::string line; std::getline(in, line);) ++lines;
-            if (entry.path().extension() != ".md") EXPECT_LE(lines, kMostLines) << entry.path();
+            if (entry.path().extension() != ".md") {
+                EXPECT_LE(lines, kMostLines) << entry.path();
+            }
         }
 }
 

@@ -94,7 +94,9 @@ TEST(MemoryScans, EverySharedScanReadsTheSameOutOfMemory) {
         EXPECT_EQ((*a)->info().modified, (*b)->info().modified);
         const auto x = io::testing::read_all(**a), y = io::testing::read_all(**b);
         ASSERT_EQ(x.has_value(), y.has_value()) << entry.path();
-        if (x) EXPECT_TRUE(x->bytes == y->bytes) << entry.path();
+        if (x) {
+            EXPECT_TRUE(x->bytes == y->bytes) << entry.path();
+        }
         ++scans;
     }
     EXPECT_GT(scans, 30u);

@@ -53,7 +53,9 @@ TEST(NotesJson, TheTextsOfOlderCachesComeBackByteByByte) {
         const FormatNotes notes = notes_of_text(text);
         EXPECT_EQ(notes_text(notes), text);
         // NaN equals nothing, itself included.
-        if (text.find("null") == text.npos) EXPECT_TRUE(notes_of_text(notes_text(notes)) == notes) << text;
+        if (text.find("null") == text.npos) {
+            EXPECT_TRUE(notes_of_text(notes_text(notes)) == notes) << text;
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numbers>
+#include <semaphore>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -212,17 +212,12 @@ TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
 
 TEST(GrowingBuild, StoppedInTheMiddleItLeavesNothing) {
     const TempFolder folder;
+    std::counting_semaphore<> changes(0);  // outlives the build, which reports its end as well
     {
         const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
         ASSERT_TRUE(build) << build.error().line();
-        std::mutex first;
-        first.lock();
-        bool told = false;
-        (*build)->begin([&] {
-            if (!std::exchange(told, true)) first.unlock();
-        });
-        first.lock();  // the build runs
-        first.unlock();
+        (*build)->begin([&] { changes.release(); });
+        changes.acquire();  // the build runs
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

@@ -75,13 +75,13 @@ TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
         scene.settings.set(reference::kSamples, 1024);
         // Of the reference the mean over 4 x 4 pixels: a path tracer sparkles by itself.
         const auto truth = render(scene, "reference").radiance;
-        constexpr size_t kSide = 64, kBlock = 4;
+        constexpr size_t kPictureSide = 64, kBlock = 4;
         double brightest = 0;
-        for (size_t y = 0; y < kSide; y += kBlock)
-            for (size_t x = 0; x < kSide; x += kBlock) {
+        for (size_t y = 0; y < kPictureSide; y += kBlock)
+            for (size_t x = 0; x < kPictureSide; x += kBlock) {
                 double sum = 0;
                 for (size_t i = 0; i < kBlock * kBlock; ++i)
-                    sum += luminance(truth[(y + i / kBlock) * kSide + x + i % kBlock]);
+                    sum += luminance(truth[(y + i / kBlock) * kPictureSide + x + i % kBlock]);
                 brightest = std::max(brightest, sum / (kBlock * kBlock));
             }
         for (const glm::vec4& pixel : render(scene).radiance)
