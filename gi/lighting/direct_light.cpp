@@ -1,5 +1,6 @@
 #include "gi/lighting/direct_light.h"
 
+#include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
@@ -28,7 +29,7 @@ Result<void> upload_sky(const Frame& frame, Sky& sky) {
     if (frame.environment && frame.environment == sky.directions.environment()) return {};
     if (sky.texels.bytes() != texels.size() * sizeof(glm::vec3)) {
         sky.texels = Buffer();
-        LUCARNE_ASSIGN(sky.texels, frame.device.buffer(texels.size() * sizeof(glm::vec3), "environment"));
+        LUCARNE_ASSIGN(sky.texels, frame.gl.device.buffer(texels.size() * sizeof(glm::vec3), "environment"));
     }
     sky.texels.upload_all(texels);
     if (frame.environment != sky.directions.environment()) sky.directions = SkyDirections(frame.environment);
@@ -37,12 +38,12 @@ Result<void> upload_sky(const Frame& frame, Sky& sky) {
 
 Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
     const Defines defines = add ? Defines{{"LUCARNE_ADD", "1"}} : Defines{};
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/lighting/own_light.comp", defines));
-    frame.gbuffer.texels.bind(kCameraTexels);
+    LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/own_light.comp", defines));
+    frame.gl.gbuffer.texels.bind(kCameraTexels);
     materials.bind(kMaterials);
-    frame.radiance.bind(kRadiance);
+    frame.gl.radiance.bind(kRadiance);
     sky.texels.bind(kSky);
-    const uint32_t pixels = frame.gbuffer.width * frame.gbuffer.height;
+    const uint32_t pixels = frame.gl.gbuffer.width * frame.gl.gbuffer.height;
     set(*program, "camera", frame.camera);
     program->set("sky_width", frame.environment ? frame.environment->width : 1u);
     program->set("sky_height", frame.environment ? frame.environment->height : 1u);
@@ -52,16 +53,16 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky
 }
 
 Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/lighting/light.comp"));
-    frame.gbuffer.texels.bind(kCameraTexels);
+    LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/light.comp"));
+    frame.gl.gbuffer.texels.bind(kCameraTexels);
     seen.texels.bind(kLightTexels);
     materials.bind(kMaterials);
-    frame.radiance.bind(kRadiance);
+    frame.gl.radiance.bind(kRadiance);
     set(*program, "camera", frame.camera);
     set(*program, "light_view", from.view);
     set(*program, "light", from.light);
     program->set("face", from.face);
-    program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    program->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);
     return {};
 }
 

@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "gi/engine.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/light_view.h"
 
 namespace lucarne::gi {
 
 /// The direct light of a picture, in parts that engines put together. `materials` is what upload_materials
-/// made; all of them work on frame.radiance. Errors: the shader's, no device memory.
+/// made; all of them work on frame.gl.radiance. Errors: the shader's, no device memory.
 
 /// As many materials as a surfel can name (LUCARNE_DEVICE_MATERIALS). Surfels packed for an earlier scene may
 /// name some that no longer exist: these become the default material, or a white diffuse one where

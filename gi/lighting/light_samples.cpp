@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/bounce_options.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
@@ -158,7 +159,7 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
     for (size_t i = 0; i < frame.lights.size(); ++i) {
         const Light& light = frame.lights[i];
         if (!has_size(light))
-            result.push_back({light, frame.cuts.light_views[i]});
+            result.push_back({light, frame.gl.cuts.light_views[i]});
         else if (shines(light))
             (light.kind == kDirectionalLight ? suns : areas).push_back(i);
     }
@@ -173,13 +174,13 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
     const auto strata = [&](size_t i, uint32_t count) { return Strata(count, frame, i); };
     for (const size_t i : suns) {
         const uint32_t count = share(most_samples(frame.lights[i], frame.settings[kLightResolution]), 1);
-        add_sun(frame.lights[i], strata(i, count), frame.cuts.light_views[i], result);
+        add_sun(frame.lights[i], strata(i, count), frame.gl.cuts.light_views[i], result);
     }
     for (const size_t i : areas)
-        add_area(frame.lights[i], strata(i, share(UINT32_MAX, 4)), frame.cuts.light_views[i], result);
+        add_area(frame.lights[i], strata(i, share(UINT32_MAX, 4)), frame.gl.cuts.light_views[i], result);
     if (!sky.dark()) {
         const size_t beyond = frame.lights.size();
-        add_sky(sky, strata(beyond, share(UINT32_MAX, 1)), frame.cuts.light, result);
+        add_sky(sky, strata(beyond, share(UINT32_MAX, 1)), frame.gl.cuts.light, result);
     }
     return result;
 }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gi/engine.h"
+#include "gi/frame.h"
 #include "gi/lighting/sky_directions.h"
 
 namespace lucarne::gi {

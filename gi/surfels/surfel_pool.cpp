@@ -163,6 +163,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     const auto cut_points = std::make_shared<CutPoints>();
     uint64_t surfels = 0, clipped = 0;
     cut.fingerprint_ = 0;
+    cut.nodes_.clear();
     for (const CutEntry& entry : sorted) {
         const auto resident = resident_.find(entry.node);
         if (entry.node >= nodes.size() || resident == resident_.end() || item_of.contains(entry.node))
@@ -205,6 +206,12 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
                 resident->second.pages[at / kPageSurfels] * kPageSurfels + at % kPageSurfels;
             blocks.push_back({index, first, count, lod(at) | lod(at + count) << 16});
         }
+        // Which items the children are differs from cut to cut; whether there are any shows in the areas.
+        CutItem own = item;
+        for (int& child : own.child) child = std::min(child, 0);
+        if (drawn)
+            cut.nodes_.push_back(
+                {entry.node, mix64(resident->second.content, hash(std::span<const CutItem>(&own, 1)))});
         surfels += drawn;
         clipped += item.count - drawn;
         items.push_back(item);

@@ -12,6 +12,7 @@
 #include "gi/device/gl/device.h"
 #include "gi/scene/scene.h"
 #include "gi/shared/surfel.h"
+#include "gi/surfels/cut_nodes.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::gi {
@@ -67,6 +68,8 @@ class DeviceCut {
     float size() const { return size_; }           ///< m, side of the source's root cube
     /// Of what the cut shows: equal for equal surfels at equal places.
     uint64_t fingerprint() const { return fingerprint_; }
+    /// The nodes that are drawn, sorted.
+    std::span<const CutNode> nodes() const { return nodes_; }
     std::shared_ptr<const CutPoints> points() const { return points_; }
     /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
     void bind() const;
@@ -81,6 +84,7 @@ class DeviceCut {
     uint32_t surfels_ = 0, blocks_ = 0, clipped_ = 0;
     float size_ = 1;
     uint64_t fingerprint_ = 0;
+    std::vector<CutNode> nodes_;
     std::shared_ptr<const CutPoints> points_;
 };
 

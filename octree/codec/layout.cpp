@@ -1,5 +1,7 @@
 #include "octree/codec/layout.h"
 
+#include <cassert>
+
 namespace lucarne::octree::codec {
 namespace {
 
@@ -79,8 +81,10 @@ std::vector<Column> columns_of(const io::Schema& schema) {
 
 void gather(const Column& column, std::span<const std::byte> records, uint32_t stride,
             std::vector<uint64_t>& values) {
+    assert(column.offset + column.bytes <= stride);
     const size_t count = records.size() / stride;
     values.resize(count);
+    if (count == 0) return;  // `records` may have no address to start from
     const std::byte* at = records.data() + column.offset;
     const auto each = [&](const auto& number) {
         for (size_t i = 0; i < count; ++i, at += stride) values[i] = number(at);
@@ -104,6 +108,9 @@ void gather(const Column& column, std::span<const std::byte> records, uint32_t s
 
 void scatter(const Column& column, std::span<const uint64_t> values, std::span<std::byte> records,
              uint32_t stride) {
+    assert(column.offset + column.bytes <= stride);
+    assert(records.size() == values.size() * stride);
+    if (values.empty()) return;  // `records` may have no address to start from
     std::byte* at = records.data() + column.offset;
     const auto each = [&](const auto& put) {
         for (const uint64_t value : values) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
 #include "gi/registry.h"
 #include "gi/surfels/baked_light.h"
@@ -331,25 +332,21 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials)
         materials.push_back(device_material(material, scene.albedo.scale));
-    gi::Frame frame{device,
-                    pool,
-                    cuts,
-                    camera,
-                    gbuffer,
-                    lights,
-                    materials,
-                    glm::vec3(scene.background),
-                    settings,
-                    presentation.accumulated(),
-                    target,
-                    times,
-                    scene.environment,
-                    {local.to_local(header.min), local.to_local(header.max)},
-                    request.moving,
-                    request.progress,
-                    scene.look.unlit};
-    LUCARNE_TRY(drawing.prepare(frame));
-    return drawing.render(frame);
+    gi::GlFrame on_device{device, pool, cuts, gbuffer, target};
+    gi::Frame frame{.camera = camera,
+                    .lights = lights,
+                    .materials = materials,
+                    .background = glm::vec3(scene.background),
+                    .settings = settings,
+                    .index = presentation.accumulated(),
+                    .environment = scene.environment,
+                    .bounds = {local.to_local(header.min), local.to_local(header.max)},
+                    .moving = request.moving,
+                    .progress = request.progress,
+                    .unlit = scene.look.unlit,
+                    .gl = on_device,
+                    .times = times};
+    return drawing.draw(frame);
 }
 
 Result<void> Pipeline::State::make_picture(const FrameRequest& request) {

@@ -7,9 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "gi/device/gl/device.h"
 #include "gi/engine.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/scene/scene.h"
 #include "gi/surfels/colouring.h"
+#include "gi/surfels/surfel_pool.h"
 #include "io/core/options.h"
 #include "octree/tree/source.h"
 #include "viewer/frame/presets.h"

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
+#include "gi/device/gl/device.h"
 #include "gi/engine.h"
+#include "gi/raster/gbuffer.h"
 #include "gi/scene/scene.h"
 
 namespace lucarne::viewer {

@@ -1,6 +1,7 @@
 #include "gi/engines/direct/direct.h"
 
 #include "gi/bounce_options.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 
@@ -17,14 +18,16 @@ constexpr EngineInfo kInfo{.name = "direct",
 class DirectEngine : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
+
+ protected:
     Result<void> prepare(Frame& frame) override {
-        if (frame.cuts.light_views.size() < frame.lights.size())
+        if (frame.gl.cuts.light_views.size() < frame.lights.size())
             return failed("direct", "there are fewer light views than lights");
         LUCARNE_TRY(upload_sky(frame, sky_));
-        return upload_materials(frame.device, frame.materials, materials_);
+        return upload_materials(frame.gl.device, frame.materials, materials_);
     }
     Result<void> render(Frame& frame) override;
-    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
 
  private:
     Buffer materials_;
@@ -34,7 +37,7 @@ class DirectEngine : public Engine {
 
 Result<void> DirectEngine::render(Frame& frame) {
     if (frame.settings[kOnlyBounce] > 0) {  // no bounce at all is drawn here
-        frame.radiance.clear(0);
+        frame.gl.radiance.clear(0);
         return {};
     }
     frame.times.begin("emission");
@@ -42,7 +45,7 @@ Result<void> DirectEngine::render(Frame& frame) {
     frame.times.end();
     for (const LightView& from : light_views(frame, sky_.directions)) {
         frame.times.begin("light G-buffer");
-        LUCARNE_TRY(rasterize(frame.device, *from.cut, from.view, light_gbuffer_));
+        LUCARNE_TRY(rasterize(frame.gl.device, *from.cut, from.view, light_gbuffer_));
         frame.times.end();
         frame.times.begin("direct light");
         LUCARNE_TRY(add_light(frame, materials_, from, light_gbuffer_));

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 #include <glm/packing.hpp>
-#include <xxhash.h>
 
 #include "gi/bounce_options.h"
 #include "gi/engines/reference/options.h"
 #include "gi/engines/reference/path_tracer.h"
+#include "gi/host_frame.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/log.h"
 #include "io/core/parallel.h"
@@ -57,22 +56,6 @@ vec3 background(const Frame& frame, const Start& start) {
     return frame.environment ? frame.environment->radiance(-start.viewer) : frame.background;
 }
 
-/// What the sampling tables are made from; equal content, equal tables.
-struct Shining {
-    std::vector<Light> lights;
-    std::vector<Material> materials;
-    std::shared_ptr<const Environment> environment;
-    uint64_t surfels = 0;  // hash
-
-    bool operator==(const Shining& other) const {
-        const auto same = [](const auto& a, const auto& b) {
-            return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
-        };
-        return same(lights, other.lights) && same(materials, other.materials) &&
-               environment == other.environment && surfels == other.surfels;
-    }
-};
-
 constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &reference::kSamples.info,
                                           &kSeed.info};
 constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
@@ -86,17 +69,21 @@ constexpr EngineInfo kInfo{.name = "reference",
 class ReferenceEngine final : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
-    Result<void> prepare(Frame& frame) override;
-    Result<void> render(Frame& frame) override;
     std::vector<std::pair<std::string, double>> stats() const override;
     std::vector<std::vector<glm::vec4>> layers() const override;
+
+ protected:
+    void update(const Changes& changes) override;
+    Result<void> prepare(Frame& frame) override;
+    Result<void> render(Frame& frame) override;
 
  private:
     void take_in(const Frame& frame, std::vector<PathSums> sums);
 
     std::unique_ptr<SurfelTracer> tracer_;
     std::unique_ptr<Illumination> illumination_;
-    Shining shining_;  // what illumination_ was made from
+    SceneRevisions scene_;    // of the last frame
+    uint64_t light_cut_ = 0;  // likewise
     double coverage_ = 0;
 
     std::vector<PathSums> sums_;  // of all frames since the view changed
@@ -105,24 +92,27 @@ class ReferenceEngine final : public Engine {
     uint32_t samples_ = 0;
 };
 
-Result<void> ReferenceEngine::prepare(Frame& frame) {
-    if (!frame.cuts.light) return failed("reference", "there is no light cut to trace");
-    frame.times.begin("surfels for tracing");
-    std::vector<Surfel> surfels = frame.pool.download(*frame.cuts.light);
-    const Shining now{frame.lights, frame.materials, frame.environment,
-                      XXH3_64bits(surfels.data(), surfels.size() * sizeof(Surfel))};
-    if (!tracer_ || now.surfels != shining_.surfels) {
+/// Drops the tree and the sampling tables where what they are made from has changed.
+void ReferenceEngine::update(const Changes& changes) {
+    const SceneRevisions& now = changes.scene;
+    if (changes.light_cuts.light != light_cut_ || now.lights != scene_.lights ||
+        now.materials != scene_.materials || now.environment != scene_.environment)
         illumination_.reset();
-        tracer_.reset();  // two trees at once would double the peak
-        LUCARNE_ASSIGN(tracer_, SurfelTracer::create(std::move(surfels)));
+    if (changes.light_cuts.light != light_cut_) tracer_.reset();
+    scene_ = now;
+    light_cut_ = changes.light_cuts.light;
+}
+
+Result<void> ReferenceEngine::prepare(Frame& frame) {
+    const TimedPass pass(frame, "surfels for tracing");
+    if (!tracer_) {
+        LUCARNE_ASSIGN(tracer_, SurfelTracer::create(download_light_surfels(frame)));
         coverage_ = tracer_->coverage();
         log::info("reference: {} surfels, coverage {:.2f}", tracer_->surfels().size(), coverage_);
     }
-    if (!illumination_ || !(now == shining_)) {
-        illumination_ = std::make_unique<Illumination>(*tracer_, now.materials, now.lights, now.environment);
-        shining_ = now;
-    }
-    frame.times.end();
+    if (!illumination_)
+        illumination_ =
+            std::make_unique<Illumination>(*tracer_, frame.materials, frame.lights, frame.environment);
     return {};
 }
 
@@ -138,10 +128,9 @@ void ReferenceEngine::take_in(const Frame& frame, std::vector<PathSums> sums) {
 }
 
 Result<void> ReferenceEngine::render(Frame& frame) {
-    if (!illumination_) return failed("reference", "a frame was rendered before it was prepared");
-    frame.times.begin("paths");
-    const size_t pixels = size_t{frame.gbuffer.width} * frame.gbuffer.height;
-    const auto starts = starts_of(frame.camera, frame.gbuffer.texels.download_all<GBufferTexel>(pixels));
+    const TimedPass pass(frame, "paths");
+    const auto starts = starts_of(frame.camera, download_gbuffer(frame));
+    const size_t pixels = starts.size();
     const PathSettings settings{.bounces = frame.settings[kBounces],
                                 .only_bounce = frame.settings[kOnlyBounce],
                                 .samples = frame.settings[reference::kSamples],
@@ -154,11 +143,10 @@ Result<void> ReferenceEngine::render(Frame& frame) {
             sums[i].exact = glm::dvec3(background(frame, starts[i]));
     std::vector<vec4> radiance(pixels);
     for (size_t i = 0; i < pixels; ++i) radiance[i] = vec4(sums[i].radiance(), 1.0f);
-    frame.radiance.upload_all(radiance);
+    upload_radiance(frame, radiance);
     mean_ = reference::mean_luminance(sums);
     samples_ = settings.samples;
     take_in(frame, std::move(sums));
-    frame.times.end();
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/raster/uniforms.h"
 
@@ -19,12 +20,14 @@ constexpr EngineInfo kInfo{
 class UnlitEngine : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
+
+ protected:
     Result<void> prepare(Frame& frame) override {
         LUCARNE_TRY(upload_sky(frame, sky_));
-        return upload_materials(frame.device, {}, materials_);
+        return upload_materials(frame.gl.device, {}, materials_);
     }
     Result<void> render(Frame& frame) override;
-    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
 
  private:
     Result<void> obscure(Frame& frame);
@@ -36,10 +39,10 @@ class UnlitEngine : public Engine {
 
 /// Ambient occlusion of every pixel, before it is smoothed.
 Result<void> UnlitEngine::obscure(Frame& frame) {
-    const GBuffer& gbuffer = frame.gbuffer;
+    const GBuffer& gbuffer = frame.gl.gbuffer;
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
-    LUCARNE_TRY(frame.device.reserve(obscurance_, pixels * sizeof(float), "ambient occlusion"));
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/engines/unlit/occlusion.comp"));
+    LUCARNE_TRY(frame.gl.device.reserve(obscurance_, pixels * sizeof(float), "ambient occlusion"));
+    LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/engines/unlit/occlusion.comp"));
     gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
     obscurance_.bind(kObscurance);
     set(*program, "camera", frame.camera);
@@ -60,16 +63,16 @@ Result<void> UnlitEngine::render(Frame& frame) {
     }
     frame.times.begin("colours");
     static const Defines kDefines[] = {{}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
-    LUCARNE_ASSIGN(const Program* program, frame.device.program("gi/engines/unlit/colours.comp",
-                                                                kDefines[static_cast<size_t>(shading)]));
-    frame.gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
+    LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/engines/unlit/colours.comp",
+                                                                   kDefines[static_cast<size_t>(shading)]));
+    frame.gl.gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
     if (shading == Shading::occlusion) obscurance_.bind(kObscurance);
-    frame.radiance.bind(kRadiance);
+    frame.gl.radiance.bind(kRadiance);
     set(*program, "camera", frame.camera);
     program->set("strength", static_cast<float>(frame.unlit.strength));
     const double pixels = frame.unlit.eye_dome_pixels * frame.camera.height / 1080.0;
     program->set("neighbour", static_cast<float>(std::max(pixels, 1.0)));
-    program->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    program->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);
     frame.times.end();
     return {};
 }

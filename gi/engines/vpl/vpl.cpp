@@ -13,6 +13,7 @@
 #include "gi/engines/vpl/seeding/light_sights.h"
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 #include "io/core/random.h"
@@ -21,15 +22,11 @@ namespace lucarne::gi {
 namespace vpl {
 namespace {
 
-/// What VPLs and maps are made from.
+/// Everything that VPLs and shadow maps are computed from.
 struct Basis {
-    EngineSettings settings;
-    std::vector<Light> lights;
-    std::vector<Material> materials;
-    std::vector<uint64_t> cuts;
-    Bounds bounds;
-    std::shared_ptr<const Environment> environment;
-    uint64_t index = UINT64_MAX;
+    SceneRevisions scene;
+    LightCutRevisions cuts;
+    uint64_t index = UINT64_MAX;  ///< of the frame
     bool operator==(const Basis&) const = default;
 };
 
@@ -51,9 +48,12 @@ constexpr EngineInfo kInfo{
 class VplEngine : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override;
+
+ protected:
+    void update(const Changes& changes) override;
     Result<void> prepare(Frame& frame) override;
     Result<void> render(Frame& frame) override;
-    std::vector<std::pair<std::string, double>> stats() const override;
 
  private:
     Result<void> add_direct(Frame& frame);
@@ -63,8 +63,10 @@ class VplEngine : public Engine {
     Sky sky_;
     LightSights sights_;
     std::vector<Bounce> bounces_;
-    ShadowMaps maps_;  ///< its atlas is a bounce's while that is drawn or read
-    Basis basis_;      ///< of bounces_
+    ShadowMaps maps_;       ///< its atlas is a bounce's while that is drawn or read
+    Basis basis_;           ///< of bounces_
+    SceneRevisions scene_;  ///< of the frame that is drawn
+    LightCutRevisions cuts_;
     Panes panes_;
     History history_;
     Redistribution redistribution_;
@@ -97,29 +99,26 @@ Result<void> VplEngine::prepare(Frame& frame) {
         return bad_arguments("vpl", fmt::format("it cannot interleave {0} x {0} pixels", s[kInterleave]),
                              "choose 1, 2 or 4");
     LUCARNE_TRY(atlas_layout(s[kAtlas], s[kVpls]));
-    if (frame.cuts.light_views.size() < frame.lights.size())
+    if (frame.gl.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
     LUCARNE_TRY(upload_sky(frame, sky_));
-    return upload_materials(frame.device, frame.materials, materials_);
+    return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
-/// Everything that the VPLs and their maps follow from.
-Basis basis_of(const Frame& frame) {
-    Basis basis{frame.settings, frame.lights,      frame.materials, {frame.cuts.light->fingerprint()},
-                frame.bounds,   frame.environment, frame.index};
-    for (const DeviceCut* cut : frame.cuts.light_views) basis.cuts.push_back(cut->fingerprint());
-    return basis;
+void VplEngine::update(const Changes& changes) {
+    scene_ = changes.scene;
+    cuts_ = changes.light_cuts;
 }
 
 /// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
-/// next bounce: frame.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the camera
-/// moves.
+/// next bounce: frame.gl.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the
+/// camera moves.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s[kAtlas], s[kVpls]));
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
-    Basis basis = basis_of(frame);
+    const Basis basis{scene_, cuts_, frame.index};
     const bool held = keep && basis == basis_;
     basis_ = {};  // until all is drawn
     // Frame by frame less is blurred, so that what is averaged converges.
@@ -133,33 +132,33 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
             return sights_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index), bounces_[0].seeds);
         }));
         LUCARNE_TRY(pass(frame, "ISM casters",
-                         [&] { return decode_casters(frame.device, *frame.cuts.light, maps_); }));
+                         [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
     }
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
         Seeds& seeds = bounces_[bounce - 1].seeds;
         Buffer& atlas = bounces_[keep ? bounce - 1 : 0].atlas;
         std::swap(maps_.atlas, atlas);
         Result<void> done = held ? Result<void>{}
-                                 : draw_shadow_maps(frame.device, *frame.cuts.light, seeds, layout,
+                                 : draw_shadow_maps(frame.gl.device, *frame.gl.cuts.light, seeds, layout,
                                                     bounce < last, frame.times, maps_);
         if (done && !held)
             done = pass(frame, "VPL footprints",
-                        [&] { return trim_footprints(frame.device, maps_, shrink, seeds); });
+                        [&] { return trim_footprints(frame.gl.device, maps_, shrink, seeds); });
         if (done && (s[kOnlyBounce] < 0 || bounce == last))
             done = pass(frame, "VPL shading",
                         [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
         if (done && !held && bounce < last)
             done = pass(frame, "VPL redistribution", [&] {
                 const auto salt = static_cast<uint32_t>(mix64(mix64(s[kSeed], frame.index), bounce));
-                return redistribute(frame.device, *frame.cuts.light, maps_, materials_, glossy(frame), salt,
-                                    seeds, redistribution_, bounces_[bounce].seeds);
+                return redistribute(frame.gl.device, *frame.gl.cuts.light, maps_, materials_, glossy(frame),
+                                    salt, seeds, redistribution_, bounces_[bounce].seeds);
             });
         std::swap(maps_.atlas, atlas);
         LUCARNE_TRY(done);
     }
-    basis_ = std::move(basis);
+    basis_ = basis;
     const bool reuse = frame.moving && s[kReuse];
-    if (reuse) LUCARNE_TRY(history_.begin(frame));
+    if (reuse) LUCARNE_TRY(history_.begin(frame, scene_));
     return pass(frame, "VPL merge",
                 [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
 }
@@ -185,7 +184,7 @@ Result<void> VplEngine::render(Frame& frame) {
     if (indirect_)
         LUCARNE_TRY(light_indirectly(frame));
     else
-        frame.radiance.clear(0);
+        frame.gl.radiance.clear(0);
     return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};
 }
 

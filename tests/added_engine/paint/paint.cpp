@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "gi/host_frame.h"
+
 namespace lucarne::gi {
 namespace {
 
@@ -51,21 +53,23 @@ constexpr EngineInfo kInfo{.name = "paint", .description = "one colour", .option
 class PaintEngine final : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
+    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
+
+ protected:
     Result<void> prepare(Frame&) override { return {}; }
     Result<void> render(Frame& frame) override {
-        const GBuffer& seen = frame.gbuffer;
         const EngineSettings& s = frame.settings;
-        const auto texels = seen.texels.download_all<GBufferTexel>(size_t{seen.width} * seen.height);
+        const auto texels = download_gbuffer(frame);
         std::vector<glm::vec4> radiance(texels.size(), glm::vec4(0.0f));
         const glm::vec4 colour(glm::vec3(s[kTint] * s[kGain]), 1.0f);
         for (size_t i = 0; i < texels.size(); ++i) {
-            const bool striped = s[kPattern] == Pattern::stripes && i % seen.width / s[kWidth] % 2 == 1;
+            const bool striped =
+                s[kPattern] == Pattern::stripes && i % frame.camera.width / s[kWidth] % 2 == 1;
             if ((texels[i].depth > 0 || s[kPaintSky]) && !striped) radiance[i] = colour;
         }
-        frame.radiance.upload_all(radiance);
+        upload_radiance(frame, radiance);
         return {};
     }
-    std::vector<std::pair<std::string, double>> stats() const override { return {}; }
 };
 
 }  // namespace

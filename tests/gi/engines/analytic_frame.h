@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engine.h"
+#include "gi/gl_frame.h"
 #include "gi/registry.h"
 #include "gi/shared/surfel_code.h"
 #include "octree/tree/source.h"
@@ -148,12 +149,18 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(scene.lights.size(), &cut), &cut};
     const std::vector<Material> materials =
         scene.materials.empty() ? std::vector{material(1, 0, 1, 0)} : scene.materials;
-    Frame frame{device,          pool,           cuts,  scene.camera, gbuffer, scene.lights,     materials,
-                glm::vec3(0.0f), scene.settings, index, radiance,     times,   scene.environment};
-    frame.bounds = {glm::vec3(source.header().min), glm::vec3(source.header().max)};
+    GlFrame on_device{device, pool, cuts, gbuffer, radiance};
+    Frame frame{.camera = scene.camera,
+                .lights = scene.lights,
+                .materials = materials,
+                .settings = scene.settings,
+                .index = index,
+                .environment = scene.environment,
+                .bounds = {glm::vec3(source.header().min), glm::vec3(source.header().max)},
+                .gl = on_device,
+                .times = times};
     LUCARNE_ASSIGN(const auto engine, make_engine(engine_name));
-    LUCARNE_TRY(engine->prepare(frame));
-    LUCARNE_TRY(engine->render(frame));
+    LUCARNE_TRY(engine->draw(frame));
     return Rendered{radiance.download_all<glm::vec4>(pixels),
                     gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats()};
 }

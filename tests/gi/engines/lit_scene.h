@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engine.h"
+#include "gi/gl_frame.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/test_settings.h"
 
@@ -77,26 +78,20 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     radiance->clear(0x7fc00000u);  // no number: the engine has to write every pixel
     PassTimes times(device);
     const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(options.lights.size(), &cut), &cut};
-    Frame frame{device,
-                (*loaded)->pool,
-                cuts,
-                camera,
-                gbuffer,
-                options.lights,
-                options.materials,
-                options.background,
-                options.settings,
-                0,
-                *radiance,
-                times,
-                options.environment};
-    frame.moving = options.moving;
-    frame.unlit = options.unlit;
-    frame.bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)};
-    const auto prepared = engine.prepare(frame);
-    EXPECT_TRUE(prepared) << prepared.error().line();
-    const auto rendered = engine.render(frame);
-    EXPECT_TRUE(rendered) << rendered.error().line();
+    GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};
+    Frame frame{.camera = camera,
+                .lights = options.lights,
+                .materials = options.materials,
+                .background = options.background,
+                .settings = options.settings,
+                .environment = options.environment,
+                .bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)},
+                .moving = options.moving,
+                .unlit = options.unlit,
+                .gl = on_device,
+                .times = times};
+    const auto drawn_by_engine = engine.draw(frame);
+    EXPECT_TRUE(drawn_by_engine) << drawn_by_engine.error().line();
     lit.radiance = radiance->download_all<glm::vec4>(pixels);
     lit.texels = gbuffer.texels.download_all<GBufferTexel>(pixels);
     return lit;

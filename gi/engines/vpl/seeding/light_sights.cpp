@@ -5,6 +5,7 @@
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
+#include "gi/gl_frame.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -38,7 +39,7 @@ Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
         std::swap(scratch_.ids, held.gbuffer.ids);
     };
     swap_pictures();
-    const auto drawn = rasterize(frame.device, *view.cut, view.view, scratch_);
+    const auto drawn = rasterize(frame.gl.device, *view.cut, view.view, scratch_);
     swap_pictures();
     LUCARNE_TRY(drawn);
     held.view = view.view;
@@ -57,31 +58,32 @@ Result<Sight> LightSights::sight(Frame& frame, size_t index) {
 
 Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,
                                Seeds& target) {
-    LUCARNE_TRY(frame.device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
     std::vector<double> weights;
     for (size_t i = 0; i < views_.size(); ++i) {
         LUCARNE_ASSIGN(const Sight from, sight(frame, i));
         materials.bind(kBindMaterials);
-        LUCARNE_ASSIGN(const double weight, map_importance(frame.device, from, importance_));
+        LUCARNE_ASSIGN(const double weight, map_importance(frame.gl.device, from, importance_));
         weights.push_back(weight);
     }
     emitters_.running.clear();
-    if (emits(frame)) LUCARNE_TRY(weigh_emitters(frame.device, *frame.cuts.light, materials, emitters_));
+    if (emits(frame))
+        LUCARNE_TRY(weigh_emitters(frame.gl.device, *frame.gl.cuts.light, materials, emitters_));
     weights.push_back(emitters_.flux());
     target.lights.upload_all(std::vector<VplLight>(count, kDeadLight));
     const std::vector<uint32_t> shares = share_out(weights, count);
-    LUCARNE_TRY(
-        seed_emitters(frame.device, *frame.cuts.light, materials, emitters_, shares.back(), seed, 0, target));
+    LUCARNE_TRY(seed_emitters(frame.gl.device, *frame.gl.cuts.light, materials, emitters_, shares.back(),
+                              seed, 0, target));
     uint32_t first = shares.back();
     for (size_t i = 0; i < views_.size(); ++i) {
         if (shares[i] == 0) continue;
         LUCARNE_ASSIGN(const Sight from, sight(frame, i));
         if (views_.size() > 1) {
             materials.bind(kBindMaterials);
-            LUCARNE_TRY(map_importance(frame.device, from, importance_));
+            LUCARNE_TRY(map_importance(frame.gl.device, from, importance_));
         }
-        LUCARNE_TRY(seed_view(frame.device, from, importance_, materials, halton_points(shares[i], seed, i),
-                              first, target));
+        LUCARNE_TRY(seed_view(frame.gl.device, from, importance_, materials,
+                              halton_points(shares[i], seed, i), first, target));
         first += shares[i];
     }
     settle_lights(target, count);

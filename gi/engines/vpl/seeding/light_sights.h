@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "gi/engine.h"
 #include "gi/engines/vpl/seeding/emitters.h"
 #include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/gl_frame.h"
 #include "gi/lighting/light_view.h"
 
 namespace lucarne::gi::vpl {

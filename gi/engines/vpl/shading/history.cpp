@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi::vpl {
@@ -14,16 +15,13 @@ constexpr float kMostFrames = 8;
 
 }  // namespace
 
-History::Basis History::basis_of(const Frame& frame) {
-    return {frame.settings, frame.lights, frame.materials, frame.bounds, frame.environment.get()};
-}
-
-Result<void> History::begin(const Frame& frame) {
+Result<void> History::begin(const Frame& frame, const SceneRevisions& scene) {
     const size_t pixels = size_t{frame.camera.width} * frame.camera.height;
-    if (!(basis_of(frame) == basis_)) camera_ = {};
-    LUCARNE_TRY(frame.device.reserve(next_.light, pixels * sizeof(glm::vec4), "the last frame's light"));
+    scene_ = scene;
+    if (!(scene_ == last_scene_)) camera_ = {};
+    LUCARNE_TRY(frame.gl.device.reserve(next_.light, pixels * sizeof(glm::vec4), "the last frame's light"));
     LUCARNE_TRY(
-        frame.device.reserve(next_.surfaces, pixels * 2 * sizeof(uint32_t), "the last frame's light"));
+        frame.gl.device.reserve(next_.surfaces, pixels * 2 * sizeof(uint32_t), "the last frame's light"));
     return {};
 }
 
@@ -40,7 +38,7 @@ void History::bind(const Frame& frame, const Program& merge) const {
 void History::end(const Frame& frame) {
     std::swap(last_, next_);
     camera_ = frame.camera;
-    basis_ = basis_of(frame);
+    last_scene_ = scene_;
 }
 
 }  // namespace lucarne::gi::vpl

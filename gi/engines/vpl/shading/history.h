@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "gi/engine.h"
+#include "gi/changes.h"
+#include "gi/device/gl/device.h"
 
 namespace lucarne::gi::vpl {
 
@@ -12,7 +13,7 @@ class History {
  public:
     /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no
     /// device memory.
-    Result<void> begin(const Frame& frame);
+    Result<void> begin(const Frame& frame, const SceneRevisions& scene);
     void bind(const Frame& frame, const Program& merge) const;
     /// The frame was merged: it is the last one now.
     void end(const Frame& frame);
@@ -22,20 +23,9 @@ class History {
         Buffer light;     ///< vec4 a pixel: irradiance, W/m^2; frames in it
         Buffer surfaces;  ///< uvec2 a pixel: depth (0: nothing), normal
     };
-    /// What must be the same for light to be the same.
-    struct Basis {
-        EngineSettings settings;
-        std::vector<Light> lights;
-        std::vector<Material> materials;
-        Bounds bounds;
-        const Environment* environment = nullptr;
-        bool operator==(const Basis&) const = default;
-    };
-    static Basis basis_of(const Frame& frame);
-
     Side last_, next_;
-    Basis basis_;
-    CameraView camera_{};  ///< of last_; no width: there is none
+    SceneRevisions last_scene_, scene_;  ///< of last_ and next_
+    CameraView camera_{};                ///< of last_; its width is 0 where there is no last frame
 };
 
 }  // namespace lucarne::gi::vpl

@@ -3,6 +3,7 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi::vpl {
@@ -13,7 +14,7 @@ Defines defines(const Panes& panes) {
 }
 
 void bind_pixels(const Frame& frame, const Program& program) {
-    frame.gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
+    frame.gl.gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
     program.set("interleave", frame.settings[kInterleave]);
     set(program, "camera", frame.camera);
 }
@@ -21,32 +22,33 @@ void bind_pixels(const Frame& frame, const Program& program) {
 }  // namespace
 
 Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
-    LUCARNE_ASSIGN(const Program* join, frame.device.program("gi/engines/vpl/shading/join.comp"));
-    const size_t pixels = size_t{frame.gbuffer.width} * frame.gbuffer.height;
+    LUCARNE_ASSIGN(const Program* join, frame.gl.device.program("gi/engines/vpl/shading/join.comp"));
+    const size_t pixels = size_t{frame.gl.gbuffer.width} * frame.gl.gbuffer.height;
     const size_t bytes = pixels * 4 * sizeof(float), one = 4 * sizeof(float);
     target.glossy = glossy;
-    LUCARNE_TRY(frame.device.reserve(target.diffuse, bytes, "indirect irradiance"));
-    LUCARNE_TRY(frame.device.reserve(target.own_diffuse, bytes, "indirect irradiance"));
-    LUCARNE_TRY(frame.device.reserve(target.specular, glossy ? bytes : one, "indirect specular light"));
-    LUCARNE_TRY(frame.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
-    LUCARNE_TRY(frame.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "panes"));
-    LUCARNE_TRY(frame.device.reserve(target.lonely, (1 + pixels) * sizeof(uint32_t), "panes"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.diffuse, bytes, "indirect irradiance"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.own_diffuse, bytes, "indirect irradiance"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.specular, glossy ? bytes : one, "indirect specular light"));
+    LUCARNE_TRY(
+        frame.gl.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "panes"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.lonely, (1 + pixels) * sizeof(uint32_t), "panes"));
     for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
         light->clear(0);
     target.lonely.upload_all(std::vector<uint32_t>{0});
     target.joints.bind(kBindJoints);
     target.lonely.bind(kBindLonely);
     bind_pixels(frame, *join);
-    join->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    join->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);
     return {};
 }
 
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
                          Panes& target) {
     LUCARNE_ASSIGN(const Program* shade,
-                   frame.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
+                   frame.gl.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
     LUCARNE_ASSIGN(const Program* shade_lonely,
-                   frame.device.program("gi/engines/vpl/shading/shade_lonely.comp", defines(target)));
+                   frame.gl.device.program("gi/engines/vpl/shading/shade_lonely.comp", defines(target)));
     materials.bind(kBindMaterials);
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
@@ -59,7 +61,7 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
     const uint32_t n = frame.settings[kInterleave];
     target.diffuse.bind(kBindDiffuse);
     target.specular.bind(kBindSpecular);
-    shade->dispatch((frame.gbuffer.width + n - 1) / n, (frame.gbuffer.height + n - 1) / n, n * n);
+    shade->dispatch((frame.gl.gbuffer.width + n - 1) / n, (frame.gl.gbuffer.height + n - 1) / n, n * n);
     if (n == 1) return {};
     target.joints.bind(kBindJoints);
     target.lonely.bind(kBindLonely);
@@ -72,17 +74,17 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
 Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history) {
     Defines how = defines(panes);
     if (history) how.emplace_back("LUCARNE_HISTORY", "1");
-    LUCARNE_ASSIGN(const Program* merge, frame.device.program("gi/engines/vpl/shading/merge.comp", how));
+    LUCARNE_ASSIGN(const Program* merge, frame.gl.device.program("gi/engines/vpl/shading/merge.comp", how));
     materials.bind(kBindMaterials);
     panes.joints.bind(kBindJoints);
     panes.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
     panes.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
     panes.own_diffuse.bind_texels(kUnitOwnDiffuse, TexelView::four_floats);
     panes.own_specular.bind_texels(kUnitOwnSpecular, TexelView::four_floats);
-    frame.radiance.bind(kBindRadiance);
+    frame.gl.radiance.bind(kBindRadiance);
     bind_pixels(frame, *merge);
     if (history) history->bind(frame, *merge);
-    merge->dispatch(frame.gbuffer.width, frame.gbuffer.height);
+    merge->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);
     if (history) history->end(frame);
     return {};
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "gi/engine.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/shading/history.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/gl_frame.h"
 
 namespace lucarne::gi::vpl {
 
@@ -25,8 +25,8 @@ Result<void> join_panes(Frame& frame, bool glossy, Panes& target);
 Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
                          Panes& target);
 
-/// Writes the light of all panes to frame.radiance, with what `history` knows if there is one (that has begun
-/// the frame). Errors: a shader that fails.
+/// Writes the light of all panes to frame.gl.radiance, with what `history` knows if there is one (that has
+/// begun the frame). Errors: a shader that fails.
 Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history);
 
 }  // namespace lucarne::gi::vpl

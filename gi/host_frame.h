@@ -1,0 +1,36 @@
+// What an engine needs that computes on the host: surfels and G-buffer from the device, radiance to it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "gi/frame.h"
+#include "gi/shared/gbuffer.h"
+#include "gi/shared/surfel.h"
+
+namespace lucarne::gi {
+
+/// The surfels of the frame's light cut, with their footprints. Waits for the device.
+std::vector<Surfel> download_light_surfels(const Frame& frame);
+
+/// The surface that each pixel of the picture shows, row 0 on top. Waits for the device.
+std::vector<GBufferTexel> download_gbuffer(const Frame& frame);
+
+/// Sets the radiance of all pixels (rgb W/(sr m^2), row 0 on top).
+void upload_radiance(Frame& frame, std::span<const glm::vec4> radiance);
+
+/// Times a pass of the frame under `name` for as long as it lives.
+class TimedPass {
+ public:
+    TimedPass(Frame& frame, const char* name);
+    ~TimedPass();
+    TimedPass(const TimedPass&) = delete;
+    TimedPass& operator=(const TimedPass&) = delete;
+
+ private:
+    PassTimes& times_;
+};
+
+}  // namespace lucarne::gi
