@@ -15,39 +15,10 @@
 #include "io/core/log.h"
 
 #ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
+#include "io/core/plain_threads.h"
 #endif
 
 namespace lucarne {
-
-/// What one thread did before give() happens before what another does after take(). TBB sees to that; but its
-/// library is not built for ThreadSanitizer, which has to be told. Nothing in other builds.
-class HandOver {
- public:
-#ifdef __SANITIZE_THREAD__
-    void give() {
-        __tsan_release(this);
-    }
-    void take() {
-        __tsan_acquire(this);
-    }
-#else
-    void give() {}
-    void take() {}
-#endif
-
-    /// A piece of work, for as long as it lives: takes what `from` was given, and gives to `to`.
-    class Piece {
-     public:
-        Piece(HandOver& from, HandOver& to) : to_(to) { from.take(); }
-        ~Piece() { to_.give(); }
-        Piece(const Piece&) = delete;
-        Piece& operator=(const Piece&) = delete;
-
-     private:
-        HandOver& to_;
-    };
-};
 
 /// Caps the threads of every parallel loop while it lives; 0 means all cores.
 class ThreadLimit {
@@ -66,16 +37,17 @@ class ThreadLimit {
 template <class Body>
 void parallel_ranges(size_t count, size_t grain, const Body& body) {
     const size_t pieces = (count + grain - 1) / grain;
-    HandOver begun, done;
     const auto operation = log::Operation::current();
-    begun.give();
-    tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
-        const HandOver::Piece handed(begun, done);
+    const auto run = [&](size_t piece) {
         const log::Operation::Scope scope(operation);
         const size_t first = piece * grain;
         body(first, std::min(count, first + grain));
-    });
-    done.take();
+    };
+#ifdef __SANITIZE_THREAD__
+    plain_threads::for_each(pieces, run);
+#else
+    tbb::parallel_for(size_t{0}, pieces, run);
+#endif
 }
 
 /// Collects the failure of parallel work. Of several the one with the lowest `order` is kept, so that the

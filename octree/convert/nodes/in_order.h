@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <tbb/parallel_pipeline.h>
 
@@ -19,16 +21,8 @@ Result<void> in_order(size_t count, unsigned most, const Make& make, const Take&
         Piece piece;
     };
     FirstError error;
-    size_t next = 0;
-    HandOver begun, made;
-    const auto source = [&](tbb::flow_control& control) -> size_t {
-        const HandOver::Piece handed(begun, begun);
-        if (next == count || error.any()) control.stop();
-        return next++;
-    };
     const auto operation = log::Operation::current();
     const auto build = [&](size_t index) {
-        const HandOver::Piece handed(begun, made);
         const log::Operation::Scope scope(operation);
         auto result = std::make_shared<Made>(Made{index, {}});
         if (error.any()) return result;
@@ -39,19 +33,29 @@ Result<void> in_order(size_t count, unsigned most, const Make& make, const Take&
         return result;
     };
     const auto hand_on = [&](const std::shared_ptr<Made>& result) {
-        const HandOver::Piece handed(made, made);
         const log::Operation::Scope scope(operation);
         if (error.any()) return;
         if (auto done = take(result->index, std::move(result->piece)); !done)
             error.report(result->index, std::move(done).error());
     };
-    begun.give();
+#ifdef __SANITIZE_THREAD__
+    // As many pieces as may wait are made side by side, and then handed on.
+    for (size_t first = 0; first < count && !error.any(); first += most) {
+        std::vector<std::shared_ptr<Made>> made(std::min<size_t>(most, count - first));
+        plain_threads::for_each(made.size(), [&](size_t i) { made[i] = build(first + i); });
+        for (const auto& piece : made) hand_on(piece);
+    }
+#else
+    size_t next = 0;
+    const auto source = [&](tbb::flow_control& control) -> size_t {
+        if (next == count || error.any()) control.stop();
+        return next++;
+    };
     tbb::parallel_pipeline(
         most, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, source) &
                   tbb::make_filter<size_t, std::shared_ptr<Made>>(tbb::filter_mode::parallel, build) &
                   tbb::make_filter<std::shared_ptr<Made>, void>(tbb::filter_mode::serial_in_order, hand_on));
-    begun.take();
-    made.take();
+#endif
     return error.result();
 }
 
