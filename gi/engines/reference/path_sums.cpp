@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gi/engines/reference/light_sampling.h"
+#include "gi/tracing/light_sampling.h"
 
 namespace lucarne::gi::reference {
 

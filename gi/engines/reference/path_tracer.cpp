@@ -5,11 +5,18 @@
 
 #include <glm/geometric.hpp>
 
-#include "gi/engines/reference/scatter.h"
+#include "gi/tracing/scatter.h"
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
 
 namespace lucarne::gi::reference {
+
+using tracing::Incident;
+using tracing::light_along;
+using tracing::offset_origin;
+using tracing::sample_light;
+using tracing::scatter;
+using tracing::scatter_pdf;
 namespace {
 
 constexpr uint32_t kRouletteFrom = 4;  // bounces that every path may take before chance ends it

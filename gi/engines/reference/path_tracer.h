@@ -6,8 +6,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/engines/reference/illumination.h"
 #include "gi/engines/reference/path_sums.h"
+#include "gi/tracing/illumination.h"
 #include "io/core/random.h"
 
 namespace lucarne {
@@ -15,6 +15,10 @@ class Progress;
 }
 
 namespace lucarne::gi::reference {
+
+using tracing::Illumination;
+using tracing::SurfelSampler;
+using tracing::SurfelTracer;
 
 struct PathSettings {
     uint32_t bounces = 1;

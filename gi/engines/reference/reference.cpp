@@ -17,12 +17,12 @@
 namespace lucarne::gi {
 namespace {
 
-using reference::Illumination;
 using reference::PathSettings;
 using reference::PathSums;
 using reference::PathTracer;
 using reference::Start;
-using reference::SurfelTracer;
+using tracing::Illumination;
+using tracing::SurfelTracer;
 
 /// The surfaces that the camera sees, as every engine gets them: the reference differs from the others in
 /// transport alone, not in what is visible.

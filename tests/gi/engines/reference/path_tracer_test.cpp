@@ -5,11 +5,13 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "gi/engines/reference/scatter.h"
+#include "gi/tracing/scatter.h"
 #include "io/core/parallel.h"
 #include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {
+
+using tracing::scatter;
 namespace {
 
 TEST(Reference, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {

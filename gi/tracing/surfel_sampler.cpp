@@ -1,14 +1,14 @@
-#include "gi/engines/reference/surfel_sampler.h"
+#include "gi/tracing/surfel_sampler.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
-#include "gi/engines/reference/light_sampling.h"
 #include "gi/shared/brdf.h"
+#include "gi/tracing/light_sampling.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 glm::vec3 point_on_disc(const Surfel& surfel, Random& random) {
     const float r = surfel.radius * static_cast<float>(std::sqrt(random.uniform()));
@@ -56,4 +56,4 @@ SurfelSampler::Density SurfelSampler::density(const glm::vec3& origin, const glm
     return result;
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -6,13 +6,13 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/engines/reference/alias_table.h"
 #include "gi/scene/environment.h"
 #include "gi/shared/light.h"
 #include "gi/shared/luminance.h"
+#include "gi/tracing/alias_table.h"
 #include "io/core/random.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 /// Light that would arrive at a point from one direction, were nothing in the way.
 struct Incident {
@@ -50,4 +50,4 @@ class EnvironmentSampler {
 /// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
 void frame_of(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent);
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -5,10 +5,10 @@
 
 #include <glm/vec3.hpp>
 
-#include "gi/engines/reference/alias_table.h"
-#include "gi/engines/reference/surfel_tracer.h"
+#include "gi/tracing/alias_table.h"
+#include "gi/tracing/surfel_tracer.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 /// Evenly distributed.
 glm::vec3 point_on_disc(const Surfel& surfel, Random& random);
@@ -51,4 +51,4 @@ class SurfelSampler {
     std::vector<float> per_area_;  // of each surfel: its probability over its disc's area, 1/m^2
 };
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -1,4 +1,4 @@
-#include "gi/engines/reference/illumination.h"
+#include "gi/tracing/illumination.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
 
 constexpr uint64_t kProbes = 0x6c6974;  // seed of the probes' points
@@ -91,4 +91,4 @@ double Illumination::lit(uint32_t index) const {
     return chosen && arrives(*chosen, origin, to_light) ? sum : 0;
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

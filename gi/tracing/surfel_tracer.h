@@ -11,7 +11,7 @@
 #include "gi/shared/surfel.h"
 #include "io/core/error.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 /// A ray starts this many radii above its surfel, along the normal. See
 /// gi/engines/reference/README.md for how it was chosen: what it loses in corners against what noise in the
@@ -59,4 +59,4 @@ class SurfelTracer {
 /// `normal` is turned to the side the ray leaves on.
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius);
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -1,4 +1,4 @@
-#include "gi/engines/reference/light_sampling.h"
+#include "gi/tracing/light_sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "gi/shared/brdf.h"
 #include "gi/shared/environment.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
 
 glm::vec3 xyz(const glm::vec4& v) {
@@ -165,4 +165,4 @@ Incident EnvironmentSampler::along(const glm::vec3& direction) const {
     return incident(direction, environment_->texel(direction));
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

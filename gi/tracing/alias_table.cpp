@@ -1,8 +1,8 @@
-#include "gi/engines/reference/alias_table.h"
+#include "gi/tracing/alias_table.h"
 
 #include <algorithm>
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 AliasTable::AliasTable(std::span<const double> weights) {
     for (const double w : weights) total_ += w;
@@ -37,4 +37,4 @@ uint32_t AliasTable::draw(Random& random) const {
     return own ? static_cast<uint32_t>(index) : cells_[index].alias;
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

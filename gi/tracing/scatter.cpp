@@ -1,4 +1,4 @@
-#include "gi/engines/reference/scatter.h"
+#include "gi/tracing/scatter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "gi/engines/reference/light_sampling.h"
+#include "gi/tracing/light_sampling.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
 
 /// A direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
@@ -63,4 +63,4 @@ std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& no
     return Scattered{in, brdf(surface, normal, out, in) * (glm::dot(normal, in) / pdf), pdf};
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -1,4 +1,4 @@
-#include "gi/engines/reference/light_sampling.h"
+#include "gi/tracing/light_sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gi/engines/reference/scatter.h"
+#include "gi/tracing/scatter.h"
 #include "tests/gi/engines/reference/reference_scene.h"
 
 namespace lucarne::gi::reference {

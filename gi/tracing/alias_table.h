@@ -6,7 +6,7 @@
 
 #include "io/core/random.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 /// Draws indices in proportion to weights, in constant time (Walker 1974; built as in Vose 1991, "A linear
 /// algorithm for generating random numbers with a given distribution").
@@ -28,4 +28,4 @@ class AliasTable {
     double total_ = 0;
 };
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

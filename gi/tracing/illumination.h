@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "gi/engines/reference/light_sampling.h"
-#include "gi/engines/reference/surfel_sampler.h"
-#include "gi/engines/reference/surfel_tracer.h"
 #include "gi/shared/material.h"
+#include "gi/tracing/light_sampling.h"
+#include "gi/tracing/surfel_sampler.h"
+#include "gi/tracing/surfel_tracer.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 /// Everything that shines in a scene, ready to be sampled: lights, environment, and the surfels whose
 /// material has an emission.
@@ -52,4 +52,4 @@ class Illumination {
     SurfelSampler emitters_, lit_;
 };
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -7,7 +7,7 @@
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 
 struct Scattered {
     glm::vec3 direction;
@@ -24,4 +24,4 @@ std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& no
 float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                   const glm::vec3& in);
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -1,4 +1,4 @@
-#include "gi/engines/reference/surfel_sampler.h"
+#include "gi/tracing/surfel_sampler.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "gi/engines/reference/surfel_tracer.h"
+#include "gi/tracing/surfel_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "io/core/parallel.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
 
 bool has_disc(const Surfel& s) {
@@ -145,4 +145,4 @@ glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, floa
     return position + normal * std::max(kOriginOffset * radius, 1e-6f * largest);
 }
 
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing
