@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include <GLFW/glfw3.h>
@@ -85,10 +86,20 @@ void Window::take_context() {
         if (action == GLFW_PRESS && pressed.size() < kMostPressed)
             pressed.push_back({key, modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT)});
     });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        static_cast<Window*>(glfwGetWindowUserPointer(window))->pointer_.move(x, y);
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+        auto& pointer = static_cast<Window*>(glfwGetWindowUserPointer(window))->pointer_;
+        pointer.set_button(static_cast<size_t>(button), action == GLFW_PRESS, glfwGetTime());
+    });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
         for (int i = 0; i < count && dropped.size() < kMostDropped; ++i) dropped.emplace_back(paths[i]);
     });
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    pointer_.move(x, y);
     ImGui_ImplGlfw_InitForOpenGL(window_, true);  // its callbacks call ours
     ImGui_ImplOpenGL3_Init("#version 450 core");
     glGenTextures(1, &texture_);
@@ -117,7 +128,7 @@ Result<void> Window::recover() {
     shown_ = 0;
     seen_.reset();
     std::ranges::fill(ImGui::GetIO().KeysDown, false);  // their releases went to the old window
-    std::ranges::fill(ImGui::GetIO().MouseDown, false);
+    pointer_.clear();
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE);  // the size is that of the screen already
     LUCARNE_TRY(create_window(
         {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))}, title_));
@@ -190,7 +201,10 @@ bool Window::closing() const {
 }
 
 void Window::wait(double seconds) {
-    glfwWaitEventsTimeout(std::max(seconds, 1e-4));
+    if (pointer_.pending())
+        glfwPollEvents();
+    else
+        glfwWaitEventsTimeout(std::max(seconds, 1e-4));
 }
 
 ImageSize Window::framebuffer() const {
@@ -246,7 +260,19 @@ void Window::begin_frame() {
     ImGui_ImplOpenGL3_NewFrame();  // makes what the first glyphs need
     fit_text();
     ImGui_ImplGlfw_NewFrame();
+    take_pointer();
     ImGui::NewFrame();
+}
+
+/// Replaces the mouse that ImGui's backend has sampled by the next event.
+void Window::take_pointer() {
+    ImGuiIO& io = ImGui::GetIO();
+    const bool outside = io.MousePos.x == -FLT_MAX && !pointer_.pending();
+    const PointerInput::State& mouse = pointer_.next();
+    if (!outside) io.MousePos = {static_cast<float>(mouse.x), static_cast<float>(mouse.y)};
+    std::ranges::copy(mouse.down, io.MouseDown);
+    // Frames may be longer than a double-click, so its time is judged by the events.
+    io.MouseDoubleClickTime = mouse.soon ? FLT_MAX : 0.0f;
 }
 
 unsigned Window::make_texture(const io::Image8& image) {

@@ -14,6 +14,7 @@
 #include "io/image/image.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/window/key_chord.h"
+#include "viewer/window/pointer_input.h"
 
 struct GLFWwindow;
 
@@ -99,6 +100,7 @@ class Window {
     void draw_picture(ImageSize size);
     double screen_scale() const;  ///< 1: of about 96 dots an inch
     void fit_text();
+    void take_pointer();
     Result<void> create(ImageSize size, const std::string& title);
     Result<void> create_window(ImageSize size, const std::string& title);
     Result<void> create_hidden(Hidden which);
@@ -118,6 +120,7 @@ class Window {
     PictureRect place_;         ///< of it, in this frame; empty: there is none
     std::optional<Seen> seen_;  ///< none: not known
     bool software_ = false;     ///< the window is drawn by the processor
+    PointerInput pointer_;
     std::vector<KeyChord> pressed_;
     std::vector<std::string> dropped_;
     gi::ContextWatch watch_;
