@@ -160,7 +160,7 @@ class HeaderParser {
     Result<void> check_counts() {
         if (!width_ && !points_) return wrong("says neither WIDTH nor POINTS");
         header_.height = height_.value_or(1);
-        header_.width = width_.value_or(*points_);
+        header_.width = width_ ? *width_ : *points_;
         const bool overflow = header_.height > 0 && header_.width > UINT64_MAX / header_.height;
         if (overflow || (width_ && points_ && header_.width * header_.height != *points_))
             return wrong(fmt::format("promises {} x {} points, and {}", header_.width, header_.height,
