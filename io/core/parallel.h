@@ -20,8 +20,9 @@
 
 namespace lucarne {
 
-/// What one thread did before give() happens before what another does after take(). TBB sees to that; but its
-/// library is not built for ThreadSanitizer, which has to be told. Nothing in other builds.
+/// Everything that one thread did before give() happens before what another thread does after take(). TBB
+/// guarantees this already, but its library is not built for ThreadSanitizer, which must be told. In other
+/// builds both functions do nothing.
 class HandOver {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -36,7 +37,7 @@ class HandOver {
     void take() {}
 #endif
 
-    /// A piece of work, for as long as it lives: takes what `from` was given, and gives to `to`.
+    /// One piece of parallel work: its constructor calls from.take(), its destructor calls to.give().
     class Piece {
      public:
         Piece(HandOver& from, HandOver& to) : to_(to) { from.take(); }
@@ -49,7 +50,7 @@ class HandOver {
     };
 };
 
-/// Caps the threads of every parallel loop while it lives; 0 means all cores.
+/// Limits the threads of every parallel loop while it lives; 0 means all cores.
 class ThreadLimit {
  public:
     explicit ThreadLimit(unsigned threads)
@@ -60,9 +61,10 @@ class ThreadLimit {
     tbb::global_control control_;
 };
 
-/// body(first, last) over [0, count) in pieces of at most `grain`, in parallel. The pieces do not depend on
-/// the number of threads, so a body that depends on nothing but its piece gives the same result every run.
-/// Its warnings belong to the caller's operation, and what it throws is thrown here.
+/// Calls body(first, last) for consecutive pieces of [0, count), each at most `grain` long, in parallel. The
+/// pieces do not depend on the number of threads, so a body that depends on nothing but its piece gives the
+/// same result in every run. Warnings of the body belong to the caller's operation. An exception of the body
+/// is rethrown here.
 template <class Body>
 void parallel_ranges(size_t count, size_t grain, const Body& body) {
     const size_t pieces = (count + grain - 1) / grain;
@@ -78,8 +80,8 @@ void parallel_ranges(size_t count, size_t grain, const Body& body) {
     done.take();
 }
 
-/// Collects the failure of parallel work. Of several the one with the lowest `order` is kept, so that the
-/// message does not depend on timing where every piece is tried.
+/// Collects the errors of parallel work and keeps the one with the lowest `order`. If every piece is tried,
+/// the message therefore does not depend on timing.
 class FirstError {
  public:
     void report(size_t order, Error error) {
