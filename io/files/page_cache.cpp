@@ -17,9 +17,9 @@
 namespace lucarne {
 namespace {
 
-constexpr uint64_t kWindow = uint64_t{1} << 30;  ///< bytes mapped at a time to be asked about
+constexpr uint64_t kWindow = uint64_t{1} << 30;  ///< bytes that are mapped and queried at a time
 
-/// Pages of [offset, offset + bytes) that are in memory; the mapping itself touches none.
+/// Counts the pages of [offset, offset + bytes) that are in memory. The mapping itself loads none.
 uint64_t resident_pages(int fd, uint64_t offset, uint64_t bytes, uint64_t page) {
     void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, fd, static_cast<off_t>(offset));
     if (at == MAP_FAILED) return 0;
