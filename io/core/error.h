@@ -7,11 +7,11 @@
 
 namespace lucarne {
 
-/// The program has three ways to deal with three kinds of error:
-///  - A broken invariant of the program's own code: `assert`, or std::logic_error where a release build must
-///    stop as well.
+/// How the program handles errors:
+///  - A broken invariant of its own code: `assert`, or std::logic_error where a release build must stop as
+///    well.
 ///  - Bad input, a full disk, a missing device: a function returns a `Result` that carries an `Error`.
-///  - Printing: only viewer/main.cpp prints an `Error` and turns it into an exit code.
+///  - Only viewer/main.cpp prints an `Error` and turns it into an exit code.
 /// The enumerators are the exit codes of `lucarne`.
 enum class ErrorKind { failed = 1, arguments = 2, input_rejected = 3 };
 

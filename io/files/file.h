@@ -55,9 +55,8 @@ class OutputFile {
     OutputFile& operator=(OutputFile&& other) noexcept;
     ~OutputFile();
 
-    Result<void> append(
-        /// Writes at position(). There is no buffer: pass large pieces.
-        std::span<const std::byte> data);
+    /// Writes at position(). There is no buffer: pass large pieces.
+    Result<void> append(std::span<const std::byte> data);
     Result<void> append(std::string_view text);
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
