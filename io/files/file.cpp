@@ -105,7 +105,7 @@ Result<void> check_output(const std::filesystem::path& path, bool overwrite) {
     if (::lstat(path.c_str(), &status) == 0) {  // a dangling link takes the name as well
         if (S_ISDIR(status.st_mode)) return failed(path.string(), "is a folder", "choose a file name");
         if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
-            return failed(path.string(), "is a device or the like", "choose a file name");
+            return failed(path.string(), "is a device or another special file", "choose a file name");
         if (!overwrite)
             return failed(path.string(), "exists already", "choose another name or pass --overwrite");
     } else if (errno == ENAMETOOLONG) {

@@ -47,7 +47,7 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
             why_ = fmt::format("{} is expected, not {}",
                                shown(reason.substr(expected + kExpected.size()), kMostQuoted), found);
         else
-            why_ = fmt::format("{} is no JSON", found);
+            why_ = fmt::format("{} is not JSON", found);
         return false;
     }
 
@@ -61,7 +61,7 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
  private:
     std::string_view text_;
     size_t at_ = 0;
-    std::string why_ = "is no JSON";
+    std::string why_ = "is not JSON";
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ Result<double> drop_page_cache(const std::filesystem::path& path) {
     if (::fsync(file.fd()) != 0 && errno != EINVAL && errno != EROFS)
         return failed(path.string(), fmt::format("cannot be synced ({})", reason()));
     if (const int error = ::posix_fadvise(file.fd(), 0, 0, POSIX_FADV_DONTNEED); error != 0)
-        return failed(path.string(), fmt::format("the system does not forget it ({})",
+        return failed(path.string(), fmt::format("cannot be dropped from the page cache ({})",
                                                  std::error_code(error, std::generic_category()).message()));
     const auto size = static_cast<uint64_t>(status.st_size);
     const auto page = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));

@@ -23,7 +23,7 @@ Result<int> open_private_folder(const std::filesystem::path& folder) {
     const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd < 0) {
         if (errno == ENOTDIR || errno == ELOOP)
-            return failed(folder.string(), "is a link or no folder", kAdvice);
+            return failed(folder.string(), "is a link or not a folder", kAdvice);
         return failed(folder.string(), fmt::format("cannot be opened ({})", reason(errno)), kAdvice);
     }
     struct stat status {};

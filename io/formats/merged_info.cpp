@@ -37,9 +37,8 @@ Extras merged_extras(std::span<const ScanInfo> scans) {
         const auto names = las::add_entries(extras.record, *record);
         if (!names.empty() && extras.differ.empty())
             extras.differ = fmt::format(
-                "{}: '{}' has another scale, offset or type here than in a file before it; its numbers are "
-                "put together "
-                "as they stand in the files",
+                "{}: '{}' has another scale, offset or type here than in an earlier file; the "
+                "unscaled numbers are merged unchanged",
                 scan.path, names.front());
     }
     return extras;
@@ -59,7 +58,7 @@ void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
     if (giver == scans.end()) return;
     if (const std::string differ = different_systems(scans); !differ.empty()) {
         notes.projection.emplace();
-        notes.system_note = differ + "; the file written says none";
+        notes.system_note = differ + "; the written file has none";
         info.coordinate_system.clear();
         info.epsg = 0;
         return;
@@ -71,7 +70,7 @@ void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
         return scan.declared_points > 0 && !says_system(scan);
     });
     if (silent != scans.end())
-        notes.system_note = fmt::format("{} says no coordinate system and is taken to be in that of {}",
+        notes.system_note = fmt::format("{} has no coordinate system and is assumed to be in that of {}",
                                         silent->path, giver->path);
 }
 

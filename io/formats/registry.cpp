@@ -89,14 +89,14 @@ std::string_view first_statement(std::string_view head) {
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options) {
     if (copc::is_name(path))
-        return bad_arguments(path.string(), "COPC is an octree, and this is none yet",
+        return bad_arguments(path.string(), "COPC is an octree, which this input is not yet",
                              "convert to a cache and export that");
     const std::string extension = lower_extension(path);
     for (const Format* format : formats()) {
         if (!format->create || format->extension != extension) continue;
         const bool scales = format == &las_format() || format == &laz_format();
         if (const auto scaled = scales ? std::string() : las::scaled_extras(info, schema); !scaled.empty())
-            log::warn("{}: has whole numbers as LAS stores them, not what they stand for: {}", path.string(),
+            log::warn("{}: holds the whole numbers that LAS stores, not the scaled values: {}", path.string(),
                       scaled);
         return format->create(path, schema, info, options);
     }

@@ -84,7 +84,7 @@ Result<Header> read_header(const ByteSource& file) {
         at = end + 1;
         if (blank) {
             if (!read_size(line, header))
-                return rejected(name, "its size is none that can be read (-Y height +X width, up to 16384)");
+                return rejected(name, "its size cannot be read (-Y height +X width, up to 16384)");
             break;
         }
         blank = line.empty();

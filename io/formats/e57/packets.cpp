@@ -36,7 +36,7 @@ Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, cons
     if (header.bytes - section.begin < kSectionHeaderBytes) return wrong("reaches beyond its end");
     PageInput input(file, section.begin, section.begin + kSectionHeaderBytes);
     LUCARNE_ASSIGN(const auto raw, input.peek(kSectionHeaderBytes));
-    if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is none");
+    if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is not one");
     auto bytes = load<uint64_t>(&raw[8]);
     const auto data = load<uint64_t>(&raw[16]);
     if (salvage) bytes = std::min(bytes, header.bytes - section.begin);

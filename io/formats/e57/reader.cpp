@@ -168,7 +168,7 @@ Result<e57::Section> checked_section(const std::shared_ptr<const ByteSource>& fi
     const uint64_t most = std::max(e57::kMostConstant, file->size());
     if (constant + scan.records > most)
         return rejected(file->path().string(),
-                        fmt::format("promises {} points that take no bytes, at most {} can be",
+                        fmt::format("promises {} points that take no bytes, at most {} are accepted",
                                     constant + scan.records, most));
     constant += scan.records;
     return section;
@@ -179,7 +179,7 @@ void warn_of_poses(const std::string& name, const e57::Document& document) {
         std::count_if(document.scans.begin(), document.scans.end(),
                       [](const e57::Scan& scan) { return scan.pose && scan.pose->unturned; });
     if (unturned > 0)
-        log::warn("{}: the rotation of {} of its {} scans has no length, it is left out", name, unturned,
+        log::warn("{}: the rotation of {} of its {} scans has no length and is ignored", name, unturned,
                   document.scans.size());
 }
 
@@ -187,11 +187,11 @@ void warn_of_poses(const std::string& name, const e57::Document& document) {
 void warn_of_unit(const std::string& name, const e57::Document& document) {
     const SystemUnits units = wkt_units(document.coordinate_system);
     if (units.degrees)
-        log::warn("{}: its coordinate system counts in degrees, but E57 in metres; metres are taken", name);
+        log::warn("{}: its coordinate system is in degrees, but E57 is in metres; metres are assumed", name);
     else if (units.horizontal.value_or(1.0) != 1.0)
         log::warn(
-            "{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
-            "--unit if it does not",
+            "{}: its coordinate system is in units of {:.9g} m, but E57 is in metres; metres are assumed; "
+            "use --unit if that is wrong",
             name, *units.horizontal);
 }
 
@@ -220,7 +220,7 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
     LUCARNE_TRY(check_apart(name, header, e57));
     LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
-        log::warn("{}: there are more bytes than its header promises, they are left out", name);
+        log::warn("{}: it has more bytes than its header promises; they are ignored", name);
     e57.file = std::move(file);
     return std::make_unique<E57Source>(std::move(e57), options);
 }

@@ -109,13 +109,13 @@ Units units_of_keys(const GeoKeys& keys) {
     } else if (keys.unit && *keys.unit != kUserDefined) {
         units.horizontal = unit_of_code(*keys.unit);
         if (!units.horizontal)
-            units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
+            units.unknown = fmt::format("EPSG:{} is not a known unit of length", *keys.unit);
     } else if (keys.projected && *keys.projected != kUserDefined) {
         const auto system = registered_units(*keys.projected);
         if (system) units.horizontal = system->horizontal;
         if (!units.vertical && system) units.vertical = system->vertical;
         if (!units.horizontal)
-            units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
+            units.unknown = fmt::format("EPSG:{} is not a known projection", *keys.projected);
     } else {
         units.unknown = "its GeoTIFF keys have none";
     }
@@ -135,15 +135,14 @@ void warn_of_units(const std::string& file, const Units& units, bool given) {
     if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
     if (!units.unknown.empty() && !given)
         log::warn(
-            "{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is "
-            "another",
+            "{}: its coordinate system does not state its unit ({}); metres are assumed; "
+            "use --unit if that is wrong",
             file, units.unknown);
     if (units.vertical && units.horizontal &&
         std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
         log::warn(
-            "{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for "
-            "the latter, "
-            "heights are not converted",
+            "{}: its heights are in units of {:.9g} m, its other coordinates in units of {:.9g} m; "
+            "the latter is used for all, and heights are not converted",
             file, *units.vertical, *units.horizontal);
 }
 
@@ -198,9 +197,8 @@ void prefer_wkt(const std::string& file, Header& header) {
         header.vlrs.push_back(wkt_record(*wkt));
     else
         log::warn(
-            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read nothing but well-known "
-            "text do "
-            "not see it",
+            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read only well-known text "
+            "do not see it",
             file, system.epsg ? fmt::format("EPSG:{}", system.epsg) : system.name);
 }
 

@@ -70,8 +70,7 @@ class WatchedReader final : public PointReader {
         const glm::dvec3 at = position_of(schema_, &batch.bytes[*found * schema_.stride]);
         log::warn(
             "{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it "
-            "may be "
-            "damaged",
+            "may be damaged",
             name_, at.x, at.y, at.z);
         return got;
     }
@@ -106,8 +105,7 @@ class LasSource final : public PointSource {
         if (header_.find("lascompatible", 22204))
             log::warn(
                 "{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns "
-                "and "
-                "angles that do not fit that stand in extra bytes only",
+                "and angles that do not fit the older version are only in extra bytes",
                 name);
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
@@ -164,8 +162,9 @@ class LasSource final : public PointSource {
     void warn_of_mirrors(const std::string& name) const {
         for (int axis = 0; axis < 3; ++axis)
             if (header_.scale[axis] < 0)
-                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it",
-                          name, "xyz"[axis], header_.scale[axis]);
+                log::warn(
+                    "{}: its scale for {} is negative ({}): the scan is mirrored unless this is intended",
+                    name, "xyz"[axis], header_.scale[axis]);
     }
 
     void skip_waves() {

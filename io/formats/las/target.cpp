@@ -123,8 +123,8 @@ void state_unit(const std::string& path, Header& header, double metres) {
     if (same_unit(stated, metres)) return;
     if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
         log::warn(
-            "{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open "
-            "it",
+            "{}: its coordinate system states units of {} m, but the points are in units of {} m; use --unit "
+            "{} to open it",
             path, stated, metres, metres);
         return;
     }

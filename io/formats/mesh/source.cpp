@@ -187,7 +187,7 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t 
         log::warn("{}: {} with a coordinate that is not finite: left out", info.path,
                   counted(mesh.not_finite, "triangles"));
     if (mesh.fanned > 0)
-        log::warn("{}: {} of over 256 corners, too many to be cut properly: wrong where not convex",
+        log::warn("{}: {} with over 256 corners: cut as fans, which is wrong if they are not convex",
                   info.path, counted(mesh.fanned, "polygons"));
     const double metres = info.metres_per_unit;
     info.declared_points = static_cast<uint64_t>(mesh.area() / (spacing * spacing));

@@ -269,7 +269,7 @@ class RowParser {
         const bool alone = next_word(others).empty();
         if (const auto count = parse_number<uint64_t>(first); layout_.has_counts && alone && count) {
             if (*count > std::numeric_limits<uint64_t>::max() - piece_.promised) {
-                piece_.problem = fmt::format("the count {} cannot be", first);
+                piece_.problem = fmt::format("the count {} is too large", first);
                 return false;  // an error even with `salvage`
             }
             piece_.promised += *count;
@@ -307,7 +307,7 @@ class RowParser {
             skip_blanks();
         }
         if (failed_ >= last)
-            piece_.problem = fmt::format("it has {} values, {} belong in a row", done, layout_.fields.size());
+            piece_.problem = fmt::format("it has {} values instead of {}", done, layout_.fields.size());
         else if (done >= layout_.fields.size())
             piece_.problem = fmt::format("it has more than the {} values of a row", layout_.fields.size());
         else

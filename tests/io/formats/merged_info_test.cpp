@@ -105,7 +105,7 @@ TEST_F(MergedInfo, AScanThatSaysNothingTakesTheSystemOfTheOthersWithANote) {
         scans[1].metres_per_unit = 0.3048;  // as with --unit ft
         if (first) std::swap(scans[0], scans[1]);
         EXPECT_EQ(different_systems(scans), "");
-        EXPECT_THAT(merged_info(scans).notes.system_note, HasSubstr("b.xyz says no coordinate system"));
+        EXPECT_THAT(merged_info(scans).notes.system_note, HasSubstr("b.xyz has no coordinate system"));
         for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u) << first;
     }
 }

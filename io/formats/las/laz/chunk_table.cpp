@@ -86,9 +86,9 @@ class Walk {
 
     Result<std::vector<ChunkPlace>> go(bool salvage) {
         if (compression_.chunk_points == kVariableChunks && !compression_.layered)
-            return rejected(name_, "has chunks of any size and no chunk table that says which");
+            return rejected(name_, "has chunks of variable size, but no chunk table");
         if (compression_.chunked)
-            log::warn("{}: has no chunk table; its points are looked through first", name_);
+            log::warn("{}: has no chunk table; its chunks are searched for first", name_);
         std::vector<ChunkPlace> chunks;
         uint64_t offset = header_.points_offset + (compression_.chunked ? kOffsetBytes : 0);
         for (uint64_t done = 0; done < header_.points;) {
@@ -149,7 +149,7 @@ class Walk {
         LUCARNE_ASSIGN(const auto size, layered_size(name_, compression_, head));
         const bool variable = compression_.chunk_points == kVariableChunks;
         if (size.points == 0 || size.points > chunk.points || (!variable && size.points != chunk.points))
-            return rejected(name_, "has a chunk whose number of points cannot be");
+            return rejected(name_, "has a chunk with an impossible number of points");
         if (size.bytes > file_.size() - chunk.offset)
             return rejected(name_, "has compressed points that are cut off or damaged");
         chunk.points = size.points;

@@ -381,7 +381,7 @@ TEST_F(E57, CountsAndOffsetsThatLieAreRefusedBeforeReading) {
         expect_refused(scan_with([&](BuiltScan& s) { s.file_offset = offset; }), "inside its header");
     expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "1020"; }), "inside a checksum");
     expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "18446744073709551614"; }), "beyond its end");
-    expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "60"; }), "is none");
+    expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "60"; }), "is not one");
     expect_refused(scan_with([](BuiltScan& s) { s.spoil = [](std::string& b) { b[15] = '\x7f'; }; }),
                    "reaches beyond its end");
     expect_refused(scan_with([](BuiltScan& s) { s.spoil = [](std::string& b) { b[8] = 16; }; }),

@@ -392,8 +392,9 @@ TEST_F(Las, WarningsAreOfTheFileTheyAreAbout) {
     EXPECT_THAT(said(), HasSubstr("compatibility mode"));
     file.vlrs.clear();
     file.scale[1] = -0.01;
-    EXPECT_THAT(said(),
-                HasSubstr("its scale for y is negative (-0.01): the scan is mirrored, if nobody meant it"));
+    EXPECT_THAT(
+        said(),
+        HasSubstr("its scale for y is negative (-0.01): the scan is mirrored unless this is intended"));
     const auto mirrored = open(file);
     EXPECT_EQ(position_of(mirrored->schema(), read_all(*mirrored)->bytes.data()).y, -0.02);
     file.scale[1] = 0.01;

@@ -216,7 +216,7 @@ TEST_F(Text, EmptyCellsTakeNoRoomButOfTheirSeparator) {
 }
 
 TEST_F(Text, RowsThatDoNotFitAreRejectedWithLineAndReason) {
-    EXPECT_THAT(error_of("1 2 3\n1 2\n").line(), HasSubstr("line 2 on: it has 2 values, 3 belong"));
+    EXPECT_THAT(error_of("1 2 3\n1 2\n").line(), HasSubstr("line 2 on: it has 2 values instead of 3"));
     EXPECT_THAT(error_of("1 2 3\n\n1 2 3 4\n").line(), HasSubstr("line 3 on: it has more than the 3"));
     EXPECT_THAT(error_of("1 2 3\n1 a 3\n").line(), HasSubstr("'a 3' is no value for y"));
     EXPECT_THAT(error_of("x,y,z\n1,2,3\n1;2;3\n").line(), HasSubstr("line 3"));
