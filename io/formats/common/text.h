@@ -66,9 +66,9 @@ size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
     return alike;
 }
 
-/// Returns whether `value`, the double nearest to some decimal, rounds to the float nearest to that decimal.
-/// This may fail if `value` lies halfway between two floats. Values below the normal floats, which have other
-/// midpoints, are excluded as well.
+/// Returns whether `value`, the double nearest to some decimal, surely rounds to the float nearest to that
+/// decimal. Returns false if `value` lies halfway between two floats, because the decimal may lie on either
+/// side, and for values below the normal floats, whose midpoints are elsewhere.
 inline bool rounds_to_float(double value) {
     constexpr uint64_t kHalfway = uint64_t{1} << 28, kBelowFloat = (uint64_t{1} << 29) - 1;
     if (std::abs(value) < std::numeric_limits<float>::min()) return value == 0;
