@@ -14,8 +14,7 @@
 namespace lucarne {
 
 uint64_t resident_memory() {
-    std::ifstream statm("/proc/self/statm");  // in pages: size of the address space, resident size, ...
-                                              // (proc(5))
+    std::ifstream statm("/proc/self/statm");  // in pages: address space, resident, ... (proc(5))
     uint64_t all = 0, resident = 0;
     if (!(statm >> all >> resident)) return 0;
     return resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));

@@ -132,7 +132,7 @@ std::string printable(std::string_view name) {
 
 std::string unique_name(const Schema& schema, std::string_view name) {
     const std::string clean = printable(name);
-    // One pass is enough, although thousands of attributes may share their first 64 characters.
+    // One pass over the schema, because thousands of attributes may share their first 64 characters.
     std::vector<bool> taken(schema.attributes.size() + 3);  // by appended number; 1 is the plain name
     for (const Attribute& a : schema.attributes) {
         if (!a.name.starts_with(clean)) continue;
