@@ -73,8 +73,7 @@ void handle_interrupts() {
     };
     try {
         std::thread(receive).detach();
-    } catch (const std::system_error&) {  // no thread can be started: the signals then end the program as
-                                          // usual
+    } catch (const std::system_error&) {  // without a thread the signals end the program
         ::pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
     }
 }

@@ -137,9 +137,7 @@ class Scanner final : public PieceGenerator {
     bool straddles_edge(const Beam& beam, const SurfaceHit& hit, Random& random) const {
         const dvec3 probe = beam.inside(random);
         const auto other = geometry_->cast(beam.origin, probe);
-        if (!other)
-            return false;  // nothing comes back from beyond the edge, so the range of the centre
-                           // holds
+        if (!other) return false;  // nothing comes back from beyond: the centre's range holds
         // A slanted surface is no edge: compare with the range at which the probe meets the hit's own plane.
         const double slope = dot(hit.normal, probe);
         const double expected =
