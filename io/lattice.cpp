@@ -10,13 +10,13 @@ namespace {
 constexpr double kLargest = std::numeric_limits<int32_t>::max();
 constexpr int kUsualDigits = 3, kMostDigits = 12, kFewestDigits = -300;
 
-/// 10^-digits, as a file's text would be read: powers up to 10^22 are exact.
+/// Returns 10^-digits, rounded as if read from text: powers up to 10^22 are exact.
 double step_of(int digits) {
     return digits >= 0 ? 1.0 / std::pow(10.0, digits) : std::pow(10.0, -digits);
 }
 
-/// A whole multiple of the step, and a whole number, in the middle of both; 0 where the integers reach from
-/// there.
+/// Returns 0 if the integers reach the box from there. Otherwise returns the middle of the box, rounded to a
+/// multiple of max(1, step).
 double offset_of(double low, double high, double step) {
     if (std::max(std::abs(low), std::abs(high)) <= kLargest * step) return 0.0;
     const double unit = std::max(1.0, step);
@@ -31,7 +31,7 @@ bool reaches(double low, double high, double offset, double step) {
 
 std::optional<Lattice> common_lattice(std::span<const Lattice> lattices, const PositionBox& box) {
     if (lattices.empty()) return std::nullopt;
-    constexpr double kNear = 1e-6;  // of a step: what is left of decimal fractions in binary
+    constexpr double kNear = 1e-6;  // of a step: allows for decimal fractions that are inexact in binary
     const auto whole = [](double steps) { return std::abs(steps - std::nearbyint(steps)) < kNear; };
     Lattice common;
     for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +42,7 @@ std::optional<Lattice> common_lattice(std::span<const Lattice> lattices, const P
             if (!(step > 0) || !whole(each.scale[axis] / step) || !whole((each.offset[axis] - offset) / step))
                 return std::nullopt;
         const double low = box[0][axis], high = box[1][axis];
-        constexpr double kRound = 1000;  // offsets stay round numbers where they have to be moved
+        constexpr double kRound = 1000;  // steps; offsets move by multiples of it to stay round
         if (!reaches(low, high, offset, step))
             offset += std::nearbyint((low / 2 + high / 2 - offset) / step / kRound) * kRound * step;
         if (!reaches(low, high, offset, step)) return std::nullopt;
@@ -95,7 +95,7 @@ bool DecimalSearch::add(std::span<const std::byte> records) {
 }
 
 Lattice DecimalSearch::found() const {
-    int common = kFewestDigits;  // what is exact has alike many, where the boxes allow
+    int common = kFewestDigits;  // exact axes get the same number of decimals, where their boxes allow it
     for (const Axis& axis : axes_)
         if (axis.exact) common = std::max(common, axis.digits);
     Lattice lattice;

@@ -14,7 +14,7 @@ template <class T>
 void store_rounded(std::byte* at, double value) {
     using Limits = std::numeric_limits<T>;
     if (std::isnan(value)) value = 0;
-    // The largest 64-bit integers are no doubles: compare before converting.
+    // The largest 64-bit integers are not exact as doubles, so compare before converting.
     const double rounded = std::nearbyint(value);
     if (rounded <= static_cast<double>(Limits::lowest())) return store<T>(at, Limits::lowest());
     if (rounded >= static_cast<double>(Limits::max())) return store<T>(at, Limits::max());

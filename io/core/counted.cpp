@@ -10,7 +10,7 @@ namespace lucarne {
 std::string counted(uint64_t count, std::string_view many) {
     std::string phrase(many);
     if (count != 1) return fmt::format("{} {}", count, phrase);
-    size_t end = 0;  // of the noun
+    size_t end = 0;  // the position of the noun's last letter
     while (end < phrase.size() && !(phrase[end] == 's' && (end + 1 == phrase.size() ||
                                                            phrase[end + 1] == ' ' || phrase[end + 1] == ',')))
         ++end;

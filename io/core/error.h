@@ -7,21 +7,22 @@
 
 namespace lucarne {
 
-/// Three kinds of error, three ways:
-///  - a broken invariant of our own code: `assert` (or std::logic_error where a release build must stop as
-///  well);
-///  - bad input, a full disk, a missing device: a `Result` that carries an `Error`;
-///  - only viewer/main.cpp prints an `Error` and turns it into an exit code.
+/// How the program handles errors:
+///  - A broken invariant of its own code: `assert`, or std::logic_error where a release build must stop as
+///    well.
+///  - Bad input, a full disk, a missing device: a function returns a `Result` that carries an `Error`.
+///  - Only viewer/main.cpp prints an `Error` and turns it into an exit code.
 /// The enumerators are the exit codes of `lucarne`.
 enum class ErrorKind { failed = 1, arguments = 2, input_rejected = 3 };
 
 struct Error {
     ErrorKind kind = ErrorKind::failed;
-    std::string what;  ///< what it concerns: a file, an option, a device
+    std::string what;  ///< what the error concerns: a file, an option, a device
     std::string why;   ///< what is wrong with it
     std::string todo;  ///< what the user can do about it; may be empty
 
-    /// "<what>: <why>; <todo>" on one line, control characters of hostile names replaced.
+    /// Returns "<what>: <why>; <todo>" on one line. Control characters, as hostile file names hold, are
+    /// replaced.
     std::string line() const;
 };
 
@@ -32,15 +33,15 @@ inline tl::unexpected<Error> failure(ErrorKind kind, std::string what, std::stri
                                      std::string todo = {}) {
     return tl::make_unexpected(Error{kind, std::move(what), std::move(why), std::move(todo)});
 }
-/// The machine or the disk does not do it (exit 1).
+/// An error of the machine or the disk: it cannot do what was asked (exit 1).
 inline auto failed(std::string what, std::string why, std::string todo = {}) {
     return failure(ErrorKind::failed, std::move(what), std::move(why), std::move(todo));
 }
-/// The user's arguments contradict themselves (exit 2).
+/// An error in the user's arguments: they contradict each other (exit 2).
 inline auto bad_arguments(std::string what, std::string why, std::string todo = {}) {
     return failure(ErrorKind::arguments, std::move(what), std::move(why), std::move(todo));
 }
-/// The bytes of a file are not what they claim to be (exit 3).
+/// An error in a file: its bytes are not what they claim to be (exit 3).
 inline auto rejected(std::string what, std::string why, std::string todo = {}) {
     return failure(ErrorKind::input_rejected, std::move(what), std::move(why), std::move(todo));
 }

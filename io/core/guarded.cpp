@@ -27,7 +27,7 @@ Error caught(std::string_view what) {
         return described(what);
     } catch (const std::bad_alloc&) {
         return {ErrorKind::failed, "", "out of memory",
-                ""};  // short enough for strings that allocate nothing
+                ""};  // short enough for std::string to store without allocating
     }
 }
 

@@ -7,13 +7,13 @@
 
 namespace lucarne {
 
-/// The exception that is being handled as an error about `what`; to be called inside a catch block. Needs no
-/// memory where there is none left.
+/// Returns the exception that is being handled as an error about `what`. Call it inside a catch block. When
+/// memory has run out, it allocates none.
 Error caught(std::string_view what);
 
-/// Returns what `work` returns, a Result or nothing, and an error about `what` for anything it throws.
-/// Whatever runs at the top of a thread goes through this: an exception that leaves a thread ends the
-/// program.
+/// Calls `work` and returns its Result; `work` may also return nothing. An exception becomes an error about
+/// `what`. Every function at the top of a thread must run through this, because an exception that leaves a
+/// thread ends the program.
 template <class Work>
 auto guarded(std::string_view what, Work&& work) {
     using Returned = std::invoke_result_t<Work&>;

@@ -13,20 +13,20 @@
 namespace lucarne {
 namespace {
 
-/// One for the process, because signals belong to the process.
+/// There is one object for the whole process, because signals belong to the process.
 struct Actions {
     std::mutex mutex;
     std::map<std::filesystem::path, InterruptAction> of;
     InterruptRequest* request = nullptr;  ///< takes the first signal
 };
 Actions& actions() {
-    static auto* all = new Actions;  // outlives every other static object, whose destructors may use it
+    static auto* all = new Actions;  // outlives every other static object: their destructors may use it
     return *all;
 }
 
 void run_actions() {
     auto& all = actions();
-    all.mutex.lock();  // never released: no file may be finished or begun from here on
+    all.mutex.lock();  // never unlocked: from here on no file may be finished or begun
     for (const auto& [unfinished, action] : all.of) {
         const std::string line = action();
         if (line.empty()) continue;
@@ -73,7 +73,7 @@ void handle_interrupts() {
     };
     try {
         std::thread(receive).detach();
-    } catch (const std::system_error&) {  // no thread can be started: they end the program as usual
+    } catch (const std::system_error&) {  // without a thread the signals end the program
         ::pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
     }
 }

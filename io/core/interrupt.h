@@ -5,26 +5,27 @@
 #include <functional>
 #include <string>
 
-/// What SIGINT, SIGTERM and SIGHUP do with files and folders that have a name while they are unfinished.
+/// Decides what SIGINT, SIGTERM and SIGHUP do with files and folders that have a name but are unfinished.
 namespace lucarne {
 
-/// Removes the file or folder, or keeps it and returns a line that says so. Runs on a thread of its own while
-/// the others go on: it must hold copies of all that it uses.
+/// Removes the file or folder, or keeps it and returns a line that says so. The action runs on a thread of
+/// its own while the other threads continue, so it must hold copies of everything that it uses.
 using InterruptAction = std::function<std::string()>;
 
-/// Sets what an interrupt does with `unfinished`, in place of what was set before.
+/// Sets what an interrupt does with `unfinished`. Replaces an earlier action for the same path.
 void at_interrupt(const std::filesystem::path& unfinished, InterruptAction action);
-/// Forgets the action of a path that is finished or removed.
+/// Removes the action of a path. Call it once the file or folder is finished or removed.
 void forget_interrupt(const std::filesystem::path& unfinished);
 
-/// From now on the three signals run all actions, print their lines and then end the program as usual. A
-/// signal that is ignored (nohup) stays ignored; a second signal ends the program at once. Call it in main
-/// before any thread is started: a thread of its own receives the signals, and all others must inherit that
-/// they are blocked.
+/// After this call the three signals run all actions, print their lines and then end the program as usual. A
+/// signal that is ignored (nohup) stays ignored. A second signal ends the program at once. Call it in main
+/// before any thread is started: one thread receives the signals, and all other threads must inherit a mask
+/// that blocks them.
 void handle_interrupts();
 
-/// Takes the first of the signals instead of ending the program: requested() reports it, so that a window can
-/// save its work and close. A second signal ends the program as usual. Only one object may exist at a time.
+/// While an object lives, the first of the signals does not end the program. Instead requested() reports it,
+/// so that a window can save its work and close. A second signal ends the program as usual. Only one object
+/// may exist at a time.
 class InterruptRequest {
  public:
     InterruptRequest();
@@ -32,7 +33,7 @@ class InterruptRequest {
     InterruptRequest(const InterruptRequest&) = delete;
     InterruptRequest& operator=(const InterruptRequest&) = delete;
 
-    /// Whether a signal has asked the program to end.
+    /// Returns whether a signal has asked the program to end.
     bool requested() const { return requested_; }
 
  private:

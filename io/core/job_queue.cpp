@@ -35,7 +35,7 @@ void JobQueue::work() {
             job = std::move(jobs_.front());
             jobs_.pop_front();
         }
-        warn_of(guarded("a background job", job));  // only `done` can fail here
+        warn_of(guarded("a background job", job));  // `work` is guarded already; only `done` can throw here
     }
 }
 

@@ -12,24 +12,24 @@
 
 namespace lucarne {
 
-/// A thread that does one job after another, so that the window's own never waits.
+/// A thread that runs one job after another, so that the window's thread never waits.
 class JobQueue {
  public:
     JobQueue() : thread_([this] { work(); }) {}
-    /// After the job at work; those still waiting are dropped.
+    /// Waits for the running job. Jobs that have not begun are dropped.
     ~JobQueue();
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
-    /// Runs `work` on the thread and then, there, `done` with the Result that it returns. What `work` throws
-    /// (memory runs out) becomes an error about `what`: so `done` always comes.
+    /// Runs `work` on the queue's thread and then, on the same thread, `done` with the Result of `work`. An
+    /// exception from `work` (out of memory) becomes an error about `what`, so `done` is always called.
     template <class Work, class Done>
     void push(std::string what, Work work, Done done) {
         push_job([what = std::move(what), work = std::move(work), done = std::move(done)]() mutable {
             done(guarded(what, work));
         });
     }
-    /// The same where nobody waits for the result: an error becomes a warning on the terminal.
+    /// The same for callers that do not need the result. An error becomes a warning on the terminal.
     template <class Work>
     void push(std::string what, Work work) {
         push(std::move(what), std::move(work), warn_of);

@@ -12,7 +12,7 @@
 
 namespace lucarne::log {
 
-/// The warnings of an operation. Of very many it forgets the older ones.
+/// The warnings that an operation has printed. When there are very many, older ones are forgotten.
 struct Said {
     std::mutex mutex;
     std::set<std::string, std::less<>> lines;
@@ -27,7 +27,7 @@ struct Said {
 
 namespace {
 
-/// Of the operation that the calling thread is in; null: of none.
+/// The printed warnings of the calling thread's operation; null where the thread is in none.
 std::shared_ptr<Said>& said_by_thread() {
     thread_local std::shared_ptr<Said> said;
     return said;
@@ -43,7 +43,7 @@ spdlog::logger& logger() {
     return *instance;
 }
 
-constexpr size_t kMostBytes = 2000;  ///< of a line: a file's names may be of any length
+constexpr size_t kMostBytes = 2000;  ///< of a line; a name in a file may be of any length
 
 }  // namespace
 

@@ -10,21 +10,22 @@ namespace lucarne::log {
 
 struct Said;
 
-/// Messages for people, on stderr, one line each; results belong on stdout or into `--json`.
+/// Print a message for people on stderr, one line each. Results belong on stdout or into `--json` instead.
 void info(std::string_view text);
 void warn(std::string_view text);
 void set_quiet(bool quiet);  ///< drops `info`, keeps `warn`
 
-/// What warnings belong to: a command, or the opening of a scan with all that is done with it. The same
-/// warning is said once in an operation, however often a file is read in it, and again in the next one.
-/// Outside of all operations every warning is said. Copies are the same operation.
+/// Groups warnings: an operation is a command, or the opening of a scan with everything that is done with it.
+/// Within one operation the same warning is printed once, however often a file is read; the next operation
+/// prints it again. Outside of all operations every warning is printed. A copy is the same operation.
 class Operation {
  public:
     Operation();
-    /// The calling thread's, to be entered by another thread that works for it; of none, where it is in none.
+    /// Returns the calling thread's operation, for another thread that works on its behalf to enter. Where
+    /// the calling thread is in none, the result stands for "no operation".
     static Operation current();
 
-    /// The calling thread's warnings belong to an operation while this lives.
+    /// While this object lives, the calling thread's warnings belong to the operation.
     class Scope {
      public:
         explicit Scope(const Operation& operation);

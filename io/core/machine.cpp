@@ -11,7 +11,7 @@
 namespace lucarne {
 namespace {
 
-/// The value of the first line of /proc/cpuinfo that begins with `key`.
+/// Returns the value of the first line of /proc/cpuinfo that begins with `key`.
 std::string cpuinfo(const std::string& key) {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {
@@ -32,7 +32,7 @@ unsigned usable_cores() {
 }  // namespace
 
 BuildInfo build_info() {
-    // Defined for this file by CMakeLists.txt.
+    // CMakeLists.txt defines these macros for this file.
     return {LUCARNE_VERSION, LUCARNE_REVISION, LUCARNE_COMPILER, LUCARNE_BUILD_TYPE, LUCARNE_BUILD_FLAGS};
 }
 

@@ -7,19 +7,20 @@
 
 namespace lucarne {
 
-/// "512M", "2G", "1.5GiB", "4096" to bytes (binary units). `option` names it in the error.
+/// Converts "512M", "2G", "1.5GiB" or "4096" to bytes (binary units). `option` names the option in the error.
 Result<uint64_t> parse_bytes(std::string_view option, std::string_view text);
 
-/// "250000", "5M", "1.5k", "2G" to a count (powers of 1000), at most 2^53. `option` names it in the error.
+/// Converts "250000", "5M", "1.5k" or "2G" to a count (powers of 1000), at most 2^53. `option` names the
+/// option in the error.
 Result<uint64_t> parse_count(std::string_view option, std::string_view text);
 
 struct ImageSize {
     uint32_t width = 0, height = 0;
 };
-/// "1280x720"; both between 1 and 16384.
+/// Converts "1280x720" to a size. Width and height must be between 1 and 16384.
 Result<ImageSize> parse_size(std::string_view option, std::string_view text);
 
-/// "1.5 GiB".
+/// Returns an amount as text: "1.5 GiB".
 std::string bytes_text(uint64_t bytes);
 
 }  // namespace lucarne

@@ -20,7 +20,7 @@
 
 namespace lucarne {
 
-/// Caps the threads of every parallel loop while it lives; 0 means all cores.
+/// Limits the threads of every parallel loop while it lives; 0 means all cores.
 class ThreadLimit {
  public:
     explicit ThreadLimit(unsigned threads)
@@ -31,9 +31,10 @@ class ThreadLimit {
     tbb::global_control control_;
 };
 
-/// body(first, last) over [0, count) in pieces of at most `grain`, in parallel. The pieces do not depend on
-/// the number of threads, so a body that depends on nothing but its piece gives the same result every run.
-/// Its warnings belong to the caller's operation, and what it throws is thrown here.
+/// Calls body(first, last) for consecutive pieces of [0, count), each at most `grain` long, in parallel. The
+/// pieces do not depend on the number of threads, so a body that depends on nothing but its piece gives the
+/// same result in every run. Warnings of the body belong to the caller's operation. An exception of the body
+/// is rethrown here.
 template <class Body>
 void parallel_ranges(size_t count, size_t grain, const Body& body) {
     const size_t pieces = (count + grain - 1) / grain;
@@ -50,8 +51,8 @@ void parallel_ranges(size_t count, size_t grain, const Body& body) {
 #endif
 }
 
-/// Collects the failure of parallel work. Of several the one with the lowest `order` is kept, so that the
-/// message does not depend on timing where every piece is tried.
+/// Collects the errors of parallel work and keeps the one with the lowest `order`. If every piece is tried,
+/// the message therefore does not depend on timing.
 class FirstError {
  public:
     void report(size_t order, Error error) {

@@ -14,15 +14,16 @@
 namespace lucarne {
 
 uint64_t resident_memory() {
-    std::ifstream statm("/proc/self/statm");  // pages: of the whole address space, resident, ... (proc(5))
+    std::ifstream statm("/proc/self/statm");  // in pages: address space, resident, ... (proc(5))
     uint64_t all = 0, resident = 0;
     if (!(statm >> all >> resident)) return 0;
     return resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 void give_way() {
-    // Linux keeps niceness by thread (setpriority(2), "C library/kernel differences"); five steps weigh a
-    // third. From the main thread's, so that who calls twice gives way once.
+    // Linux keeps niceness per thread (setpriority(2), "C library/kernel differences"); five steps give a
+    // weight of about a third. The steps count from the main thread's niceness, so that a second call changes
+    // nothing.
     constexpr int kStep = 5;
     const int usual = getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
     setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), usual + kStep);
@@ -30,7 +31,7 @@ void give_way() {
 
 double seconds_since_start() {
     std::ifstream stat(
-        "/proc/self/stat");  // pid (name) state ...: the 22nd is the start, ticks since boot (proc(5))
+        "/proc/self/stat");  // pid (name) state ...: field 22 is the start time in ticks since boot (proc(5))
     std::string text;
     std::getline(stat, text);
     const size_t name_end = text.rfind(')');

@@ -77,7 +77,7 @@ void Progress::print(bool last) {
         line = fmt::format("{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", start, label_, bar,
                            share * 100, count_text(rate), unit_, std::max(0.0, left), end);
     }
-    // fmt::print would throw where stderr cannot be written (a log on a full disk): no reason to stop the
+    // fmt::print would throw if stderr cannot be written (a log on a full disk), and that must not stop the
     // work.
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);

@@ -8,11 +8,12 @@
 
 namespace lucarne {
 
-/// Progress of one long stage on stderr: a bar with rate and time left on a terminal, else a plain line at
-/// the end (and every 10 s). Thread-safe; `add` is cheap enough to be called per batch, not per point.
+/// Shows the progress of one long stage on stderr. On a terminal it is a bar with the rate and the time left;
+/// elsewhere it is a plain line every 10 s and at the end. Thread-safe. `add` is cheap enough to be called
+/// per batch, not per point.
 class Progress {
  public:
-    /// `total` 0 means unknown. `unit` is what is counted ("points").
+    /// `total` 0 means unknown. `unit` names what is counted ("points").
     Progress(std::string label, uint64_t total, std::string unit);
     ~Progress();
     Progress(const Progress&) = delete;
@@ -23,7 +24,8 @@ class Progress {
 
     /// Turns all output off, for tests and `--quiet`.
     static void set_silent(bool silent);
-    /// Moves below a bar that may be on the terminal, before a last line when the program is interrupted.
+    /// Moves the cursor below a bar that may be on the terminal. An interrupt calls it before it prints a
+    /// last line.
     static void end_line();
 
  private:

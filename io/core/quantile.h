@@ -7,8 +7,8 @@
 
 namespace lucarne {
 
-/// The least value that at least `share` (0 to 1) of the values do not exceed: the nearest rank (Hyndman &
-/// Fan 1996, type 1). Reorders the values; 0 where there are none.
+/// Returns the smallest value such that at least `share` (0 to 1) of the values do not exceed it: the nearest
+/// rank (Hyndman & Fan 1996, type 1). Reorders the values. Returns 0 if there are none.
 inline double nearest_rank(std::span<double> values, double share) {
     if (values.empty()) return 0;
     const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));

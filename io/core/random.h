@@ -4,8 +4,8 @@
 
 namespace lucarne {
 
-/// SplitMix64's finalizer (Steele, Lea, Flood 2014): a bijective mix of 64 bits. Used as a counter-based
-/// random generator, so that every number follows from (seed, index) whatever the number of threads.
+/// SplitMix64's finalizer (Steele, Lea, Flood 2014): a bijective mix of 64 bits. It serves as a counter-based
+/// random generator: every number follows from (seed, index), whatever the number of threads.
 constexpr uint64_t mix64(uint64_t x) {
     x += 0x9e3779b97f4a7c15ull;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -17,12 +17,12 @@ constexpr uint64_t mix64(uint64_t seed, uint64_t index) {
     return mix64(mix64(seed) ^ index);
 }
 
-/// Uniform in [0, 1): the upper 53 bits of a mixed word.
+/// Converts a mixed word to a number uniform in [0, 1), from its upper 53 bits.
 constexpr double unit_double(uint64_t mixed) {
     return static_cast<double>(mixed >> 11) * 0x1.0p-53;
 }
 
-/// A small sequential generator over mix64: the stream of (seed, stream id).
+/// A small sequential generator over mix64. (seed, stream) selects its stream.
 class Random {
  public:
     explicit constexpr Random(uint64_t seed, uint64_t stream = 0) : key_(mix64(seed, stream)) {}

@@ -8,23 +8,24 @@
 
 namespace lucarne {
 
-/// Values by key, of which the one that was asked for the longest ago is given up first. Not thread-safe.
+/// A map that can give up its least recently used value. Not thread-safe.
 template <class Key, class Value>
 class RecentlyUsed {
  public:
-    /// The value, which now is the last used; null where there is none. Valid until it is taken.
+    /// Returns the value and marks it as the most recently used; null if there is none. The pointer is valid
+    /// until the value is taken.
     Value* find(const Key& key) {
         const auto place = places_.find(key);
         if (place == places_.end()) return nullptr;
         kept_.splice(kept_.begin(), kept_, place->second);
         return &kept_.front().second;
     }
-    /// The key has no value yet.
+    /// Adds a value. The key must not have one yet.
     void add(const Key& key, Value value) {
         kept_.emplace_front(key, std::move(value));
         places_[key] = kept_.begin();
     }
-    /// Removes a value and returns it.
+    /// Removes the key's value and returns it; nothing if there is none.
     std::optional<Value> take(const Key& key) {
         const auto place = places_.find(key);
         if (place == places_.end()) return std::nullopt;
@@ -33,7 +34,7 @@ class RecentlyUsed {
         places_.erase(place);
         return value;
     }
-    /// Removes the value that was not used for the longest time and returns it. There is one.
+    /// Removes the least recently used value and returns it. There must be one.
     Value take_oldest() {
         Value value = std::move(kept_.back().second);
         places_.erase(kept_.back().first);
@@ -43,7 +44,7 @@ class RecentlyUsed {
     size_t size() const { return kept_.size(); }
 
  private:
-    std::list<std::pair<Key, Value>> kept_;  ///< the last used first
+    std::list<std::pair<Key, Value>> kept_;  ///< most recently used first
     std::unordered_map<Key, typename std::list<std::pair<Key, Value>>::iterator> places_;
 };
 

@@ -19,7 +19,7 @@ size_t shown_bytes(std::string_view text) {
         code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
     }
     constexpr std::array<uint32_t, 5> kLeast = {0, 0, 0xa0, 0x800,
-                                                0x10000};  // in so many bytes; C1 ends at 0xa0
+                                                0x10000};  // by number of bytes; C1 ends at 0xa0
     const bool no_character = code < kLeast[bytes] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
     const bool not_seen = (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
     return no_character || not_seen ? 0 : bytes;
@@ -43,7 +43,7 @@ std::string shown(std::string_view text, size_t most) {
 }
 
 void print_line(std::string_view text) {
-    // Where stdout cannot be written, main says so at the end.
+    // If stdout cannot be written, main reports it at the end.
     const std::string line = shown(text) + '\n';
     std::fwrite(line.data(), 1, line.size(), stdout);
 }

@@ -16,15 +16,15 @@ class ByteSource {
  public:
     virtual ~ByteSource() = default;
 
-    /// Names it in errors; tells a format by its extension, and where files beside it are.
+    /// The name for error messages. Its extension tells the format; its folder is where related files are.
     const std::filesystem::path& path() const { return path_; }
     uint64_t size() const { return size_; }
-    /// With the size: which state of the file this is, ns since 1970; 0 where unknown.
+    /// Modification time in ns since 1970; 0 where unknown. With the size it identifies a state of the file.
     int64_t modified() const { return modified_; }
 
-    /// Reads up to `out.size()` bytes at `offset` and returns how many there were; fewer only at the end.
+    /// Reads up to `out.size()` bytes at `offset` and returns how many were read. Fewer only at the end.
     virtual Result<size_t> read_some(uint64_t offset, std::span<std::byte> out) const = 0;
-    /// Reads exactly `out.size()` bytes at `offset`; fewer is an error that says so (a truncated file).
+    /// Reads exactly `out.size()` bytes at `offset`. Fewer is an error that says so (a truncated file).
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
 
  protected:
@@ -41,7 +41,7 @@ class ByteSource {
 
 class MemorySource final : public ByteSource {
  public:
-    /// `bytes` outlive it.
+    /// `bytes` must outlive the object.
     MemorySource(std::filesystem::path path, std::span<const std::byte> bytes, int64_t modified = 0)
         : ByteSource(std::move(path), bytes.size(), modified), bytes_(bytes) {}
     MemorySource(std::filesystem::path path, std::vector<std::byte> bytes, int64_t modified = 0)

@@ -23,7 +23,8 @@ using file_io::write_all;
 
 namespace {
 
-/// A name beside an output while it is not whole: of this process, and not left over from another.
+/// Returns a temporary name for an output that is not whole yet. The name holds this process's id and is not
+/// left over from another process.
 std::filesystem::path unused_name(const std::filesystem::path& folder) {
     struct stat status {};
     for (int n = 0;; ++n) {
@@ -42,7 +43,7 @@ void remove_at_interrupt(const std::filesystem::path& name) {
 }  // namespace
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path, std::shared_ptr<HandlePool> pool) {
-    // Without O_NONBLOCK a FIFO would hang us.
+    // Without O_NONBLOCK, opening a FIFO would block forever.
     auto handle = std::make_shared<const Handle>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (handle->fd() < 0)
         return rejected(path.empty() ? "''" : path.string(),
@@ -101,10 +102,10 @@ Result<size_t> InputFile::read_some(uint64_t offset, std::span<std::byte> out) c
 Result<void> check_output(const std::filesystem::path& path, bool overwrite) {
     struct stat status {};
     if (path.filename().empty()) return bad_arguments(path.string(), "is not a file name");
-    if (::lstat(path.c_str(), &status) == 0) {  // a link that leads nowhere is a name that is taken, too
+    if (::lstat(path.c_str(), &status) == 0) {  // a dangling link takes the name as well
         if (S_ISDIR(status.st_mode)) return failed(path.string(), "is a folder", "choose a file name");
         if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
-            return failed(path.string(), "is a device or the like", "choose a file name");
+            return failed(path.string(), "is a device or another special file", "choose a file name");
         if (!overwrite)
             return failed(path.string(), "exists already", "choose another name or pass --overwrite");
     } else if (errno == ENAMETOOLONG) {
@@ -183,7 +184,7 @@ Result<InputFile> OutputFile::reader(uint64_t bytes) const {
 Result<void> OutputFile::commit() {
     LUCARNE_TRY(file_io::sync(fd_, path_));
     if (temporary_.empty()) {
-        // linkat never replaces a name, so an overwrite goes through a second name and rename.
+        // linkat never replaces a name. An overwrite therefore links a temporary name and renames it.
         const std::string self = fmt::format("/proc/self/fd/{}", fd_);
         const auto name = overwrite_ ? unused_name(folder_of(path_)) : path_;
         if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)

@@ -13,14 +13,15 @@
 
 namespace lucarne {
 
-/// A regular file opened for reading at any offset (pread). Directories, devices, missing and unreadable
-/// files are rejected with their reason. Its size and time are those of when it was opened.
+/// A regular file opened for reading at any offset (pread). Directories, devices, and missing or unreadable
+/// files are rejected with the reason. size() and modified() are those of the moment when it was opened.
 class InputFile final : public ByteSource {
  public:
-    /// With `pool` the handle is one of a bounded number, and the file must keep its name while it is read.
+    /// Opens a file. With `pool` the file uses one of a bounded number of handles, and it must keep its name
+    /// while it is read.
     static Result<InputFile> open(const std::filesystem::path& path,
                                   std::shared_ptr<HandlePool> pool = nullptr);
-    /// The same for who hands it on.
+    /// The same, for sharing the file.
     static Result<std::shared_ptr<const InputFile>> open_shared(const std::filesystem::path& path,
                                                                 std::shared_ptr<HandlePool> pool = nullptr);
     InputFile(InputFile&& other) noexcept;
@@ -34,52 +35,56 @@ class InputFile final : public ByteSource {
     InputFile() = default;
     Result<std::shared_ptr<const Handle>> handle() const;
 
-    std::shared_ptr<const Handle> own_;  ///< none where there is a pool
+    std::shared_ptr<const Handle> own_;  ///< null if there is a pool
     std::shared_ptr<HandlePool> pool_;
-    uint64_t number_ = 0;  ///< in the pool
+    uint64_t number_ = 0;  ///< the file's number in the pool
     FileIdentity identity_;
 };
 
-/// A file that appears under its name whole or not at all: it is written nameless (O_TMPFILE, so that even
-/// SIGKILL leaves nothing) or, where the file system cannot do that, beside its name and removed on failure.
-/// `commit` syncs it and gives it its name. Any write that fails (a full disk) is an error; the destructor of
-/// an uncommitted file leaves nothing behind. write_at is thread-safe.
+/// A file that appears under its name whole or not at all. It is written without a name (O_TMPFILE), so that
+/// even SIGKILL leaves nothing. Where the file system cannot do that, it is written under a temporary name in
+/// the same folder, and removed on failure. `commit` syncs the file and gives it its name. Any write that
+/// fails (a full disk) is an error. The destructor of an uncommitted file leaves nothing behind. write_at is
+/// thread-safe.
 class OutputFile {
  public:
-    /// Refuses a name that exists unless `overwrite`; refuses a folder that is missing or cannot be written.
+    /// Creates a file. Refuses a name that exists unless `overwrite` is set, and a folder that is missing or
+    /// cannot be written.
     static Result<OutputFile> create(const std::filesystem::path& path, bool overwrite);
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&& other) noexcept;
     ~OutputFile();
 
-    Result<void> append(
-        std::span<const std::byte> data);  ///< at position(); unbuffered: hand over large pieces
+    /// Writes at position(). There is no buffer: pass large pieces.
+    Result<void> append(std::span<const std::byte> data);
     Result<void> append(std::string_view text);
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
-    uint64_t position() const { return position_; }  ///< the end of what `append` wrote
-    /// The first `bytes`, which are written, to be read while more is appended; it outlives this object.
+    uint64_t position() const { return position_; }  ///< end of the appended data
+    /// Returns a file that reads the first `bytes`, which must be written already, while more is appended. It
+    /// may outlive this object.
     Result<InputFile> reader(uint64_t bytes) const;
-    Result<void> commit();  ///< where only its name cannot be synced, that is an error and the file stays
+    /// If only the name cannot be synced, returns an error, but the file stays.
+    Result<void> commit();
 
  private:
     OutputFile() = default;
     int fd_ = -1;
     bool overwrite_ = false, committed_ = false;
-    std::filesystem::path path_, temporary_;  ///< `temporary_` is empty for a nameless file
+    std::filesystem::path path_, temporary_;  ///< `temporary_` is empty for a file without a name
     uint64_t position_ = 0;
 };
 
-/// A whole file at once, as OutputFile writes it.
+/// Write a whole file at once through OutputFile.
 Result<void> write_file(const std::filesystem::path& path, std::string_view text, bool overwrite);
 Result<void> write_file(const std::filesystem::path& path, std::span<const std::byte> data, bool overwrite);
 
-/// A scratch file. Nameless in `folder`: gone with the process however it ends; or under a name, to be found
-/// again by who resumes the work.
+/// A scratch file. create() makes it without a name in `folder`, so that it disappears with the process,
+/// however that ends. named() gives it a name, so that a resumed job can find it again.
 class ScratchFile {
  public:
     static Result<ScratchFile> create(const std::filesystem::path& folder);
-    /// Opens or makes `path`; empties it unless `keep`. Who removes it is the caller's business.
+    /// Opens or creates `path`, and empties it unless `keep` is set. The caller must remove it.
     static Result<ScratchFile> named(const std::filesystem::path& path, bool keep);
     ScratchFile(ScratchFile&& other) noexcept;
     ScratchFile& operator=(ScratchFile&& other) noexcept;
@@ -87,7 +92,7 @@ class ScratchFile {
 
     Result<void> write_at(uint64_t offset, std::span<const std::byte> data);
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
-    /// Gives the blocks of a range back to the file system where it can; a hint, never an error.
+    /// Returns the blocks of a range to the file system where that is possible. A hint: it never fails.
     void discard(uint64_t offset, uint64_t bytes);
 
  private:
@@ -96,8 +101,8 @@ class ScratchFile {
     std::filesystem::path folder_;
 };
 
-/// Why `path` can be written as an output, checked before long work starts: the same refusals as
-/// OutputFile::create, with nothing created.
+/// Checks whether `path` can be written as an output, before long work starts. Refuses what
+/// OutputFile::create refuses, but creates nothing.
 Result<void> check_output(const std::filesystem::path& path, bool overwrite);
 
 }  // namespace lucarne

@@ -12,7 +12,7 @@
 namespace lucarne::file_io {
 namespace {
 
-/// 0, or the errno.
+/// Syncs a handle. Returns 0 or the errno.
 int sync_error(int fd) {
     while (::fsync(fd) != 0)
         if (errno != EINTR) return errno;
@@ -77,8 +77,8 @@ Result<void> sync_name(const std::filesystem::path& path) {
     const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const int error = folder < 0 ? errno : sync_error(folder);
     if (folder >= 0) ::close(folder);
-    // fsync(2): EINVAL, EROFS and ENOTSUP mean "no sync here"; some network file systems say EBADF of
-    // folders.
+    // fsync(2): EINVAL, EROFS and ENOTSUP mean that this cannot be synced. Some network file systems return
+    // EBADF for folders.
     const bool unsupported =
         folder >= 0 && (error == EINVAL || error == EROFS || error == ENOTSUP || error == EBADF);
     const bool unreadable = folder < 0 && (error == EACCES || error == EPERM);

@@ -6,8 +6,8 @@
 
 namespace lucarne {
 
-/// `folder`/`stem`-0001, or the next number whose name is free with every one of the extensions (".png");
-/// without an extension.
+/// Returns `folder`/`stem`-0001, or the same with the next number for which no file with any of the
+/// extensions (".png") exists. The result has no extension.
 std::filesystem::path free_name(const std::filesystem::path& folder, std::string_view stem,
                                 std::initializer_list<std::string_view> extensions);
 

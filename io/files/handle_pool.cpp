@@ -32,21 +32,22 @@ int HandlePool::open_to_read(const std::filesystem::path& path) {
 }
 
 void HandlePool::leave(uint64_t number) {
-    std::optional<std::shared_ptr<const Handle>> closed;  // after the lock
+    std::optional<std::shared_ptr<const Handle>> closed;  // closed after the lock is released
     const std::lock_guard lock(mutex_);
     closed = kept_.take(number);
 }
 
-/// Null: none is kept.
+/// Returns the file's open handle; null if none is kept.
 std::shared_ptr<const Handle> HandlePool::kept_handle(uint64_t number) {
     const std::lock_guard lock(mutex_);
     const auto* kept = kept_.find(number);
     return kept ? *kept : nullptr;
 }
 
-/// Keeps `handle`, unless another thread has opened the file meanwhile: then returns that one's.
+/// Keeps `handle` and returns it. If another thread has opened the file meanwhile, returns that thread's
+/// handle.
 std::shared_ptr<const Handle> HandlePool::keep(uint64_t number, std::shared_ptr<const Handle> handle) {
-    std::vector<std::shared_ptr<const Handle>> closed;  // after the lock
+    std::vector<std::shared_ptr<const Handle>> closed;  // closed after the lock is released
     const std::lock_guard lock(mutex_);
     if (const auto* kept = kept_.find(number)) return *kept;
     kept_.add(number, handle);

@@ -14,7 +14,7 @@
 
 namespace lucarne {
 
-/// A file descriptor that is closed with its last user.
+/// A file descriptor. It is closed with its last user.
 class Handle {
  public:
     explicit Handle(int fd) : fd_(fd) {}
@@ -27,33 +27,36 @@ class Handle {
     int fd_;
 };
 
-/// Which file a name stood for when it was first opened.
+/// Identifies the file that a name stood for when it was first opened.
 struct FileIdentity {
     dev_t device = 0;
     ino_t inode = 0;
     bool operator==(const FileIdentity&) const = default;
 };
 
-/// Handles of many files of which only so many are open at once: the longest unused is closed and opened
-/// again when it is needed. Beside those, as many are open as threads read at the moment. Thread-safe.
+/// Gives access to many files while a bounded number of handles is kept open. The least recently used handle
+/// is closed, and its file is opened again when needed. In addition, the handles that threads are reading
+/// from at the moment stay open. Thread-safe.
 ///
-/// Files are opened and closed outside the lock: a slow one (on a network) holds up only those who read it.
+/// Files are opened and closed outside the lock, so a slow file (on a network) delays only its own readers.
 class HandlePool {
  public:
-    /// Opens a file for reading: a file descriptor, or -1 and errno.
+    /// Opens a file for reading. Returns a file descriptor, or -1 and sets errno.
     using Opener = std::function<int(const std::filesystem::path&)>;
 
     explicit HandlePool(size_t most, Opener opener = open_to_read)
         : most_(most), opener_(std::move(opener)) {}
     static int open_to_read(const std::filesystem::path& path);
 
-    /// A number for a file that will be asked for again; `handle` where it is open.
+    /// Returns a number for a file that will be acquired later. `handle` is its handle, if it is open
+    /// already.
     uint64_t enrol(std::shared_ptr<const Handle> handle = nullptr);
     void leave(uint64_t number);
-    /// Errors: the file cannot be opened (any more), or its name stands for another file now.
+    /// Returns a handle of the file. Errors: the file can no longer be opened, or its name stands for another
+    /// file now.
     Result<std::shared_ptr<const Handle>> acquire(uint64_t number, const std::filesystem::path& path,
                                                   const FileIdentity& identity);
-    size_t open() const;  ///< handles kept now
+    size_t open() const;  ///< number of handles kept open now
 
  private:
     std::shared_ptr<const Handle> kept_handle(uint64_t number);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kLargestFile = uint64_t{16} << 20;
 
-/// Finds where a text stops being JSON; the library's exceptions do not always tell.
+/// Finds the place where a text stops being JSON; the library's exceptions do not always tell.
 class MistakeFinder final : public nlohmann::json::json_sax_t {
  public:
     explicit MistakeFinder(std::string_view text) : text_(text) {}
@@ -33,7 +33,7 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
     bool parse_error(size_t position, const std::string& token,
                      const nlohmann::json::exception& error) override {
         constexpr size_t kMostQuoted = 40;
-        constexpr std::string_view kExpected = "; expected ";  // the end of the library's reason
+        constexpr std::string_view kExpected = "; expected ";  // what the library's reason ends with
         const bool too_large = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;
         const std::string found = shown(token, kMostQuoted);
         const std::string_view reason = error.what();
@@ -47,7 +47,7 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
             why_ = fmt::format("{} is expected, not {}",
                                shown(reason.substr(expected + kExpected.size()), kMostQuoted), found);
         else
-            why_ = fmt::format("{} is no JSON", found);
+            why_ = fmt::format("{} is not JSON", found);
         return false;
     }
 
@@ -61,7 +61,7 @@ class MistakeFinder final : public nlohmann::json::json_sax_t {
  private:
     std::string_view text_;
     size_t at_ = 0;
-    std::string why_ = "is no JSON";
+    std::string why_ = "is not JSON";
 };
 
 }  // namespace
@@ -196,7 +196,7 @@ Result<std::vector<int64_t>> JsonObject::integers(std::string_view key, int64_t 
     if (!value->is_array() || value->size() > most_of_them)
         return wrong(fmt::format("must be an array of at most {} integers", most_of_them), key);
     for (const nlohmann::json& element : *value) {
-        // Whole numbers beyond 64 bits are floats to the parser.
+        // The parser turns whole numbers beyond 64 bits into floats.
         const bool whole = element.is_number_integer();
         const auto number = whole ? element.get<int64_t>() : int64_t{0};
         if (!whole || number < least || number > most)

@@ -16,12 +16,12 @@ namespace lucarne {
 
 /// Reads a JSON text written by a person (a scene, a camera path). Errors name the line and column.
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& name);
-/// The text of such a file, of at most 16 MiB.
+/// Load such a file, of at most 16 MiB, as text or as JSON.
 Result<std::string> load_text(const std::filesystem::path& path);
 Result<nlohmann::json> load_json(const std::filesystem::path& path);
 
-/// As a file holds it: indented, with a final line end. Bytes that are no UTF-8, as in names of files, become
-/// U+FFFD.
+/// Returns the text for a JSON file: indented, with a final line end. Bytes that are not UTF-8, as file names
+/// may hold, become U+FFFD.
 template <class Json>
 std::string json_text(const Json& value) {
     return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -31,14 +31,16 @@ struct JsonRange {
     double least = -1e300, most = 1e300;
 };
 
-/// One object of such a file, read key by key. Every error names the file and the place as a JSON pointer: a
-/// missing or unknown key, a wrong type, a number out of range. Refers to the document, which outlives it.
+/// Reads one object of such a file key by key. Every error names the file and the place as a JSON pointer: a
+/// missing or unknown key, a wrong type, a number out of range. Refers to the document, which must outlive
+/// it.
 class JsonObject {
  public:
     static Result<JsonObject> of(const nlohmann::json& value, std::string name, std::string pointer = "");
 
     bool has(std::string_view key) const;
-    // Each takes a key, which from then on is known. Without `otherwise` the key must be there.
+    // Each function reads the value of `key` and marks the key as known. Without `otherwise` the key is
+    // required.
     Result<double> number(std::string_view key, JsonRange range = {}, std::optional<double> otherwise = {});
     Result<int64_t> integer(std::string_view key, int64_t least, int64_t most,
                             std::optional<int64_t> otherwise = {});
@@ -47,20 +49,20 @@ class JsonObject {
     /// [x, y, z], every component within the range.
     Result<glm::dvec3> vector(std::string_view key, JsonRange range = {},
                               std::optional<glm::dvec3> otherwise = {});
-    /// An array of at most `most_of_them` integers; empty where the key is missing.
+    /// An array of at most `most_of_them` integers. Empty if the key is missing.
     Result<std::vector<int64_t>> integers(std::string_view key, int64_t least, int64_t most,
                                           size_t most_of_them);
-    /// One of `choices`; its index.
+    /// A text that must be one of `choices`. Returns its index.
     Result<size_t> choice(std::string_view key, const std::vector<std::string_view>& choices,
                           std::optional<size_t> otherwise = {});
-    /// The objects of an array of at most `most`; empty where the key is missing.
+    /// An array of at most `most` objects. Empty if the key is missing.
     Result<std::vector<JsonObject>> objects(std::string_view key, size_t most = 10000);
-    /// An object; empty where the key is missing.
+    /// An object. Empty if the key is missing.
     Result<std::optional<JsonObject>> object(std::string_view key);
 
-    /// Call last: a key that nothing above took is an error.
+    /// Call this last: a key that no function above has read is an error.
     Result<void> finish() const;
-    /// An error at this object or at one of its keys.
+    /// Returns an error about this object, or about one of its keys.
     tl::unexpected<Error> wrong(std::string why, std::string_view key = {}) const;
 
  private:

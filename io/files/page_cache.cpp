@@ -17,9 +17,9 @@
 namespace lucarne {
 namespace {
 
-constexpr uint64_t kWindow = uint64_t{1} << 30;  ///< bytes mapped at a time to be asked about
+constexpr uint64_t kWindow = uint64_t{1} << 30;  ///< bytes that are mapped and queried at a time
 
-/// Pages of [offset, offset + bytes) that are in memory; the mapping itself touches none.
+/// Counts the pages of [offset, offset + bytes) that are in memory. The mapping itself loads none.
 uint64_t resident_pages(int fd, uint64_t offset, uint64_t bytes, uint64_t page) {
     void* at = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, fd, static_cast<off_t>(offset));
     if (at == MAP_FAILED) return 0;
@@ -42,7 +42,7 @@ Result<double> drop_page_cache(const std::filesystem::path& path) {
     if (::fsync(file.fd()) != 0 && errno != EINVAL && errno != EROFS)
         return failed(path.string(), fmt::format("cannot be synced ({})", reason()));
     if (const int error = ::posix_fadvise(file.fd(), 0, 0, POSIX_FADV_DONTNEED); error != 0)
-        return failed(path.string(), fmt::format("the system does not forget it ({})",
+        return failed(path.string(), fmt::format("cannot be dropped from the page cache ({})",
                                                  std::error_code(error, std::generic_category()).message()));
     const auto size = static_cast<uint64_t>(status.st_size);
     const auto page = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));

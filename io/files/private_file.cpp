@@ -18,12 +18,12 @@ using file_io::reason;
 
 constexpr const char* kAdvice = "remove it, or choose another folder";
 
-/// The folder's handle, by which its files are reached whatever becomes of its name.
+/// Opens the folder. Its files are then reached through the handle, even if the folder's name changes.
 Result<int> open_private_folder(const std::filesystem::path& folder) {
     const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd < 0) {
         if (errno == ENOTDIR || errno == ELOOP)
-            return failed(folder.string(), "is a link or no folder", kAdvice);
+            return failed(folder.string(), "is a link or not a folder", kAdvice);
         return failed(folder.string(), fmt::format("cannot be opened ({})", reason(errno)), kAdvice);
     }
     struct stat status {};
@@ -64,7 +64,7 @@ void remove_private_files(const std::filesystem::path& folder, std::span<const s
 
 void remove_private_folder(const std::filesystem::path& folder, std::span<const std::string> files) {
     remove_private_files(folder, files);
-    ::rmdir(folder.c_str());  // fails where anything else is in it
+    ::rmdir(folder.c_str());  // fails if the folder holds anything else
 }
 
 Result<int> open_private_file(const std::filesystem::path& path, bool create) {

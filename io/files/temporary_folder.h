@@ -8,8 +8,8 @@
 
 namespace lucarne {
 
-/// A folder for this user alone, in the system's place for temporary files, that is removed with all that is
-/// in it: by the destructor, or when a signal ends the program (io/core/interrupt.h).
+/// A folder for this user alone in the system's place for temporary files. The destructor removes it with
+/// everything in it; so does a signal that ends the program (io/core/interrupt.h).
 class TemporaryFolder {
  public:
     static Result<TemporaryFolder> create();

@@ -44,7 +44,7 @@ Result<std::optional<UpdateFile>> UpdateFile::lock(UpdateFile file, const char* 
         return rejected(file.path_.string(), "is not a regular file");
     if (::flock(file.fd_, LOCK_EX | LOCK_NB) != 0)
         return failed(file.path_.string(), busy, "wait until it is done");
-    // Who held the lock before may have put another file under the name, or removed it.
+    // The previous holder of the lock may have replaced the file under this name, or removed it.
     if (::stat(file.path_.c_str(), &named) != 0 || named.st_ino != held.st_ino || named.st_dev != held.st_dev)
         return std::optional<UpdateFile>();
     return std::optional<UpdateFile>(std::move(file));

@@ -4,12 +4,12 @@
 
 namespace lucarne {
 
-/// The value of an environment variable that is an absolute path; empty for others, which do not count (XDG
-/// Base Directory Specification 0.8).
+/// Returns the value of an environment variable if it is an absolute path. Returns an empty path otherwise:
+/// other values must be ignored (XDG Base Directory Specification 0.8).
 std::filesystem::path absolute_folder(const char* variable);
 
-/// Where this program keeps files of a kind for its user: "lucarne" in the folder that `variable` names, or
-/// else in `below_home` of the user's own. Empty where there is neither. Nothing is made.
+/// Returns the folder for a kind of this user's files: "lucarne" in the folder that `variable` names,
+/// otherwise in `below_home` of the user's home folder. Empty if neither exists. Creates nothing.
 std::filesystem::path user_folder(const char* variable, const char* below_home);
 
 }  // namespace lucarne

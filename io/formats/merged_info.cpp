@@ -12,18 +12,19 @@
 namespace lucarne::io {
 namespace {
 
-/// Files without points decide nothing, and those that only say a unit leave it to others.
+/// Returns whether the scan counts for the common coordinate system. Files without points do not; nor do
+/// files that only state a unit.
 bool says_system(const ScanInfo& scan) {
     const bool named = !scan.coordinate_system.empty() && scan.coordinate_system != las::kLocalSystem;
     return scan.declared_points > 0 && (scan.epsg != 0 || named);
 }
-/// Codes tell more than names, which everybody writes otherwise.
+/// Compares codes where both scans have one, because every program writes the names differently.
 bool same_system(const ScanInfo& a, const ScanInfo& b) {
     if (a.epsg && b.epsg) return a.epsg == b.epsg;
     return a.coordinate_system == b.coordinate_system;
 }
 
-/// The extra bytes of all LAS files, and what different_extras says of them.
+/// The extra bytes of all LAS files, and the line for different_extras.
 struct Extras {
     las::Vlr record{std::string(las::kSpecUser), las::kExtraBytesRecord, "", false, {}};
     std::string differ;
@@ -36,9 +37,8 @@ Extras merged_extras(std::span<const ScanInfo> scans) {
         const auto names = las::add_entries(extras.record, *record);
         if (!names.empty() && extras.differ.empty())
             extras.differ = fmt::format(
-                "{}: '{}' has another scale, offset or type here than in a file before it; its numbers are "
-                "put together "
-                "as they stand in the files",
+                "{}: '{}' has another scale, offset or type here than in an earlier file; the "
+                "unscaled numbers are merged unchanged",
                 scan.path, names.front());
     }
     return extras;
@@ -50,14 +50,15 @@ void merge_extras(std::span<const ScanInfo> scans, FormatNotes& notes) {
     if (!extras.differ.empty()) notes.extras_note = extras.differ;
 }
 
-/// Notes in `info` what holds for the systems of all scans. Its notes are those of the first scan, or none.
+/// Sets in `info` the coordinate system for all scans. On entry its notes are those of the first scan, or
+/// empty.
 void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
     FormatNotes& notes = info.notes;
     const auto giver = std::find_if(scans.begin(), scans.end(), says_system);
     if (giver == scans.end()) return;
     if (const std::string differ = different_systems(scans); !differ.empty()) {
         notes.projection.emplace();
-        notes.system_note = differ + "; the file written says none";
+        notes.system_note = differ + "; the written file has none";
         info.coordinate_system.clear();
         info.epsg = 0;
         return;
@@ -69,7 +70,7 @@ void merge_systems(std::span<const ScanInfo> scans, ScanInfo& info) {
         return scan.declared_points > 0 && !says_system(scan);
     });
     if (silent != scans.end())
-        notes.system_note = fmt::format("{} says no coordinate system and is taken to be in that of {}",
+        notes.system_note = fmt::format("{} has no coordinate system and is assumed to be in that of {}",
                                         silent->path, giver->path);
 }
 
@@ -106,7 +107,7 @@ ScanInfo merged_info(std::span<const ScanInfo> scans) {
     ScanInfo info = scans[0];
     if (scans.size() == 1) return info;
     bool all_las = info.notes.las.has_value(), same = true;
-    std::optional<Range> limits = stated_range(info.notes);  // that hold for all, or none
+    std::optional<Range> limits = stated_range(info.notes);  // of all scans; empty if one states none
     for (const ScanInfo& scan : scans.subspan(1)) {
         all_las = all_las && scan.notes.las;
         same = same && scan.format == info.format;

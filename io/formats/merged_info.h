@@ -6,28 +6,32 @@
 
 #include "io/points.h"
 
-// What a file that holds the points of several scans can say of them all.
+// What can be said about all scans together when one file holds the points of several scans.
 namespace lucarne::io {
 
-/// Whether two units of length are one: some programs write fewer digits of a US survey foot than others.
-/// (The two feet are 2e-6 apart.)
+/// Returns whether two units of length are the same. Some programs write a US survey foot with fewer digits
+/// than others. (The US survey foot and the international foot differ by 2e-6.)
 inline constexpr double kSameUnit = 1e-9;
 bool same_unit(double metres, double others);
 
-/// "EPSG:2903, NAD83 / ..." as far as the scan says it; empty where it says nothing.
+/// Returns "EPSG:2903, NAD83 / ...", as far as the scan states it; empty if it states nothing.
 std::string system_text(const ScanInfo& scan);
 
-/// One line that names the first two scans whose coordinate systems differ; empty where none do. A scan that
-/// says nothing differs from none.
+/// Returns one line that names the first two scans whose coordinate systems differ; empty if none differ. A
+/// scan without a coordinate system differs from no other.
 std::string different_systems(std::span<const ScanInfo> scans);
 
-/// One line that names an attribute in the extra bytes of LAS files whose scale or offset is not that of the
-/// file before; empty where there is none.
+/// Returns one line that names an attribute in the extra bytes of LAS files whose scale, offset or type
+/// differs from an earlier file's; empty if there is none.
 std::string different_extras(std::span<const ScanInfo> scans);
 
-/// The stations of all scans; the first's notes (header, types) where all are of one format, LAS and LAZ
-/// being one; all descriptions of extra bytes; their coordinate system where they agree. Scans that differ in
-/// it leave none, those that say nothing are taken to be in that of the others; a note tells so.
+/// Merges the information on several scans:
+///  - the stations of all scans;
+///  - the first scan's notes (header, types), if all scans have the same format (LAS and LAZ count as one);
+///  - the descriptions of all extra bytes;
+///  - the coordinate system, if the scans agree on it.
+/// Scans with different coordinate systems leave none. Scans without a coordinate system are taken to be in
+/// that of the others. A note says so in both cases.
 ScanInfo merged_info(std::span<const ScanInfo> scans);
 
 }  // namespace lucarne::io

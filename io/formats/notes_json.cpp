@@ -113,7 +113,7 @@ json mesh_json(const MeshNotes& mesh) {
     return to;
 }
 
-/// Null where it is not there.
+/// Returns a member of an object; null if it is missing.
 const json* member(const json& object, const char* key) {
     if (!object.is_object()) return nullptr;
     const auto found = object.find(key);
@@ -130,14 +130,14 @@ uint64_t whole_at(const json& object, const char* key) {
     return value && value->is_number_unsigned() ? value->get<uint64_t>() : 0;
 }
 
-/// A list or nothing to go through.
+/// Returns a list, which is empty if there is none.
 const json& list_at(const json& object, const char* key) {
     static const json kEmpty = json::array();
     const json* value = member(object, key);
     return value && value->is_array() ? *value : kEmpty;
 }
 
-/// What is not finite stands as null in JSON.
+/// Numbers that are not finite are null in JSON.
 std::optional<double> number_of(const json& value) {
     if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
     return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
@@ -167,7 +167,7 @@ std::vector<std::string> texts_at(const json& object, const char* key) {
     return texts;
 }
 
-/// Empty where it is no list of records.
+/// Returns the records of a list; empty if it is not a list of records.
 std::optional<std::vector<LasRecord>> records_of(const json& list) try {
     if (!list.is_array()) return std::nullopt;
     std::vector<LasRecord> records;
@@ -184,15 +184,16 @@ std::optional<std::vector<LasRecord>> records_of(const json& list) try {
     return std::nullopt;
 }
 
-/// Fills in what is sound, and gives the reason why a header cannot be made of it; empty where it can.
+/// Fills in the valid fields. Returns why no header can be made of them; empty if one can.
 std::string read_las(const json& from, LasNotes& h) try {
-    // They count where the rest of the header does not: lattice_of, projection_records, extras_record.
+    // These three count even if the rest of the header does not: lattice_of, projection_records and
+    // extras_record use them.
     h.scale = vector_of(member(from, "scale")).value_or(glm::dvec3(0.0));
     h.offset = vector_of(member(from, "offset")).value_or(glm::dvec3(0.0));
     auto records = records_of(list_at(from, "records"));
     if (records) h.vlrs = std::move(*records);
 
-    // Narrow on purpose: a number that does not fit was not written by add_las.
+    // Each number must fit its field: add_las wrote none that does not.
     const auto number = [&](const char* key, uint64_t largest) {
         const json& value = from.at(key);
         if (!value.is_number_unsigned() || value.get<uint64_t>() > largest) throw std::out_of_range(key);
@@ -214,7 +215,7 @@ std::string read_las(const json& from, LasNotes& h) try {
     const uint16_t least = las::record_bytes(h.point_format);
     if (least == 0 || h.record_length < least) throw std::out_of_range("point_format");
     return {};
-} catch (const std::exception& error) {  // nlohmann's, and our own out_of_range
+} catch (const std::exception& error) {  // from nlohmann's library, or the out_of_range above
     return error.what();
 }
 
@@ -226,7 +227,7 @@ PlyNotes ply_of(const json& from) {
         const auto type = ply::type_of(text_at(p, "type"));
         std::string name = text_at(p, "name");
         if (!type || name.empty() || name.find_first_of(" \t\r\n") != name.npos) {
-            ply.properties.clear();  // of a list with a mistake nothing counts
+            ply.properties.clear();  // one wrong entry discards the whole list
             break;
         }
         ply.properties.push_back({std::move(name), *type});
@@ -314,7 +315,8 @@ std::string notes_text(const FormatNotes& notes) {
     json to = json::object();
     if (notes.las) {
         to["format"] = "las";
-        if (notes.las_damage.empty()) add_las(*notes.las, to);  // else what is read again is as damaged
+        // A damaged header is left out, so that it counts as damaged when it is read again as well.
+        if (notes.las_damage.empty()) add_las(*notes.las, to);
     } else if (notes.ply) {
         to["format"] = "ply";
         add_ply(*notes.ply, to);
@@ -356,7 +358,7 @@ FormatNotes notes_of_text(std::string_view text) {
     if (const json* bits = member(from, "color_bits"); bits && bits->is_number_unsigned())
         notes.color_bits = bits->get<uint32_t>();
     notes.intensity_limits = limits_of(member(from, "intensity_limits"));
-    // A list that makes no sense still says that the system is another than the header's.
+    // An invalid list still says that the coordinate system is not the header's.
     if (const json* records = member(from, "projection"))
         notes.projection = records_of(*records).value_or(std::vector<LasRecord>());
     if (const json* records = member(from, "extras"))

@@ -1,4 +1,4 @@
-// The formats that Lucarne knows, told apart by content.
+// The list of formats that Lucarne knows; a file's content tells which one it has.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -21,7 +21,7 @@ auto formats() {
                       &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
 }
 
-/// What a file is that we do not read, for a better message than "unknown".
+/// Names a format that Lucarne does not read, for a better message than "unknown".
 std::string_view foreign_format(std::string_view head) {
     if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
     if (head.starts_with("PK\x03\x04") || head.starts_with("\x1f\x8b")) return "a compressed archive";
@@ -52,8 +52,8 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
         if (!named && format->extension == extension) named = format;
     }
     const auto foreign = told ? std::string_view() : foreign_format(head);
-    // Any text may be rows of numbers: with the name of another format it is that, until the columns are
-    // said.
+    // Any text may be rows of numbers. If its name belongs to another format, it counts as that format,
+    // unless the user has described the columns.
     const bool rows = told && told->open == text_format().open;
     if (named && foreign.empty() &&
         (!told || (rows && options.columns.empty() && named->open != told->open))) {
@@ -89,14 +89,14 @@ std::string_view first_statement(std::string_view head) {
 Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& path, const Schema& schema,
                                                  const ScanInfo& info, const WriteOptions& options) {
     if (copc::is_name(path))
-        return bad_arguments(path.string(), "COPC is an octree, and this is none yet",
+        return bad_arguments(path.string(), "COPC is an octree, which this input is not yet",
                              "convert to a cache and export that");
     const std::string extension = lower_extension(path);
     for (const Format* format : formats()) {
         if (!format->create || format->extension != extension) continue;
         const bool scales = format == &las_format() || format == &laz_format();
         if (const auto scaled = scales ? std::string() : las::scaled_extras(info, schema); !scaled.empty())
-            log::warn("{}: has whole numbers as LAS stores them, not what they stand for: {}", path.string(),
+            log::warn("{}: holds the whole numbers that LAS stores, not the scaled values: {}", path.string(),
                       scaled);
         return format->create(path, schema, info, options);
     }
@@ -132,8 +132,8 @@ std::string printable(std::string_view name) {
 
 std::string unique_name(const Schema& schema, std::string_view name) {
     const std::string clean = printable(name);
-    // In one pass: thousands of attributes may share their first 64 characters.
-    std::vector<bool> taken(schema.attributes.size() + 3);  // by number; 1 is the plain name
+    // One pass over the schema, because thousands of attributes may share their first 64 characters.
+    std::vector<bool> taken(schema.attributes.size() + 3);  // by appended number; 1 is the plain name
     for (const Attribute& a : schema.attributes) {
         if (!a.name.starts_with(clean)) continue;
         const auto rest = std::string_view(a.name).substr(clean.size());

@@ -49,8 +49,8 @@ Result<Contents> survey(const PointSource& scan, const std::function<void(uint64
 
 namespace {
 
-/// What of a damaged scan that is open with `salvage` can be saved; none where it turns out to be sound: it
-/// may have been rejected for what it is among others.
+/// Returns what can be saved of a damaged scan that was opened with `salvage`. Returns nothing if the scan is
+/// not damaged: it may have been rejected because of another file.
 std::optional<std::string> savable(const PointSource& scan) {
     const ScanInfo& info = scan.info();
     const auto damaged = [](const Losses& losses) {
@@ -60,7 +60,7 @@ std::optional<std::string> savable(const PointSource& scan) {
         return std::ranges::any_of(
             losses, [&](const Loss& loss) { return std::ranges::find(kDamage, loss.what) != kDamage.end(); });
     };
-    // Nobody wants to wait for the samples of a mesh only to have them counted.
+    // Making the samples of a mesh only to count them would take too long.
     if (mesh::is_sampled(info)) {
         if (!damaged(info.losses)) return std::nullopt;
         return fmt::format("{}, about {}, can be saved with --salvage",

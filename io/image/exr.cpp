@@ -1,4 +1,5 @@
-// OpenEXR pictures, from and to memory or our own files, so that errors and names stay ours.
+// OpenEXR pictures, read through Lucarne's own file classes and written to memory first, so that errors and
+// file names are handled as everywhere else.
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -60,10 +61,10 @@ class FileInput final : public Imf::IStream {
 
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
-constexpr size_t kMostReason = 120;    ///< bytes of what the library says
+constexpr size_t kMostReason = 120;    ///< bytes of the library's message
 constexpr int64_t kLinesAtOnce = 256;  ///< the longest chunk
 
-/// Lines from `line` on into `pixels`, the channels of these names into its components.
+/// Reads lines from `line` on into `pixels`; the named channels become its components.
 void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int left, int64_t width, int line,
                 int64_t lines, glm::vec4* pixels) {
     constexpr size_t kPixel = sizeof(glm::vec4);
@@ -78,8 +79,8 @@ void read_lines(Imf::InputFile& exr, const std::vector<std::string>& names, int 
 }
 
 Image decode(const ByteSource& file, uint64_t most_pixels) {
-    // The library allocates by the header's size: it must know the limit before it reads the header. The
-    // setting is the library's own and the same every time.
+    // The library allocates by the header's size, so it must know the limit before it reads the header. The
+    // setting is global in the library, but it is the same every time.
     Imf::Header::setMaxImageSize(kLargestSide, kLargestSide);
     FileInput stream(file);
     Imf::InputFile exr(stream, 0);
@@ -92,7 +93,7 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
 
     const Imf::ChannelList& channels = exr.header().channels();
     const bool gray = channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr;
-    std::vector<std::string> names;  // of the components of a pixel; empty: the file has none
+    std::vector<std::string> names;  // channel of each component of a pixel; empty if missing
     for (size_t c = 0; c < 4; ++c) {
         names.emplace_back(gray && c < 3 ? (c == 0 ? "Y" : "") : kChannels[c]);
         if (names[c].empty()) continue;
@@ -104,8 +105,7 @@ Image decode(const ByteSource& file, uint64_t most_pixels) {
             throw std::runtime_error("its channels are subsampled");
     }
     Image image{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
-    // Memory follows what is there: a file of few bytes whose header promises many pixels ends at its first
-    // lines.
+    // Memory grows with the data: a short file whose header promises many pixels fails at its first lines.
     for (int64_t line = 0; line < height; line += kLinesAtOnce) {
         const int64_t lines = std::min(kLinesAtOnce, height - line);
         image.pixels.resize(static_cast<size_t>(width * (line + lines)), glm::vec4(0, 0, 0, 1));

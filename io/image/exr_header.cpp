@@ -17,11 +17,11 @@ constexpr uint64_t kMostHeaderBytes = uint64_t{16} << 20;
 constexpr uint64_t kMostChunkBytes = uint64_t{64} << 20;
 constexpr size_t kMostParts = 1000;
 constexpr uint32_t kDeep = 0x800, kMultiPart = 0x1000;  ///< flags of the version
-/// Scan lines in a chunk by the number of the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA,
+/// Scan lines in a chunk, indexed by the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA,
 /// DWAB.
 constexpr std::array<uint64_t, 10> kChunkLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-/// What is left of the header, taken from its front. What it lacks is empty or 0, and `short_` says so.
+/// The unread part of the header, consumed from its front. Missing values are empty or 0, and set `short_`.
 class Bytes {
  public:
     explicit Bytes(std::string_view bytes) : rest_(bytes) {}
@@ -43,7 +43,7 @@ class Bytes {
         if (!taken.empty()) std::memcpy(&value, taken.data(), sizeof value);
         return value;
     }
-    /// Up to the next zero byte.
+    /// Reads up to the next zero byte.
     std::string_view name() {
         const auto name = take(std::min(rest_.find('\0'), rest_.size()));
         take(1);
@@ -59,11 +59,11 @@ class Bytes {
 
 struct Part {
     uint64_t width = 0, height = 0, pixel_bytes = 0, chunk_lines = 1, said_chunks = 0;
-    uint64_t tile_width = 0, tile_height = 0;  ///< 0: none
+    uint64_t tile_width = 0, tile_height = 0;  ///< 0 means none
 };
 
-/// Types that the library reads by their own size, whatever an attribute says its size is: where the two
-/// differ, it goes on at another place than we, and finds another header there.
+/// Types that the library reads with their own size, whatever size the attribute states. If the two differ,
+/// the library continues at another place than this check, and sees another header there.
 struct FixedType {
     std::string_view name;
     size_t bytes;
@@ -93,7 +93,7 @@ constexpr std::array kFixedTypes = {FixedType{"box2f", 16},
                                     FixedType{"v3f", 12},
                                     FixedType{"v3i", 12}};
 
-/// Whether the value ends where its type says.
+/// Returns whether the value has exactly the size of its type.
 bool has_its_size(std::string_view type, std::string_view value) {
     const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
     if (fixed != kFixedTypes.end()) return value.size() == fixed->bytes;
@@ -105,7 +105,7 @@ bool has_its_size(std::string_view type, std::string_view value) {
     return true;
 }
 
-/// Bytes of a pixel in all channels: 2 or 4 each, whatever its sampling.
+/// Returns the bytes of a pixel in all channels: 2 or 4 each, regardless of sampling.
 uint64_t pixel_bytes(Bytes list) {
     constexpr int32_t kHalf = 1;
     uint64_t bytes = 0;
@@ -116,7 +116,8 @@ uint64_t pixel_bytes(Bytes list) {
     return bytes;
 }
 
-/// An attribute that the library allocates by. Not empty: why it must not see it.
+/// Reads an attribute that determines how much the library allocates. Returns why the library must not see
+/// it; empty if it may.
 std::string_view read_attribute(std::string_view name, std::string_view type, std::string_view value,
                                 Part& part) {
     if (!has_its_size(type, value)) return "its header contradicts itself";
@@ -163,9 +164,9 @@ std::string_view check_part(const Part& part, uint64_t file_bytes) {
     return {};
 }
 
-/// Empty: nothing is wrong.
+/// Returns what is wrong; empty if nothing is.
 std::string_view problem_of(Bytes header, uint64_t file_bytes) {
-    header.take(4);  // magic
+    header.take(4);  // magic number
     const auto version = header.number<uint32_t>();
     if (version & kDeep) return "it is a deep picture";
     for (size_t parts = 0;; ++parts) {
@@ -179,7 +180,7 @@ std::string_view problem_of(Bytes header, uint64_t file_bytes) {
                 return problem;
         }
         if (header.cut_off()) return "its header is cut off, or larger than 16 MiB";
-        if (!any && parts > 0) return {};  // an empty header ends the parts
+        if (!any && parts > 0) return {};  // an empty header ends the list of parts
         if (const auto problem = check_part(part, file_bytes); !problem.empty()) return problem;
         if (!(version & kMultiPart)) return {};
         if (parts >= kMostParts) return "it has over 1000 parts";

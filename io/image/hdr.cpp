@@ -45,7 +45,7 @@ class Stream {
 
 struct Header {
     uint32_t width = 0, height = 0;
-    float scale = 1;  ///< what values are divided by
+    float scale = 1;  ///< values are divided by it
     uint64_t bytes = 0;
 };
 
@@ -57,7 +57,7 @@ std::optional<uint32_t> side(std::string_view text) {
     return value;
 }
 
-/// "-Y 512 +X 1024": rows from the top, pixels from the left; the other orders are rare.
+/// Parses "-Y 512 +X 1024": rows from the top, pixels from the left. The other orders are rare.
 bool read_size(std::string_view line, Header& header) {
     if (!line.starts_with("-Y ")) return false;
     line.remove_prefix(3);
@@ -84,7 +84,7 @@ Result<Header> read_header(const ByteSource& file) {
         at = end + 1;
         if (blank) {
             if (!read_size(line, header))
-                return rejected(name, "its size is none that can be read (-Y height +X width, up to 16384)");
+                return rejected(name, "its size cannot be read (-Y height +X width, up to 16384)");
             break;
         }
         blank = line.empty();
@@ -99,8 +99,8 @@ Result<Header> read_header(const ByteSource& file) {
     return header;
 }
 
-/// One scan line of four planes, each in runs (a count over 128 and one value) and copies (a count and
-/// values).
+/// Reads one scan line of four planes. Each consists of runs (a count over 128 and one value) and copies (a
+/// count and values).
 Result<void> read_runs(Stream& stream, const std::string& name, std::vector<uint8_t>& planes,
                        uint32_t width) {
     for (size_t at = 0; at < planes.size();) {
@@ -119,7 +119,7 @@ Result<void> read_runs(Stream& stream, const std::string& name, std::vector<uint
     return {};
 }
 
-/// A scan line, its bytes by plane: red, green, blue, exponent.
+/// Reads a scan line, by plane: red, green, blue, exponent.
 Result<void> read_line(Stream& stream, const std::string& name, std::vector<uint8_t>& planes,
                        uint32_t width) {
     uint8_t first[4];
@@ -155,7 +155,7 @@ Result<Image> read_hdr(const std::filesystem::path& path, uint64_t most_pixels) 
         return rejected(name,
                         fmt::format("it has {}x{} pixels, which is too large", header.width, header.height));
     Stream stream(file, header.bytes);
-    // The shortest scan line is all runs, two bytes for 127 values.
+    // The shortest scan line consists of runs only: two bytes for 127 values.
     const uint64_t shortest =
         std::min<uint64_t>(4ull * header.width, 4 + 8 * ((header.width + kLongestRun - 1) / kLongestRun));
     if (stream.left() < shortest * header.height) return rejected(name, "is shorter than its picture");

@@ -15,8 +15,8 @@ namespace lucarne::io {
 namespace {
 
 constexpr uint64_t kLargestJpeg = uint64_t{1} << 30;
-/// A block of 8x8 pixels takes a bit at least of Huffman's code: 512 pixels a byte. Arithmetic codes, which
-/// hardly anything writes, may take less.
+/// A block of 8x8 pixels takes at least one bit of Huffman code: 512 pixels a byte. Arithmetic codes, which
+/// are very rare, may take less.
 constexpr uint64_t kMostPixelsPerJpegByte = 1024;
 
 struct Destroy {
@@ -43,7 +43,7 @@ Result<Image8> read_jpeg(const std::filesystem::path& path, uint64_t most_pixels
     if (uint64_t{w} * h / kMostPixelsPerJpegByte > file.size())
         return rejected(name, fmt::format("is shorter than its {}x{} pixels", width, height));
     Image8 image{w, h, std::vector<uint8_t>(size_t{3} * w * h)};
-    // Scans upon scans of a progressive picture would cost hours: libjpeg-turbo allows 500.
+    // Many scans of a progressive picture would take hours to decode; libjpeg-turbo allows 500.
     if (tjDecompress2(decoder.get(), encoded.data(), encoded.size(), image.bytes.data(), width, 0, height,
                       TJPF_RGB, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0 &&
         tjGetErrorCode(decoder.get()) == TJERR_FATAL)

@@ -13,8 +13,8 @@ namespace lucarne::io {
 namespace {
 
 constexpr uint64_t kLargestPng = uint64_t{1} << 30;
-/// A byte of a deflate stream gives 1032 at most (zlib, "Technical details"), each of eight pixels of one
-/// bit.
+/// A byte of a deflate stream expands to at most 1032 bytes (zlib, "Technical details"), each of up to eight
+/// 1-bit pixels.
 constexpr uint64_t kMostPixelsPerPngByte = 8 * 1032;
 
 struct PngFree {

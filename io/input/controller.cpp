@@ -19,12 +19,12 @@ namespace lucarne::io {
 namespace {
 
 constexpr uint16_t kLogitech = 0x046d, k3Dconnexion = 0x256f;
-/// Logitech's number is on mice and keyboards as well; those of its number that are 6-DoF controllers.
+/// Products with Logitech's vendor id that are 6-DoF controllers; mice and keyboards have that id as well.
 constexpr std::array<uint16_t, 11> kOfLogitech = {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625,
                                                   0xc626, 0xc627, 0xc628, 0xc629, 0xc62b};
-constexpr int kScanSeconds = 2;  ///< between looks at the bus where nothing tells of new devices
+constexpr int kScanSeconds = 2;  ///< between checks of the bus if nothing reports new devices
 constexpr size_t kLongestReport = 64;
-constexpr int kMostFailures = 8;  ///< transfers in a row, until the device is given up
+constexpr int kMostFailures = 8;  ///< failed transfers in a row before the device is given up
 
 bool is_controller(const libusb_device_descriptor& device) {
     return device.idVendor == k3Dconnexion ||
@@ -32,8 +32,8 @@ bool is_controller(const libusb_device_descriptor& device) {
             std::ranges::find(kOfLogitech, device.idProduct) != kOfLogitech.end());
 }
 
-/// The interface that reports axes: HID and neither a mouse nor a keyboard (HID 1.11, 4.3), which the same
-/// receiver may be as well and which stay the desktop's.
+/// Finds the interface that reports axes: HID, and neither a mouse nor a keyboard (HID 1.11, 4.3). The same
+/// receiver may serve these as well; they are left to the desktop.
 struct Endpoint {
     uint8_t interface, address;
     uint16_t packet;
@@ -89,13 +89,13 @@ struct Controller::Reader {
     std::thread thread;
     std::atomic<bool> ending = false;
 
-    // Of the reading thread.
+    // Only the reading thread uses these.
     bool look = true;      ///< something may have been plugged in
-    bool unlucky = false;  ///< the device went, or would not answer: it is looked for again after a while
+    bool unlucky = false;  ///< the device disappeared or did not answer: look for it again after a while
     libusb_device_handle* handle = nullptr;
     uint8_t interface = 0;
     libusb_transfer* transfer = nullptr;
-    bool flying = false;  ///< the transfer is with libusb
+    bool flying = false;  ///< libusb has the transfer
     bool lost = false;
     int failures = 0;
     std::array<unsigned char, kLongestReport> buffer{};
@@ -131,7 +131,7 @@ void Controller::Reader::take_transfer(libusb_transfer* done) {
     reader.flying = false;
     if (done->status == LIBUSB_TRANSFER_COMPLETED) {
         reader.failures = 0;
-        SixDofState next = reader.state;  // written by this thread alone
+        SixDofState next = reader.state;  // only this thread writes it
         if (take_report(
                 std::as_bytes(std::span(reader.buffer).first(static_cast<size_t>(done->actual_length))),
                 next))
@@ -148,12 +148,12 @@ void Controller::Reader::take_transfer(libusb_transfer* done) {
 }
 
 int Controller::Reader::arrived(libusb_context*, libusb_device*, libusb_hotplug_event, void* self) {
-    static_cast<Reader*>(self)->look = true;  // opening it here would hang libusb
+    static_cast<Reader*>(self)->look = true;  // opening the device here would hang libusb
     return 0;
 }
 
 int Controller::Reader::claim(uint8_t of) {
-    libusb_set_auto_detach_kernel_driver(handle, 1);  // and give it back when done
+    libusb_set_auto_detach_kernel_driver(handle, 1);  // and reattach it afterwards
     const int claimed = libusb_claim_interface(handle, of);
     if (claimed == 0) return 0;
     libusb_set_auto_detach_kernel_driver(handle, 0);
@@ -229,7 +229,7 @@ void Controller::Reader::run() {
     if (!ended) set(ControllerStatus{ControllerStatus::Kind::refused, ended.error().what, ended.error().why});
 }
 
-/// Until it is told to end; `told`: libusb tells of new devices.
+/// Reads until told to end. `told` says that libusb reports new devices.
 void Controller::Reader::read_reports(bool told) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds kScan(kScanSeconds);
@@ -260,7 +260,7 @@ std::unique_ptr<Controller> Controller::start(std::function<void()> changed) {
     controller->reader_ = std::make_unique<Reader>(std::move(changed));
     Reader& reader = *controller->reader_;
     if (libusb_init(&reader.usb) != 0) {
-        reader.usb = nullptr;  // no USB on this machine: none will ever come
+        reader.usb = nullptr;  // no USB on this machine, so there will never be a device
         return controller;
     }
     reader.thread = std::thread([&reader] { reader.run(); });

@@ -8,21 +8,21 @@
 
 namespace lucarne::io {
 
-/// What is to be said of the controller.
+/// The controller's state, as reported to the user.
 struct ControllerStatus {
     enum class Kind { none, connected, refused } kind = Kind::none;
-    std::string name;     ///< connected or refused: the device's own, else its numbers
-    std::string message;  ///< refused: why, and what to do about it
+    std::string name;     ///< if connected or refused: the device's own name, or its ids
+    std::string message;  ///< if refused: the reason, and what to do about it
 
     bool operator==(const ControllerStatus&) const = default;
 };
 
-/// The first 3Dconnexion controller there is, read through libusb on a thread of its own. Devices come and go
-/// at any time; one that is unplugged is at rest.
+/// Reads the first available 3Dconnexion controller through libusb on a thread of its own. Devices may be
+/// plugged in and unplugged at any time; an unplugged device is at rest.
 class Controller {
  public:
-    /// `changed` is called on the controller's thread after every change of state or status. Never fails:
-    /// without USB the status says so.
+    /// Calls `changed` on the controller's thread after every change of state or status. Never fails: without
+    /// USB the status says so.
     static std::unique_ptr<Controller> start(std::function<void()> changed);
     ~Controller();
     Controller(const Controller&) = delete;
@@ -30,7 +30,7 @@ class Controller {
 
     SixDofState state() const;
     ControllerStatus status() const;
-    /// The buttons that went down since the last call; bit i is button i.
+    /// Returns the buttons pressed since the last call; bit i is button i.
     uint32_t take_pressed();
 
  private:

@@ -20,7 +20,7 @@ glm::dvec3 three(std::span<const std::byte> at) {
     return values;
 }
 
-/// From the device's axes (right, toward the user, down) to the user's.
+/// Converts the device's axes (right, toward the user, down) to the user's.
 glm::dvec3 push_of(const glm::dvec3& raw) {
     return {raw.x, -raw.z, -raw.y};
 }

@@ -9,8 +9,8 @@
 
 namespace lucarne::io {
 
-/// How far the cap of a 6-DoF controller is pushed and turned, as seen by who sits before it: shares of what
-/// it can do, -1 to 1.
+/// How far the cap of a 6-DoF controller is pushed and turned, as seen by the user in front of it: shares of
+/// its full travel, -1 to 1.
 struct SixDofState {
     glm::dvec3 push{0.0};  ///< right, up, forward
     glm::dvec3 turn{0.0};  ///< nose up, nose left, right side down: counterclockwise about right and up,
@@ -21,24 +21,24 @@ struct SixDofState {
     bool operator==(const SixDofState&) const = default;
 };
 
-/// Takes one HID report of a 3Dconnexion device, whose first byte is its number: 1 pushes (and, in newer
-/// devices, turns behind them), 2 turns, 3 buttons; values are 16-bit little-endian, +-350 at full travel,
-/// about axes to the right, toward the user and down. Others (batteries, displays) and cut off ones change
-/// nothing: false.
+/// Applies one HID report of a 3Dconnexion device to `state`. The first byte is the report's number: 1 pushes
+/// (followed by turns in newer devices), 2 turns, 3 buttons. Values are 16-bit little-endian, +-350 at full
+/// travel, along axes to the right, toward the user and down. Other reports (batteries, displays) and
+/// truncated ones change nothing; the function then returns false.
 bool take_report(std::span<const std::byte> report, SixDofState& state);
 
-/// What of the device moves what, and how much: axes in the order right, up, forward, nose up, nose left,
-/// right side down.
+/// Which axis of the device moves what, and by how much. Axes are in the order right, up, forward, nose up,
+/// nose left, right side down.
 struct SixDofMapping {
     static constexpr size_t kAxes = 6;
-    std::array<uint8_t, kAxes> from{0, 1, 2, 3, 4, 5};  ///< the device's axis that each one listens to
-    std::array<double, kAxes> scale{1, 1, 1, 1, 1, 1};  ///< negative: the other way round; 0: not at all
-    double sensitivity = 1;                             ///< of all
-    double dead_zone = 0.05;  ///< share of the travel that is a hand's weight, 0 to .9
+    std::array<uint8_t, kAxes> from{0, 1, 2, 3, 4, 5};  ///< the device's axis for each of them
+    std::array<double, kAxes> scale{1, 1, 1, 1, 1, 1};  ///< negative reverses the axis, 0 turns it off
+    double sensitivity = 1;                             ///< for all axes
+    double dead_zone = 0.05;                            ///< share of the travel that counts as rest, 0 to .9
 
     bool operator==(const SixDofMapping&) const = default;
-    /// The state with dead zone, mapping and sensitivity applied; still is 0 at rest, and without a step at
-    /// the dead zone's edge. Buttons as they are.
+    /// Returns the state with dead zone, mapping and sensitivity applied. It is still 0 at rest, and does not
+    /// jump at the edge of the dead zone. Buttons stay unchanged.
     SixDofState apply(const SixDofState& state) const;
 };
 

@@ -15,14 +15,14 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-/// Uniform in [0, 1) for a cell of the integer lattice.
+/// Returns a number uniform in [0, 1) for a cell of the integer lattice.
 double hash_cell(int64_t x, int64_t y, int64_t z) {
     return unit_double(mix64(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15ull ^
                              static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4full ^
                              static_cast<uint64_t>(z) * 0x165667b19e3779f9ull));
 }
 
-/// Value noise in [-1, 1] on the unit lattice, with smoothstep interpolation.
+/// Returns value noise in [-1, 1] on the unit lattice, with smoothstep interpolation.
 double noise(const dvec3& p) {
     const dvec3 cell = glm::floor(p), f = p - cell, w = f * f * (3.0 - 2.0 * f);
     const auto x = static_cast<int64_t>(cell.x), y = static_cast<int64_t>(cell.y),
@@ -36,13 +36,13 @@ double noise(const dvec3& p) {
     return 2 * sum - 1;
 }
 
-/// Coordinates in a wall or floor: along the horizontal (or x) and along the vertical (or y).
+/// Returns coordinates in a wall or floor: along the horizontal (or x) and along the vertical (or y).
 dvec2 plane_coordinates(const dvec3& p, const dvec3& normal) {
     if (std::abs(normal.z) > .7) return {p.x, p.y};
     return std::abs(normal.x) > std::abs(normal.y) ? dvec2{p.y, p.z} : dvec2{p.x, p.z};
 }
 
-/// How far inside its cell a place is, as 0 in the joint of the given half width and 1 beyond.
+/// Returns 0 if a position lies in the joint of the given half width around its cell's border, otherwise 1.
 double joint(double position, double cell, double half_width) {
     const double inside = position - cell * std::floor(position / cell);
     return std::min(inside, cell - inside) < half_width ? 0.0 : 1.0;
@@ -100,7 +100,7 @@ dvec3 cloth(const dvec3& p, const dvec3& base) {
 }
 
 dvec3 carpet(const dvec3& p) {
-    // A red runner with a gold line along either side (it lies along y, centred on x = 0).
+    // A red runner with a gold line along either side. It lies along y, centred on x = 0.
     const double side = std::abs(p.x);
     const bool line = (side > .72 && side < .78) || (side > .84 && side < .86);
     return cloth(p, line ? dvec3(.62, .42, .12) : dvec3(.55, .035, .04));
@@ -176,7 +176,7 @@ dvec3 albedo_at(Finish finish, const dvec3& p, const dvec3& normal) {
 }
 
 uint8_t srgb_code(double linear) {
-    // Linear values at which the code changes: exact, and free of pow per point.
+    // Linear values at which the code changes: exact, and without calling pow for each point.
     static const auto kThresholds = [] {
         std::array<double, 255> table{};
         for (int code = 0; code < 255; ++code) {

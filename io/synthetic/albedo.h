@@ -6,11 +6,11 @@
 
 namespace lucarne::io {
 
-/// What a surface is made of: each has an albedo that varies over space by a rule.
+/// The materials of surfaces. Each has an albedo that varies over space by a rule.
 enum class Finish : uint8_t {
     white,
     red,
-    green,         ///< the walls of the Cornell box
+    green,         ///< red and green: the walls of the Cornell box
     half,          ///< .5 everywhere
     ashlar,        ///< stone blocks in courses
     rubbed_stone,  ///< stone without joints: columns, ribs, mouldings
@@ -30,10 +30,11 @@ enum class Finish : uint8_t {
     marble,
 };
 
-/// Linear Rec. 709 albedo at a place (metres) of a surface with this normal; each channel in (0, .95).
+/// Returns the linear Rec. 709 albedo at a position (metres) of a surface with this normal; each channel is
+/// in (0, .95).
 glm::dvec3 albedo_at(Finish finish, const glm::dvec3& position, const glm::dvec3& normal);
 
-/// Linear [0, 1] to an 8-bit sRGB code (IEC 61966-2-1).
+/// Converts linear [0, 1] to an 8-bit sRGB code (IEC 61966-2-1).
 uint8_t srgb_code(double linear);
 
 }  // namespace lucarne::io

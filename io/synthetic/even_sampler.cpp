@@ -1,12 +1,12 @@
-// Even sampling of a surface by area, point by point.
+// Samples a surface evenly by area, point by point.
 //
-// Each patch gets its share of the points and is cut into rows as high as a hexagonal lattice of that density
-// wants; each row gets its share of the patch by the area below it, and its points stand at equal steps of
-// area, every other row shifted by half a step. Each point is then moved at random by up to kJitter of its
-// cell in both directions. Equal steps of area keep the density uniform on curved and tapering patches;
-// jittered strata have no clumps and no holes (the idea of stratified sampling on a surface, as in: Turk,
-// Generating random points in triangles, 1990; Cook, Stochastic sampling in computer graphics, 1986). A point
-// follows from its number alone: nothing is stored.
+// Each patch gets its share of the points and is cut into rows as high as those of a hexagonal lattice of
+// that density. Each row gets its share of the patch by the area below it. Its points stand at equal steps of
+// area, and every other row is shifted by half a step. Each point is then moved at random by up to kJitter of
+// its cell in both directions. Equal steps of area keep the density uniform on curved and tapering patches,
+// and jittered strata have no clumps and no holes (stratified sampling on a surface, as in: Turk, Generating
+// random points in triangles, 1990; Cook, Stochastic sampling in computer graphics, 1986). A point follows
+// from its number alone; nothing is stored.
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +25,7 @@ struct Level {
     double s;
 };
 
-/// The points of one patch: how many, in how many rows, and where each falls.
+/// The points of one patch: their number, the number of rows, and the place of each point.
 class PatchRows {
  public:
     PatchRows(const PatchMesh& mesh, const Patch& patch, uint64_t points, double row_height)
@@ -50,14 +50,14 @@ class PatchRows {
         while (first_of_row(row + 1) <= point) ++row;
         return row;
     }
-    /// The height below which this much of the patch's area lies.
+    /// Returns the level below which this much of the patch's area lies.
     Level level_at(double area) const {
         const PatchBand* first = &mesh_->bands[patch_->first_band];
         const PatchBand* band =
             std::upper_bound(first + 1, first + patch_->bands, area,
                              [](double a, const PatchBand& b) { return a < b.area_before; }) -
             1;
-        // low s + (high - low) s^2 / 2 = rest, solved without cancellation.
+        // Solves low s + (high - low) s^2 / 2 = rest without cancellation.
         const double rest = std::clamp(area - band->area_before, 0.0, band->area());
         const double root =
             std::sqrt(std::max(0.0, band->low * band->low + 2 * (band->high - band->low) * rest));
@@ -87,7 +87,7 @@ class EvenSampler final : public PieceGenerator {
     EvenSampler(std::shared_ptr<const SceneGeometry> geometry, const RecordPacker& packer, uint64_t points,
                 uint64_t seed)
         : geometry_(std::move(geometry)), packer_(packer), points_(points), seed_(mix64(seed)) {
-        // In a hexagonal lattice with a cell area a the rows lie sqrt(a sqrt(3) / 2) apart.
+        // In a hexagonal lattice whose cells have the area a, the rows are sqrt(a sqrt(3) / 2) apart.
         const double cell = geometry_->area() / static_cast<double>(points);
         row_height_ = std::sqrt(cell * std::sqrt(3.0) / 2);
     }
@@ -98,8 +98,8 @@ class EvenSampler final : public PieceGenerator {
         uint64_t index = piece * kPiecePoints;
         const uint64_t last = std::min(points_, index + kPiecePoints);
         records.reserve(static_cast<size_t>(last - index) * packer_.schema().stride);
-        // The last patch that starts at or before the index: those without points start where the next one
-        // does.
+        // Finds the last patch that starts at or before the index. A patch without points starts where the
+        // next one does.
         size_t at = 0;
         for (size_t low = 0, high = patches.size(); low < high;) {
             const size_t middle = (low + high) / 2;
@@ -127,7 +127,7 @@ class EvenSampler final : public PieceGenerator {
         return static_cast<uint64_t>(std::llround(static_cast<double>(points_) * share));
     }
 
-    /// Adds the points of a row from number `index` up to `stop`; returns the number behind the last.
+    /// Adds the points of a row from number `index` up to `stop`. Returns the number after the last.
     uint64_t add_row(const PatchRows& rows, uint64_t row, uint64_t first, uint64_t index, uint64_t stop,
                      std::vector<std::byte>& records) const {
         const uint64_t begin = rows.first_of_row(row), count = rows.first_of_row(row + 1) - begin;
@@ -147,7 +147,7 @@ class EvenSampler final : public PieceGenerator {
         return index;
     }
 
-    /// The point at the share t of the row's area at a level.
+    /// Adds the point at the share t of the row's area at a level.
     void add_point(const Level& level, double t, Finish finish, std::vector<std::byte>& records) const {
         const PatchBand& band = *level.band;
         const auto before = [&](size_t quad) {

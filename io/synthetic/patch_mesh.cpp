@@ -8,23 +8,23 @@
 namespace lucarne::io {
 namespace {
 
-constexpr double kTinyArea = 1e-10;      ///< m^2: quads below it are left out
-constexpr double kFlat = 1e-5;           ///< m: a quad that is less twisted counts as flat
+constexpr double kTinyArea = 1e-10;      ///< m^2; smaller quads are left out
+constexpr double kFlat = 1e-5;           ///< m; a quad with less twist counts as flat
 constexpr double kSmoothCosine = 0.766;  ///< cos 40 degrees
 
 double triangle_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::length(glm::cross(b - a, c - a)) / 2;
 }
 
-/// The distance between the diagonals of a quad: 0 for a flat one.
+/// Returns the distance between the diagonals of a quad: 0 for a flat one.
 double twist(const PatchQuad& q) {
     const glm::dvec3 normal = glm::cross(q[2] - q[0], q[3] - q[1]);
     const double length = glm::length(normal);
     return length > 0 ? std::abs(dot(q[1] - q[0], normal)) / length : 0;
 }
 
-/// The direction of the air of a quad, not normalised: the cross product of its diagonals holds for triangles
-/// too.
+/// Returns the direction of a quad's air, not normalised. The cross product of the diagonals also works for
+/// triangles.
 glm::dvec3 face_direction(const PatchQuad& q) {
     return glm::cross(q[2] - q[0], q[3] - q[1]);
 }
@@ -81,7 +81,7 @@ void PatchBuilder::add(Finish finish, std::span<const std::vector<ShadedQuad>> b
             width += (glm::length(c[1] - c[0]) + glm::length(c[2] - c[3])) / 2;
             if (twist(c) < kFlat) {
                 add_quad(quad, band);
-            } else {  // as two triangles, so that every point between the corners lies on the surface
+            } else {  // two triangles, so that every point between the corners lies on the surface
                 add_quad({{c[0], c[1], c[3], c[3]}, {n[0], n[1], n[3], n[3]}}, band);
                 add_quad({{c[1], c[1], c[2], c[3]}, {n[1], n[1], n[2], n[3]}}, band);
             }
@@ -112,7 +112,7 @@ void PatchBuilder::grid(Finish finish, const Grid& grid) {
     for (size_t row = 0; row < bands; ++row)
         for (size_t column = 0; column < columns; ++column)
             faces[row * columns + column] = face_direction(quad_at(row, column)) * (grid.flip ? -1.0 : 1.0);
-    /// The normal at the corner of a face towards (row + up, column + right).
+    /// Returns the normal at the corner of a face towards (row + up, column + right).
     const auto corner_normal = [&](size_t row, size_t column, bool right, bool up) {
         const glm::dvec3 own = unit_or_up(faces[row * columns + column]);
         glm::dvec3 sum(0);
@@ -149,8 +149,8 @@ void PatchBuilder::sheet(Finish finish, const Plane& plane, std::span<const Outl
         glm::dvec2 low, high;
         double u(double v) const { return low.x + (high.x - low.x) * (v - low.y) / (high.y - low.y); }
     };
-    // A trapezoidal decomposition: bands between the heights of all corners, in each the edges that cross it
-    // in pairs.
+    // Trapezoidal decomposition: between the heights of all corners there are bands, and in each band the
+    // edges that cross it form pairs.
     std::vector<Edge> edges;
     std::vector<double> heights;
     for (const Outline& outline : outlines)
@@ -184,7 +184,7 @@ void PatchBuilder::sheet(Finish finish, const Plane& plane, std::span<const Outl
 
 void PatchBuilder::extrude(Finish finish, const Plane& plane, const Outline& outline, double depth, Air air,
                            bool closed) {
-    double twice_area = 0;  // tells which way the outline goes round
+    double twice_area = 0;  // its sign tells the direction of the outline
     for (size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
         twice_area += a.x * b.y - a.y * b.x;
@@ -241,7 +241,7 @@ void PatchBuilder::sweep(Finish finish, std::span<const glm::dvec3> path, const 
     for (const glm::dvec2& offset : section) middle += offset / static_cast<double>(section.size());
     Grid surface;
     const auto add_row = [&](size_t i,
-                             bool cap) {  // a cap closes an end: its corners meet in the section's middle
+                             bool cap) {  // a cap closes an end: its corners meet in the middle
         const glm::dvec3 tangent = path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0];
         const glm::dvec3 up = glm::normalize(glm::cross(tangent, side));
         auto& row = surface.rows.emplace_back();
@@ -253,8 +253,8 @@ void PatchBuilder::sweep(Finish finish, std::span<const glm::dvec3> path, const 
     add_row(0, true);
     for (size_t i = 0; i < path.size(); ++i) add_row(i, false);
     add_row(path.size() - 1, true);
-    // side x up = side x (tangent x side) = tangent: a section that turns left in (side, up) turns left about
-    // the tangent, and along it x along the path points outwards.
+    // side x up = side x (tangent x side) = tangent. So a section that turns left in (side, up) turns left
+    // about the tangent, and (along the section) x (along the path) points outwards.
     grid(finish, surface);
 }
 

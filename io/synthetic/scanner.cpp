@@ -1,8 +1,8 @@
-// A terrestrial laser scanner: a mirror sweeps vertical lines while the head turns once.
+// A terrestrial laser scanner: a mirror sweeps vertical lines while the head makes one turn.
 //
-// Each beam has a width. A second ray inside it tells whether it straddles an edge in depth; there, most of
-// the beams report the mean range of their whole footprint: the mixed pixels that real phase scanners leave
-// behind edges. Beams are lost where little light comes back: on dark, far or grazing surfaces.
+// Each beam has a width. A second ray inside the beam tells whether it straddles an edge in depth. On an
+// edge, most beams report the mean range of their whole footprint: the mixed pixels that real phase scanners
+// leave behind edges. Beams are lost where little light comes back: on dark, far or grazing surfaces.
 #include <algorithm>
 #include <cmath>
 
@@ -19,17 +19,17 @@ using glm::dvec3;
 
 constexpr uint64_t kPieceRays = 8192;
 constexpr double kLowest = -62 * M_PI / 180,
-                 kHighest = M_PI / 2;                       ///< elevations: the tripod hides what is below
-constexpr double kExitRadius = .003, kDivergence = .00015;  ///< of the beam, to either side: metres, radians
-constexpr double kEdgeDepth = .02;  ///< metres between two ranges in a beam that make an edge of it
+                 kHighest = M_PI / 2;                       ///< elevations; the tripod hides what is lower
+constexpr double kExitRadius = .003, kDivergence = .00015;  ///< radius (m), half angle (rad)
+constexpr double kEdgeDepth = .02;  ///< difference of two ranges in a beam that counts as an edge, metres
 constexpr int kFootprintRays = 6;
-constexpr double kMixedShare = .8;      ///< of the beams on an edge; the others report their centre
-constexpr double kReferenceRange = 15;  ///< metres: beyond it the signal falls with the square of the range
-constexpr double kLostBelow = .002, kKeptAbove = .02;  ///< signals between which a return may be lost
-constexpr double kAlwaysLost = .002;                   ///< share lost for no reason one can see
+constexpr double kMixedShare = .8;      ///< share of the beams on an edge; the others report their centre
+constexpr double kReferenceRange = 15;  ///< metres; beyond it the signal falls with the square of the range
+constexpr double kLostBelow = .002, kKeptAbove = .02;  ///< between these signals a return may be lost
+constexpr double kAlwaysLost = .002;                   ///< share that is lost for no visible reason
 constexpr uint64_t kPilotRays = 1 << 14;
 
-/// One sweep: lines of constant azimuth, in equal angular steps both ways.
+/// One sweep: lines of constant azimuth, with equal angular steps in both directions.
 struct Sweep {
     uint64_t lines = 1, beams = 1;
     uint64_t rays() const { return lines * beams; }
@@ -50,7 +50,7 @@ struct Beam {
         side = glm::normalize(cross(direction, other)) * half_angle;
         up = cross(side, direction);
     }
-    /// A direction inside it, uniform over its disc.
+    /// Returns a direction inside the beam, uniform over its disc.
     dvec3 inside(Random& random) const {
         const double radius = std::sqrt(random.uniform()), angle = 2 * M_PI * random.uniform();
         return glm::normalize(direction + side * (radius * std::cos(angle)) +
@@ -64,7 +64,7 @@ class Scanner final : public PieceGenerator {
         : geometry_(std::move(geometry)), packer_(packer), setup_(setup) {
         const double wanted = static_cast<double>(setup.points) / static_cast<double>(setup.stations.size());
         for (size_t station = 0; station < setup.stations.size(); ++station) {
-            // A coarse sweep first, to learn which share of the beams comes back.
+            // A coarse sweep first tells which share of the beams comes back.
             const double share =
                 static_cast<double>(pilot(station)) / static_cast<double>(kPilotSweep.rays());
             sweeps_.push_back(Sweep::of(share > 0 ? wanted / share : 0));
@@ -137,7 +137,7 @@ class Scanner final : public PieceGenerator {
     bool straddles_edge(const Beam& beam, const SurfaceHit& hit, Random& random) const {
         const dvec3 probe = beam.inside(random);
         const auto other = geometry_->cast(beam.origin, probe);
-        if (!other) return false;  // nothing comes back from beyond: the centre's range stands
+        if (!other) return false;  // nothing comes back from beyond: the centre's range holds
         // A slanted surface is no edge: compare with the range at which the probe meets the hit's own plane.
         const double slope = dot(hit.normal, probe);
         const double expected =

@@ -9,7 +9,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-/// A block on the floor: sides and top.
+/// Adds a block on the floor: sides and top.
 void block(PatchBuilder& builder, Finish finish, const Outline& footprint, double height) {
     const Plane top{{0, 0, height}, {1, 0, 0}, {0, 1, 0}};
     builder.sheet(finish, top, std::span(&footprint, 1));
@@ -19,8 +19,8 @@ void block(PatchBuilder& builder, Finish finish, const Outline& footprint, doubl
 }  // namespace
 
 SceneModel build_cornell() {
-    // Goral et al. 1984, with the measurements of Cornell's web page in metres: seen from the front (low y),
-    // red is on the left. Their floor is 5.528 m wide, ours is a cube.
+    // Goral et al. 1984, with the measurements of Cornell's web page in metres. Seen from the front (low y),
+    // red is on the left. The original's floor is 5.528 m wide; this one is a cube.
     constexpr double kSide = 5.5;
     PatchBuilder b;
     const dvec3 x(kSide, 0, 0), y(0, kSide, 0), z(0, 0, kSide);
@@ -49,9 +49,9 @@ SceneModel build_two_rooms() {
     constexpr unsigned kX0 = 1, kX1 = 2, kSides = 4 + 8, kFloor = 16, kCeiling = 32;
     constexpr auto kInside = PatchBuilder::Air::inside;
     constexpr double kDepth = 5, kHeight = 3, kMiddle = 4.1, kEnd = 8.2,
-                     kWall = .1;  // kWall: half the wall's thickness
+                     kWall = .1;  // kWall is half the wall's thickness
     PatchBuilder b;
-    // The shell: two boxes that share the corners of their open sides, so that not a single ray slips out.
+    // The shell: two boxes that share the corners of their open sides, so that no ray escapes.
     for (const bool second : {false, true}) {
         const dvec3 min(second ? kMiddle : 0, 0, 0), max(second ? kEnd : kMiddle, kDepth, kHeight);
         b.box(second ? teal : ochre, min, max, kSides | (second ? kX1 : kX0), kInside);
@@ -76,7 +76,7 @@ SceneModel build_two_rooms() {
                                doorway[0]};  // no sill: the floor runs through
         b.extrude(white, second_face, jambs, 2 * kWall, kInside, false);
     }
-    // The closed door reaches a little into the wall, the open one stands at a right angle in the second
+    // The closed door reaches a little into the wall. The open one stands at a right angle in the second
     // room.
     b.box(wood, {kMiddle - .02, 3.19, 0}, {kMiddle + .02, 4.11, 2.11}, PatchBuilder::kAllFaces & ~kFloor);
     b.box(wood, {kMiddle + kWall + .02, .75, .01}, {kMiddle + kWall + .92, .79, 2.08});

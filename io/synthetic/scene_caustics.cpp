@@ -1,4 +1,4 @@
-// What gathers light: a ring on a floor, and a paraboloid before a wall (Preiner 2010, fig. 13).
+// Scenes that focus light: a ring on a floor, and a paraboloid before a wall (Preiner 2010, fig. 13).
 #include <cmath>
 
 #include "io/synthetic/scenes.h"
@@ -25,7 +25,7 @@ SceneModel build_ring() {
 }
 
 SceneModel build_paraboloid() {
-    // y = kVertex - (x^2 + z^2) / (4 f): it opens toward the wall at y = kWall.
+    // y = kVertex - (x^2 + z^2) / (4 f): the paraboloid opens toward the wall at y = kWall.
     constexpr double kFocal = 1.2, kRim = .6, kVertex = 2, kHeight = 1, kWall = .45;
     constexpr int kRings = 40;
     PatchBuilder b;

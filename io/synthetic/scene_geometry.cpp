@@ -34,14 +34,14 @@ constexpr std::array kEntries = {
     Entry{"paraboloid", "a metal mirror of 1.2 m before a wall, focal length 1.2 m", build_paraboloid},
 };
 
-/// A place in a quad by its corners' weights.
+/// A place in a quad, with the weights of its corners.
 struct QuadPlace {
     dvec3 position;
     std::array<double, 4> weights{};
 };
 
-/// The closest point of the triangle of corners i, j, k. After: Ericson, Real-Time Collision Detection,
-/// 2005, 5.1.5.
+/// Returns the closest point of the triangle with corners i, j, k. Source: Ericson, Real-Time Collision
+/// Detection, 2005, 5.1.5.
 QuadPlace closest_in_triangle(const dvec3& p, const std::array<dvec3, 4>& corners, int i, int j, int k) {
     const dvec3 &a = corners[i], &b = corners[j], &c = corners[k];
     const dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -89,7 +89,7 @@ bool closest_callback(RTCPointQueryFunctionArguments* args) {
         const QuadPlace place = closest_in_triangle(query.point, corners, i, j, k);
         const dvec3 to = place.position - query.point;
         const double squared = dot(to, to);
-        // The lowest quad wins a tie, so that the answer does not depend on the order of the search.
+        // The lowest quad wins a tie, so that the answer does not depend on the search order.
         if (squared < query.best || (query.found && squared == query.best && args->primID < query.quad)) {
             query.best = squared;
             query.quad = args->primID;
@@ -142,8 +142,8 @@ SceneGeometry::SceneGeometry(SceneModel model) : model_(std::move(model)) {
         min_ = glm::min(min_, dvec3(corner));
         max_ = glm::max(max_, dvec3(corner));
     }
-    // One thread and one instruction set: the same tree and the same rounding, thus the same hits,
-    // everywhere.
+    // One thread and one instruction set give the same tree, the same rounding and thus the same hits on
+    // every machine.
     const RTCDevice device = rtcNewDevice("threads=1,isa=sse4.2");
     if (!device) return;
     const RTCScene scene = rtcNewScene(device);
@@ -186,7 +186,7 @@ std::optional<SurfaceHit> SceneGeometry::cast(const dvec3& origin, const dvec3& 
     hit.distance = ray.ray.tfar;
     hit.position = origin + direction * hit.distance;
     hit.normal = mesh().normal(quad, ray.hit.u, ray.hit.v);
-    // At the rim of a tessellated body the interpolated normal may turn away although the face is seen from
+    // At the rim of a tessellated body the interpolated normal may point away although the face is seen from
     // its front.
     dvec3 face(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
     if (dot(face, hit.normal) < 0) face = -face;

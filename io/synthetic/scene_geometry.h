@@ -15,31 +15,31 @@
 namespace lucarne::io {
 
 struct SurfaceHit {
-    double distance = 0;  ///< along the ray, or to the point asked about; metres
+    double distance = 0;  ///< along the ray, or to the query point; metres
     glm::dvec3 position{0.0};
-    glm::dvec3 normal{0.0};  ///< unit, towards the air
+    glm::dvec3 normal{0.0};  ///< unit length, towards the air
     Finish finish = Finish::white;
     glm::dvec3 albedo() const { return albedo_at(finish, position, normal); }  ///< linear Rec. 709
 };
 
-/// The true surface of a virtual scan: what readings can be checked against. Thread-safe once made. The
-/// surface is the tessellation itself: curved bodies are meshes whose normals are interpolated between their
-/// corners.
+/// The true surface of a virtual scan, against which measurements can be checked. Thread-safe once created.
+/// The surface is the tessellation itself: curved bodies are meshes, and their normals are interpolated
+/// between corners.
 class SceneGeometry {
  public:
-    /// Unknown names are ErrorKind::arguments, with the list of those there are.
+    /// Unknown names are ErrorKind::arguments; the error lists the known names.
     static Result<std::shared_ptr<const SceneGeometry>> create(const std::string& scene);
     ~SceneGeometry();
     SceneGeometry(const SceneGeometry&) = delete;
     SceneGeometry& operator=(const SceneGeometry&) = delete;
 
-    /// The first surface on the ray from `origin` along the unit `direction`, or none.
+    /// Returns the first surface on the ray from `origin` along the unit `direction`, or nothing.
     std::optional<SurfaceHit> cast(const glm::dvec3& origin, const glm::dvec3& direction,
                                    double longest = std::numeric_limits<double>::infinity()) const;
-    /// The nearest place on the surface within `radius`, or none.
+    /// Returns the nearest place on the surface within `radius`, or nothing.
     std::optional<SurfaceHit> closest(const glm::dvec3& point,
                                       double radius = std::numeric_limits<double>::infinity()) const;
-    double area() const { return model_.mesh.area(); }  ///< m^2, surfaces hidden inside others included
+    double area() const { return model_.mesh.area(); }  ///< m^2, including surfaces hidden inside others
     glm::dvec3 min() const { return min_; }
     glm::dvec3 max() const { return max_; }
     const PatchMesh& mesh() const { return model_.mesh; }

@@ -1,8 +1,8 @@
 // The nave: six bays, 12 m wide, 30 m long, 15 m high. x goes across, y from the portal to the altar, z up.
 //
-// The vaults are two pointed barrels that meet at a right angle: over (x, y) from a bay's middle the ceiling
-// is the higher one, z = springing + rise max(g(|x| / a), g(|y| / b)), so that all four sides of a bay are
-// pointed arches and the groins are straight in plan. g is the equilateral arch.
+// The vaults are two pointed barrels that meet at a right angle. At (x, y) from a bay's middle the ceiling is
+// the higher of the two, z = springing + rise max(g(|x| / a), g(|y| / b)). So all four sides of a bay are
+// pointed arches, and the groins are straight in plan. g is the equilateral arch.
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -25,7 +25,7 @@ constexpr double kArcadeSpringing = 4.2, kArcadeRise = 2.1, kArcadeHalf = 2;
 constexpr double kVaultSpringing = 9, kVaultRise = 5.7, kAisleSpringing = 4.4, kAisleRise = 2.5;
 constexpr int kArchSteps = 14;  ///< from springing to apex
 
-/// The equilateral pointed arch from (-half, base) over (0, base + rise) to (half, base).
+/// Returns the equilateral pointed arch from (-half, base) over (0, base + rise) to (half, base).
 Outline pointed_arch(double half, double base, double rise) {
     Outline arch;
     for (int i = 0; i <= 2 * kArchSteps; ++i) {
@@ -43,7 +43,7 @@ Outline moved(Outline outline, double u, double v = 0) {
     return outline;
 }
 
-/// A window or door with a pointed head.
+/// Returns a window or door with a pointed head.
 Outline lancet(double middle, double half, double sill, double springing, double rise) {
     Outline outline = pointed_arch(half, springing, rise);
     outline.emplace_back(half, sill);
@@ -60,7 +60,8 @@ Outline circle(const dvec2& middle, double radius, int steps) {
     return outline;
 }
 
-/// A wall from `low` corners along its bottom up to a pointed arch, with openings through its thickness.
+/// Adds a wall from the `low` corners along its bottom up to a pointed arch, with openings through its
+/// thickness.
 void pierced_wall(PatchBuilder& b, Finish finish, const Plane& plane, Outline wall,
                   std::span<const Outline> openings, double thickness) {
     std::vector<Outline> outlines = {std::move(wall)};
@@ -69,8 +70,8 @@ void pierced_wall(PatchBuilder& b, Finish finish, const Plane& plane, Outline wa
     for (const Outline& opening : openings) b.extrude(rubbed_stone, plane, opening, thickness, Air::inside);
 }
 
-/// A rib of this half width and depth along an arch; `across` is horizontal and at a right angle to its
-/// plane.
+/// Adds a rib of this half width and depth along an arch. `across` is horizontal and perpendicular to the
+/// arch's plane.
 void rib(PatchBuilder& b, std::span<const dvec3> path, const dvec3& across, double half, double depth) {
     const dvec2 section[] = {{-half, .04},         {-half, -.4 * depth}, {-.75 * half, -.6 * depth},
                              {-.4 * half, -depth}, {.4 * half, -depth},  {.75 * half, -.6 * depth},
@@ -78,7 +79,7 @@ void rib(PatchBuilder& b, std::span<const dvec3> path, const dvec3& across, doub
     b.sweep(rubbed_stone, path, across, section);
 }
 
-/// An arch of the vault in the vertical plane through `middle` along `half_span` (horizontal).
+/// Returns an arch of the vault in the vertical plane through `middle` along `half_span` (horizontal).
 std::vector<dvec3> vault_arch(const dvec3& middle, const dvec3& half_span, double rise) {
     std::vector<dvec3> path;
     for (const dvec2& point : pointed_arch(1, 0, rise))
@@ -86,7 +87,7 @@ std::vector<dvec3> vault_arch(const dvec3& middle, const dvec3& half_span, doubl
     return path;
 }
 
-/// The four webs of one bay, of half sizes a (along x) and b (along y), and its diagonal ribs.
+/// Adds the four webs of one bay, of half sizes a (along x) and b (along y), and its diagonal ribs.
 void vault(PatchBuilder& builder, const dvec3& middle, double a, double b, double rise, double rib_half) {
     for (const bool along_y : {true, false})
         for (const double side : {-1.0, 1.0}) {
@@ -123,7 +124,7 @@ void column(PatchBuilder& b, double x, double y) {
     b.box(rubbed_stone, {x - .62, y - .62, 3.95}, {x + .62, y + .62, kArcadeSpringing});
 }
 
-/// The bundle of half-round shafts that carries the ribs of the nave's vault, on side -1 or 1.
+/// Adds the bundle of half-round shafts that carries the ribs of the nave's vault, on side -1 or 1.
 void wall_shafts(PatchBuilder& b, double side, double y) {
     const double middle = side < 0 ? 0 : M_PI;  // towards the nave
     const double x = side * kNaveHalf;
@@ -148,7 +149,7 @@ void wall_shafts(PatchBuilder& b, double side, double y) {
           {std::max(x, inner), std::min(kLength, y + .45), kVaultSpringing});
 }
 
-/// One bay of the arcade wall, the clerestory above it and the outer wall of the aisle.
+/// Adds one bay of the arcade wall, the clerestory above it and the outer wall of the aisle.
 void bay_walls(PatchBuilder& b, double side, double y) {
     constexpr double kHalf = kBay / 2;
     const Outline arch = pointed_arch(kArcadeHalf, kArcadeSpringing, kArcadeRise);
@@ -182,7 +183,8 @@ void bay_walls(PatchBuilder& b, double side, double y) {
     for (const dvec2& point : pointed_arch(kArcadeHalf + .12, kArcadeSpringing, kArcadeRise + .14))
         path.push_back(nave.at(point));
     const dvec2 roll[] = {{-.06, -.06}, {.05, -.06}, {.09, -.03}, {.09, .03}, {.05, .06}, {-.06, .06}};
-    // The roll stands out along the wall's normal; across the path it must turn left about its direction.
+    // The roll stands out along the wall's normal. In the plane across the path it must turn left about the
+    // path's direction.
     b.sweep(rubbed_stone, path, glm::normalize(cross(nave.u, nave.v)), roll);
     const double inner = side * (kNaveHalf - .12);
     b.box(rubbed_stone, {std::min(inner, nave.origin.x), y - kHalf, 7.2},
@@ -200,7 +202,8 @@ Outline rose_petal(const dvec2& centre, double direction) {
     return petal;
 }
 
-/// The walls at both ends: the rose and three lancets over the altar, the portal and three lancets opposite.
+/// Adds the walls at both ends: the rose and three lancets over the altar, the portal and three lancets
+/// opposite.
 void end_walls(PatchBuilder& b) {
     const auto wall = [](double middle, double half, double floor, double springing, double rise) {
         Outline outline = {{-half, floor}, {half, floor}};
@@ -263,7 +266,7 @@ void sanctuary(PatchBuilder& b) {
     b.box(gilt, {-.28, 28.2, 2.05}, {.28, 28.26, 2.11});
 }
 
-/// A cloth of 0.9 m by 2.7 m, hung in folds under the crown of an arch, its width along y.
+/// Adds a cloth of 0.9 m by 2.7 m, hung in folds under the crown of an arch, with its width along y.
 void banner(PatchBuilder& b, Finish finish, double x, double y) {
     constexpr double kTop = 6.1, kDrop = 2.7, kHalf = .45, kThick = .006;
     constexpr int kRows = 20, kColumns = 30;
@@ -282,7 +285,8 @@ void banner(PatchBuilder& b, Finish finish, double x, double y) {
     add_row(0, 0);  // closed above and below
     for (int row = 0; row <= kRows; ++row) add_row(static_cast<double>(row) / kRows, kThick);
     add_row(1, 0);
-    // Seen from above the loop turns right (first along y at low x) and the rows go down: the air is outside.
+    // Seen from above the loop turns right (first along y at low x) and the rows go down, so the air is
+    // outside.
     b.grid(finish, surface);
 }
 

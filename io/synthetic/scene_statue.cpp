@@ -11,8 +11,8 @@ namespace {
 
 using glm::dvec3;
 
-/// A tube around the curve that winds twice about a torus and three times through it. The torus stands
-/// upright, its axis along y through the origin; the tube's lowest points are at height `foot`.
+/// Adds a tube around the curve that winds twice about a torus and three times through it. The torus stands
+/// upright, its axis along y through the origin. The tube's lowest points are at height `foot`.
 void trefoil(PatchBuilder& builder, double foot) {
     constexpr double kRing = .52, kWinding = .24;  // radii of the torus, metres
     constexpr int kSteps = 720, kSides = 56;

@@ -9,15 +9,15 @@
 
 namespace lucarne::io {
 
-/// An analytic scene: what there is, and where a surveyor would stand.
+/// An analytic scene: its surfaces, and the places where a surveyor would stand.
 struct SceneModel {
     PatchMesh mesh;
     std::vector<glm::dvec3> stations;
-    /// Where further stations may stand, if nothing is nearer than 0.4 m.
+    /// Box in which further stations may stand, if nothing is nearer than 0.4 m.
     glm::dvec3 walk_min{0.0}, walk_max{0.0};
 };
 
-/// One builder a scene; sizes in metres, z up.
+/// One builder per scene; sizes in metres, z up.
 SceneModel build_cornell();
 SceneModel build_furnace();
 SceneModel build_nave();

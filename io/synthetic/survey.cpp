@@ -1,10 +1,10 @@
-// A vehicle that scans a town: the benchmark's cloud, made for its statistics and not for its truth.
+// A vehicle that scans a town: the benchmark's cloud. Its statistics are realistic; it has no true surface.
 //
-// A scanner on a car's roof drives along parallel streets and turns its mirror across the way: one profile
-// after another, as such scanners deliver them. Streets, facades with recessed windows, spheres, trees
-// through which some beams pass, and a few wild ranges. Positions are rounded to 1 mm. Colours have a
-// camera's noise, the intensity that of a detector of ten bits with a rough surface before it (speckle: all
-// ten are noisy).
+// A scanner on a car's roof drives along parallel streets and turns its mirror across the direction of
+// travel. It delivers one profile after another, as such scanners do. The town has streets, facades with
+// recessed windows, spheres, trees through which some beams pass, and a few wild ranges. Positions are
+// rounded to 1 mm. Colours have a camera's noise. The intensity is that of a ten-bit detector that sees
+// speckle from a rough surface: all ten bits are noisy.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,9 +32,9 @@ constexpr double kTreeStep = 14, kTreeRadius = 2.2, kTreeHeight = 5,
                  kTreePath = 1.1;  ///< mean free path inside
 constexpr double kBallStep = 35, kBallRadius = .8;
 constexpr double kWildShare = 2e-6, kWildRange = 1500;
-constexpr double kCameraNoise = 3, kChannelNoise = 1.5;  ///< of 8-bit codes, standard deviations
-constexpr double kReturning = .787;   ///< about the share of beams that come back, for the number of points
-constexpr double kProfileToBeam = 4;  ///< profiles stand this many times as far apart as beams 10 m away
+constexpr double kCameraNoise = 3, kChannelNoise = 1.5;  ///< standard deviations, in 8-bit codes
+constexpr double kReturning = .787;   ///< approximate share of beams that come back; gives the point count
+constexpr double kProfileToBeam = 4;  ///< ratio of the distance of profiles to that of beams 10 m away
 constexpr uint64_t kPieceBeams = 8192;
 
 enum class Material { road, sidewalk, plaster, glass, ball, leaves, none };
@@ -50,7 +50,7 @@ double hash(int64_t a, int64_t b) {
     return unit_double(mix64(static_cast<uint64_t>(a), static_cast<uint64_t>(b)));
 }
 
-/// Waves of several lengths: worn, stained, dusty surfaces; about -1 to 1.
+/// Returns waves of several lengths for worn, stained, dusty surfaces; about -1 to 1.
 double stain(const dvec3& p) {
     return .5 * std::sin(1.7 * p.x + .9 * p.z + std::sin(.8 * p.y)) +
            .3 * std::sin(9.1 * p.y + 7.3 * p.x + 3 * p.z) + .2 * std::sin(31 * p.x + 27 * p.z + 23 * p.y);
@@ -61,7 +61,7 @@ struct Return {
     Material material = Material::none;
 };
 
-/// The beam across the street: (y, z) from the scanner, y towards the right facade.
+/// The profile across the street: (y, z) relative to the scanner, y towards the right facade.
 class Profile {
  public:
     Profile(int street, double x) : street_(street), x_(x) {}
@@ -107,7 +107,8 @@ class Profile {
         nearer(window ? recessed : range, window ? Material::glass : Material::plaster);
     }
 
-    /// Where the beam goes through a sphere whose centre is at `center` across and at `along` on the way.
+    /// Finds where the beam passes through a sphere with its centre at `center` across and at `along` on the
+    /// street.
     template <class Use>
     void circle(const dvec2& d, const dvec2& center, double along, double radius, const Use& use) const {
         const double squared = radius * radius - (x_ - along) * (x_ - along);
@@ -124,7 +125,7 @@ class Profile {
 class Survey final : public PieceGenerator {
  public:
     Survey(const Schema& schema, const SyntheticOptions& options) : schema_(schema), options_(options) {
-        // Beams a turn and profiles a street, such that their distances have the given proportion.
+        // Beams per turn and profiles per street, so that their distances have the given ratio.
         const double beams = static_cast<double>(options.points) / kReturning / kStreets;
         const double turn = std::sqrt(beams * kProfileToBeam * 2 * M_PI * 10 / kStreetLength);
         beams_ = static_cast<uint64_t>(std::max(1.0, std::round(turn)));
@@ -144,7 +145,7 @@ class Survey final : public PieceGenerator {
         Random random(options_.seed, beam);
         const auto street = static_cast<int>(beam / (profiles_ * beams_));
         const uint64_t profile = beam / beams_ % profiles_, step = beam % beams_;
-        // The car's speed wavers, and it comes back on every other street.
+        // The car's speed varies, and it returns on every other street.
         const double way =
             (static_cast<double>(profile) + static_cast<double>(step) / static_cast<double>(beams_) +
              .2 * hash(static_cast<int64_t>(profile), street)) /

@@ -18,9 +18,9 @@ using glm::dvec3;
 constexpr uint32_t kMostStations = 1000;
 constexpr uint64_t kMostPoints = 1ull << 40;
 constexpr double kClearance = .4;     ///< metres around a station
-constexpr size_t kPiecesAtOnce = 32;  ///< made in parallel and then handed out; bounds the memory
+constexpr size_t kPiecesAtOnce = 32;  ///< generated in parallel and then returned; bounds the memory
 
-/// Hands out the pieces in order; a few are made ahead, in parallel.
+/// Returns the pieces in order; some are generated ahead, in parallel.
 class SyntheticReader final : public PointReader {
  public:
     SyntheticReader(std::shared_ptr<const PieceGenerator> generator, size_t stride)
@@ -61,8 +61,8 @@ class SyntheticReader final : public PointReader {
     std::shared_ptr<const PieceGenerator> generator_;
     size_t stride_;
     std::vector<std::vector<std::byte>> ready_;
-    uint64_t next_ = 0;              ///< the first piece not made yet
-    size_t piece_ = 0, offset_ = 0;  ///< what is handed out next: byte `offset_` of ready_[piece_]
+    uint64_t next_ = 0;              ///< the first piece that is not generated yet
+    size_t piece_ = 0, offset_ = 0;  ///< next to return: byte `offset_` of ready_[piece_]
 };
 
 class SyntheticSource final : public PointSource {
@@ -81,7 +81,7 @@ class SyntheticSource final : public PointSource {
     std::shared_ptr<const PieceGenerator> generator_;
 };
 
-/// The radical inverse (Halton 1960).
+/// Returns the radical inverse (Halton 1960).
 double radical_inverse(uint64_t index, uint64_t base) {
     double value = 0, digit = 1;
     for (; index > 0; index /= base) {
@@ -91,7 +91,8 @@ double radical_inverse(uint64_t index, uint64_t base) {
     return value;
 }
 
-/// The scene's own stations, then Halton points of its walkable box that stand free.
+/// Returns the scene's own stations, then Halton points of its walkable box that have enough space around
+/// them.
 std::vector<dvec3> choose_stations(const SceneGeometry& geometry, uint32_t wanted) {
     const SceneModel& model = geometry.model();
     auto stations = model.stations;

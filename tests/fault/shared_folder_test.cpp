@@ -100,7 +100,7 @@ TEST_F(SharedFolder, AWorkFolderThatOthersMayWriteToIsNotUsed) {
 
 TEST_F(SharedFolder, ALinkIsNoWorkFolder) {
     fs::create_directory_symlink(folder_ / "mine", work_);
-    expect_done_without_it("is a link or no folder");
+    expect_done_without_it("is a link or not a folder");
     EXPECT_TRUE(fs::is_symlink(work_));
 }
 

@@ -1,5 +1,5 @@
-// The entry point of every fuzzer. libFuzzer's own limits are by the wall clock, which a busy machine
-// stretches; these are by the processor's.
+// The entry point of every fuzzer. libFuzzer's own limits count wall-clock time, which grows on a busy
+// machine; these count processor time.
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -13,8 +13,8 @@
 namespace lucarne::fuzz {
 namespace {
 
-/// A bad file is refused within a second, and AddressSanitizer with UndefinedBehaviorSanitizer makes the
-/// readers about five times slower (README.md).
+/// Readers must refuse a bad file within a second. AddressSanitizer with UndefinedBehaviorSanitizer makes
+/// them about five times slower (README.md).
 constexpr double kMostSeconds = 5;
 
 double cpu_seconds() {
@@ -23,12 +23,12 @@ double cpu_seconds() {
     return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
-/// A finding of its own name in the report.
+/// A function of its own, so that the finding has a name in the report.
 [[noreturn]] void refused_too_late() {
     std::abort();
 }
 
-/// LUCARNE_FUZZ_CPU: after so many seconds the fuzzer ends; 0 or unset: never.
+/// Returns LUCARNE_FUZZ_CPU: the fuzzer ends after so many seconds. 0 or unset means never.
 double whole_seconds() {
     const char* text = std::getenv("LUCARNE_FUZZ_CPU");
     return text ? std::strtod(text, nullptr) : 0;

@@ -11,17 +11,18 @@
 
 namespace lucarne::fuzz {
 
-/// What a fuzzer does with one input; each target defines it, driver.cpp calls it. False: the input is of no
-/// use to the corpus (too short for the format).
+/// Runs a fuzzer on one input. Each target defines this function; driver.cpp calls it. Returns false if the
+/// input is of no use to the corpus (too short for the format).
 bool run(const uint8_t* data, size_t size);
 
-/// A file in memory with these bytes, the same one every time; nothing where the system has no memory for it.
+/// Returns a file in memory with these bytes, always the same file. Returns nothing if the system has no
+/// memory for it.
 std::optional<std::filesystem::path> memory_file(std::string_view bytes);
 inline std::optional<std::filesystem::path> memory_file(const uint8_t* data, size_t size) {
     return memory_file({reinterpret_cast<const char*>(data), size});
 }
 
-/// These bytes, which outlive it; nothing lies beside them.
+/// Returns a source of these bytes, which must outlive it. There are no files beside it.
 inline std::shared_ptr<const ByteSource> memory_source(std::string_view bytes) {
     return std::make_shared<const MemorySource>("/dev/null/fuzz", std::as_bytes(std::span(bytes)));
 }

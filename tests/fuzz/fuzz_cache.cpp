@@ -1,6 +1,6 @@
-// The cache reader and all that believes it. A mutated cache would end at its checksums: they are made right
-// again, so that lies are tried and not accidents. The input is a cache without the zeros behind its
-// superblocks' fields: the first 88 bytes of the file and everything from byte 8192 on.
+// Fuzzes the cache reader and the code that trusts it. The checksums would stop any mutated cache, so they
+// are corrected first: the aim is to test deliberate lies, not accidents. The input is a cache without the
+// zeros after the fields of its superblocks: the first 88 bytes of the file and everything from byte 8192 on.
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -17,13 +17,13 @@ namespace {
 
 constexpr size_t kFields = 88;
 
-/// The part of the file, as far as the file reaches.
+/// Returns a part of the file; empty if it reaches beyond the file.
 std::span<std::byte> part(std::span<std::byte> file, uint64_t offset, uint64_t bytes) {
     if (offset > file.size() || bytes > file.size() - offset) return {};
     return file.subspan(offset, bytes);
 }
 
-/// Puts magic, version, size and every checksum right.
+/// Corrects magic, version, size and every checksum.
 void reseal(std::span<std::byte> file) {
     uint64_t fields[8];
     std::memcpy(fields, &file[16], sizeof fields);
@@ -41,7 +41,7 @@ void reseal(std::span<std::byte> file) {
     std::copy(encoded.begin(), encoded.end(), file.begin() + format::kSuperblockBytes);
 }
 
-/// Reads every node as a picture would, and chooses cuts by what the directory claims.
+/// Reads every node as rendering would, and selects cuts by what the directory claims.
 void use(const NodeSource& source) {
     const auto& header = source.header();
     const gi::Scene scene = gi::default_scene(header.min, header.max, header.metres_per_unit);

@@ -1,5 +1,5 @@
-// Compressed payloads by themselves: fuzz_cache reaches them too, but through a whole file. The input: a byte
-// that picks the schema, two of the number of points, and the payload.
+// Fuzzes compressed payloads alone; fuzz_cache reaches them only through a whole file. The input: a byte that
+// selects the schema, two for the number of points, and the payload.
 #include <cstring>
 #include <vector>
 

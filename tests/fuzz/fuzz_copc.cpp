@@ -1,5 +1,5 @@
-// COPC as an octree: info record, pages, chunks, and all that believes them. The input is the whole file; its
-// magic is made right, so that every input gets past it.
+// Fuzzes COPC as an octree: info record, pages, chunks, and the code that trusts them. The input is the whole
+// file. Its magic is corrected, so that every input gets past it.
 #include <cstring>
 #include <string>
 

@@ -1,8 +1,8 @@
 #include "tests/fuzz/fuzz_scan.h"
 #include "tests/io/formats/e57/e57_builder.h"
 
-/// The input is an E57 file without checksums, which would stop every change. They are made here, and the
-/// header is put right, so that what is tried are lies and no accidents.
+/// The input is an E57 file without checksums, which would stop every mutation. They are added here, and the
+/// header is corrected: the aim is to test deliberate lies, not accidents.
 bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     using namespace io;
     std::string logical(reinterpret_cast<const char*>(data), size);

@@ -1,6 +1,6 @@
 #include "tests/fuzz/fuzz_scan.h"
 
-/// The bit of the point format that says compressed is always set.
+/// Always sets the bit of the point format that means compressed.
 bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     constexpr size_t kPointFormat = 104;
     if (size <= kPointFormat) return false;

@@ -11,7 +11,7 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     const size_t frames = std::min<size_t>(path->frames(), 100);
     for (size_t i = 0; i < frames; ++i) {
         const auto camera = path->at(path->start() + static_cast<double>(i) / path->frames_per_second);
-        // Whoever accepts a path can fly it.
+        // A path that is accepted must give finite cameras.
         if (!std::isfinite(camera.position.x + camera.target.x + camera.up.x + camera.vertical_fov))
             std::abort();
     }

@@ -13,7 +13,7 @@ uint32_t big_endian(const std::string& bytes, size_t at) {
     return value;
 }
 
-/// Makes the checksum of every chunk right, as far as chunks follow each other.
+/// Corrects the checksum of every chunk, as long as chunks follow one another.
 void reseal(std::string& bytes) {
     for (size_t at = 8; at + 12 <= bytes.size();) {
         const uint64_t length = big_endian(bytes, at);

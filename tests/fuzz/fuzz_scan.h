@@ -5,11 +5,12 @@
 #include "io/formats/scan.h"
 #include "tests/fuzz/fuzz.h"
 
-// What every fuzzer of a scan format does: open, read to the end, write what was read in every format; and
-// read once more what can be saved of it.
+// What every fuzzer of a scan format does: opens the scan, reads it to the end, writes what was read in every
+// format; and then reads it again with `salvage`.
 namespace lucarne::fuzz {
 
-/// A reader that still gives points after so many refuses nothing, and a few KiB may well hold millions.
+/// Reading stops after so many points: by then the reader has accepted the file, and a few KiB may hold
+/// millions.
 inline constexpr size_t kMostPoints = 200'000;
 
 inline void write_unfinished(const io::PointSource& source, std::span<const std::byte> records,
@@ -36,14 +37,14 @@ inline void read_and_write(std::shared_ptr<const ByteSource> file, bool salvage)
     }
 }
 
-/// Of a file of these bytes.
+/// Runs this on a file with these bytes.
 inline bool scan(std::string_view bytes) {
     const auto file = memory_source(bytes);
     for (const bool salvage : {false, true}) read_and_write(file, salvage);
     return true;
 }
 
-/// `magic` replaces the first bytes, so that every input reaches the format's own parser.
+/// The same with `magic` in place of the first bytes, so that every input reaches the format's own parser.
 inline bool scan(std::string_view magic, const uint8_t* data, size_t size) {
     if (size < magic.size()) return false;
     std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -14,10 +14,10 @@
 #include "io/formats/scan.h"
 #include "tests/temporary_folder.h"
 
-// What the tests of io share: the folder of shared scans, a folder that goes away, whole scans in memory.
+// Shared by the tests of io: the folder of shared scans, a temporary folder, whole scans in memory.
 namespace lucarne::io::testing {
 
-/// The shared test data, or empty where there is none.
+/// Returns the folder of the shared test data; empty if there is none.
 inline std::filesystem::path shared_data() {
     const char* given = std::getenv("LUCARNE_SHARED");
     const auto folder =
@@ -35,7 +35,7 @@ inline std::string read_bytes(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A file in memory, for tests that change one thousands of times.
+/// A file in memory, for tests that change a file thousands of times.
 class MemoryFile {
  public:
     MemoryFile() : fd_(memfd_create("lucarne-test", MFD_CLOEXEC)) {}
@@ -51,7 +51,7 @@ class MemoryFile {
     int fd_;
 };
 
-/// Every record of one pass.
+/// All records of one pass.
 struct Records {
     std::vector<std::byte> bytes;
     size_t count = 0;

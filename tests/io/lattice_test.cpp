@@ -1,4 +1,4 @@
-// Which 32-bit integers hold given coordinates to their last digit.
+// Which lattice of 32-bit integers holds given coordinates to their last digit.
 #include "io/lattice.h"
 
 #include <cmath>
@@ -36,7 +36,7 @@ struct Cloud {
         search.add(records);
         return search.found();
     }
-    /// The largest distance of a coordinate from its nearest place.
+    /// Returns the largest distance of a coordinate from its nearest lattice position.
     double distance(const Lattice& lattice) const {
         double most = 0;
         for (size_t at = 0; at < records.size(); at += schema.stride) {
@@ -85,13 +85,13 @@ TEST(Lattice, FloatsThatWereDecimalsGetThoseDecimals) {
 TEST(Lattice, WhatNoDecimalsHoldGetsTheFinestThatTheBoxAllows) {
     Cloud cloud(PositionType::f64);
     DecimalSearch bare(cloud.schema, {glm::dvec3(0), glm::dvec3(1)});
-    EXPECT_DOUBLE_EQ(bare.found().scale.x, 1e-9);  // nothing is known but the box
+    EXPECT_DOUBLE_EQ(bare.found().scale.x, 1e-9);  // only the box is known
     for (uint64_t i = 0; i < 1000; ++i) {
         Random random(3, i);
         cloud.add({random.uniform(), 1000 * random.uniform(), std::nearbyint(100 * random.uniform()) / 100});
     }
     DecimalSearch search(cloud.schema, cloud.box);
-    EXPECT_TRUE(search.add(cloud.records));  // z is one of decimals still
+    EXPECT_TRUE(search.add(cloud.records));  // z may still be decimal
     const Lattice lattice = search.found();
     EXPECT_DOUBLE_EQ(lattice.scale.x, 1e-9);
     EXPECT_DOUBLE_EQ(lattice.scale.y, 1e-6);
@@ -114,7 +114,7 @@ TEST(Lattice, BoxesOfAnySizeFitIntoIntegers) {
 
 TEST(Lattice, FilesOfOneLatticeShareItThoughTheirScalesAndOffsetsDiffer) {
     const PositionBox box{glm::dvec3(500'000), glm::dvec3(501'000)};
-    const double foot = 0.3048 / 256;  // no decimals hold its multiples
+    const double foot = 0.3048 / 256;  // its multiples are no decimal fractions
     const std::array same = {Lattice{glm::dvec3(4 * foot), glm::dvec3(500'000)},
                              Lattice{glm::dvec3(foot), glm::dvec3(500'000 + 1e5 * foot)}};
     const auto common = common_lattice(same, box);

@@ -23,7 +23,7 @@ Result<std::span<const std::byte>> BufferedInput::peek(size_t bytes) {
         const auto room = std::span(buffer_).subspan(last_);
         const auto wanted = static_cast<size_t>(std::min<uint64_t>(room.size(), end_ - next_));
         LUCARNE_ASSIGN(const size_t got, file_->read_some(next_, room.first(wanted)));
-        if (got < wanted) end_ = next_ + got;  // the file shrank while we read it
+        if (got < wanted) end_ = next_ + got;  // the file shrank while it was being read
         next_ += got;
         last_ += got;
     }
@@ -56,7 +56,7 @@ Result<std::optional<std::string_view>> BufferedInput::line(char terminator) {
         if (bytes.empty()) return std::nullopt;
         const auto* text = reinterpret_cast<const char*>(bytes.data());
         const auto* end = static_cast<const char*>(std::memchr(text, terminator, bytes.size()));
-        if (!end && bytes.size() >= wanted) continue;  // nothing says yet that the range ends here
+        if (!end && bytes.size() >= wanted) continue;  // the range may go on: read more
         const size_t length = end ? static_cast<size_t>(end - text) : bytes.size();
         skip(length + (end ? 1 : 0));
         open_line_ = !end;

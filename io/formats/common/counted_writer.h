@@ -12,8 +12,8 @@
 
 namespace lucarne::io {
 
-/// A file of a text header, which says how many records follow, and of records of one size. Whoever extends
-/// it packs the records.
+/// Writes a file that consists of a text header, which states the number of records, and of records of one
+/// size. A derived class packs the records.
 class CountedWriter : public PointWriter {
  public:
     Result<void> write(std::span<const std::byte> records) final {
@@ -40,18 +40,18 @@ class CountedWriter : public PointWriter {
             decimals_[static_cast<size_t>(axis)] = text::Decimal::of(schema.scale[axis], schema.offset[axis]);
     }
 
-    /// One record of the schema as one of the file.
+    /// Packs one record of the schema into one record of the file.
     virtual void pack(const std::byte* record, std::byte* out) const = 0;
 
-    /// A scaled coordinate as the double nearest to the decimal fraction that it stands for, where it is one:
-    /// 35 * .01 is .35 and no .35000000000000003.
+    /// Returns a scaled coordinate. If scale and offset are decimal fractions, returns the double nearest to
+    /// the exact decimal: 35 * .01 gives .35 and not .35000000000000003.
     double scaled_coordinate(int axis, const std::byte* record) const {
         const auto integer = load<int32_t>(record + 4 * axis);
         const auto& decimal = decimals_[static_cast<size_t>(axis)];
         return decimal ? decimal->value(integer) : integer * schema_.scale[axis] + schema_.offset[axis];
     }
 
-    /// Room for the count at the end of a header that is being made; it is filled in by finish().
+    /// Leaves room for the count at the end of an unfinished header. finish() fills it in.
     void leave_room_for_count(std::string& header) {
         constexpr int kDigits = 20;  // of the largest 64-bit count
         count_offsets_.push_back(header.size());

@@ -9,11 +9,11 @@
 // Scaled integers as the decimal fractions that they stand for.
 namespace lucarne::io::text {
 
-/// integer * scale + offset, exactly, where scale and offset are decimal fractions: 63600176 * 0.01 is
-/// 636001.76 and no 636001.7600000001.
+/// Computes integer * scale + offset exactly, where scale and offset are decimal fractions: 63600176 * 0.01
+/// is 636001.76 and not 636001.7600000001.
 class Decimal {
  public:
-    /// Empty where they have more than 12 digits behind the point, or the sums more than 18 in all.
+    /// Empty if scale or offset has more than 12 decimals, or if a result could have more than 18 digits.
     static std::optional<Decimal> of(double scale, double offset) {
         constexpr int kMostDigits = 12;
         constexpr double kMost = 1e18;
@@ -22,7 +22,7 @@ class Decimal {
             const double step = std::nearbyint(scale * power), start = std::nearbyint(offset * power);
             if (!(std::abs(step) * 0x1p31 + std::abs(start) < kMost && std::abs(start) < 0x1p53))
                 return std::nullopt;
-            // Whole numbers and powers of ten are exact: so is what these fractions are rounded to.
+            // Whole numbers and powers of ten are exact, so the two quotients are rounded correctly.
             if (step == 0 || step / power != scale || start / power != offset) continue;
             decimal.step_ = static_cast<int64_t>(step);
             decimal.start_ = static_cast<int64_t>(start);
@@ -32,10 +32,10 @@ class Decimal {
         return std::nullopt;
     }
 
-    /// The double nearest to it: both numbers of the division are exact where the sum has at most 15 digits.
+    /// Returns the nearest double. If the sum has at most 15 digits, both numbers of the division are exact.
     double value(int32_t integer) const { return static_cast<double>(integer * step_ + start_) / power_; }
 
-    /// At most 24 characters. Returns where the text ends.
+    /// Writes at most 24 characters. Returns the end of the text.
     char* write(int32_t integer, char* to) const {
         const int64_t value = integer * step_ + start_;
         std::array<char, 24> text;
@@ -56,7 +56,7 @@ class Decimal {
     }
 
  private:
-    int digits_ = 0;  ///< behind the point
+    int digits_ = 0;  ///< after the decimal point
     int64_t step_ = 0, start_ = 0;
     double power_ = 1;  ///< 10^digits_
 };

@@ -11,20 +11,21 @@
 
 namespace lucarne::io {
 
-inline constexpr size_t kHeadBytes = 4096;  ///< of a file, by which its format is told
+inline constexpr size_t kHeadBytes = 4096;  ///< the first bytes of a file, which tell its format
 
-/// One scan file format. A new one is a file that exports such a function and a line in registry.cpp.
+/// One scan file format. To add a format, write a file that exports such a function, and a line in
+/// registry.cpp.
 struct Format {
     std::string_view name;  ///< "LAS"
-    /// ".las", lower case: what `create` is chosen by; what a file is that nothing else tells.
+    /// ".las", lower case. `create` is chosen by it; so is the format of a file whose content tells nothing.
     std::string_view extension;
     bool (*recognises)(std::string_view head);  ///< by the first bytes of the file (up to kHeadBytes)
     Result<std::unique_ptr<PointSource>> (*open)(std::shared_ptr<const ByteSource> file,
                                                  const ReadOptions& options);
-    /// Null for a format that is only read.
+    /// Null if the format can only be read.
     Result<std::unique_ptr<PointWriter>> (*create)(const std::filesystem::path& path, const Schema& schema,
                                                    const ScanInfo& info, const WriteOptions& options);
-    /// Its files may begin with anything: where no other format is recognised the extension is enough.
+    /// The files may begin with anything, so the extension is enough if no other format is recognised.
     bool by_name = false;
 };
 
@@ -35,35 +36,35 @@ const Format& e57_format();
 const Format& pcd_format();
 const Format& ptx_format();
 const Format& obj_format();
-const Format& text_format();  ///< XYZ, PTS and the like
+const Format& text_format();  ///< XYZ, PTS and similar
 const Format& txt_format();
 const Format& csv_format();
 
-/// A batch holds at most this many bytes of records, however wide they are.
+/// A batch holds at most this many bytes of records, however large a record is.
 inline constexpr size_t kLargestBatch = size_t{64} << 20;
 inline size_t batch_limit(const Schema& schema, size_t most) {
     return std::min(most, std::max<size_t>(1, kLargestBatch / schema.stride));
 }
 
-/// Coordinates that can be computed with: finite, and far enough from overflow that squares and differences
-/// stay finite. (NaN compares false.)
+/// Returns whether one can compute with a coordinate: it is finite, and so far from overflow that squares and
+/// differences stay finite. (NaN compares false.)
 inline bool usable(double coordinate) {
     return coordinate <= 1e30 && coordinate >= -1e30;
 }
 
-/// The first whole line of a file's first bytes that is neither blank nor a comment behind #; empty where
+/// Returns the first whole line of a file's first bytes that is neither blank nor a comment (#); empty if
 /// there is none.
 std::string_view first_statement(std::string_view head);
 
-/// Sets the unit: the user's word, else what the file states; metres where neither states one.
+/// Sets the unit: the user's choice, otherwise what the file states, otherwise metres.
 void set_unit(ScanInfo& info, const ReadOptions& options, std::optional<double> stated);
 
-/// The path's extension with its dot.
+/// Returns the path's extension in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// `name` in printable UTF-8, at most 64 bytes, never empty.
+/// Returns `name` in printable UTF-8: at most 64 bytes, never empty.
 std::string printable(std::string_view name);
-/// The same, made different from every attribute of the schema.
+/// Returns the same, changed so that it differs from the name of every attribute of the schema.
 std::string unique_name(const Schema& schema, std::string_view name);
 
 }  // namespace lucarne::io

@@ -9,15 +9,15 @@ constexpr bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// The decimal number at `at`, whose text ends at `end` or (without one) is followed by some other character.
-/// Returns where it ends; nullptr where it has an exponent, too many digits, or is none, which takes
-/// parse_number. Exact: up to 2^53 a whole number and powers of ten up to 10^22 are doubles, so that one
-/// division rounds correctly (Clinger, "How to Read Floating Point Numbers Accurately", 1990).
+/// Parses the decimal number at `at`. Its text ends at `end`, or without `end` at any character that does not
+/// belong to a number. Returns its end. Returns nullptr if it has an exponent or too many digits or is no
+/// number; use parse_number then. Exact: whole numbers up to 2^53 and powers of ten up to 10^22 are doubles,
+/// so that one division rounds correctly (Clinger, "How to Read Floating Point Numbers Accurately", 1990).
 inline const char* plain_number(const char* at, double& value, const char* end = nullptr) {
     constexpr std::array<double, 23> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                 1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    constexpr int kMostDigits = 18;  // that fit 64 bits
+    constexpr int kMostDigits = 18;  // fit 64 bits
     const auto is = [&](char c) { return at != end && *at == c; };
     const bool negative = is('-');
     at += negative || is('+');

@@ -9,9 +9,10 @@
 
 namespace lucarne::io {
 
-/// Calls `take` with the bytes of some of the records, `length` bytes each, that stand from `begin` on in a
-/// file. `indices` ascend. Records near each other are read at once, up to 256 KiB; those further apart each
-/// on its own, so that a file of any size costs no more than its picked points do.
+/// Reads some records of `length` bytes each from a file and calls `take` with the bytes of each. The records
+/// begin at `begin`; `indices` must ascend. Records near each other are read at once, up to 256 KiB; records
+/// further apart are read one by one. The cost therefore depends on the picked points, not on the size of the
+/// file.
 template <class Take>
 Result<void> for_picked(const ByteSource& file, uint64_t begin, size_t length,
                         std::span<const uint64_t> indices, const Take& take) {

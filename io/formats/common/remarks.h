@@ -6,8 +6,8 @@
 
 #include "io/points.h"
 
-// What Lucarne's own comments in a text header say: "lucarne station ID X Y Z", "lucarne color_bits N",
-// "lucarne metres_per_unit M".
+// Lucarne's own comments in a text header: "lucarne station ID X Y Z", "lucarne color_bits N", "lucarne
+// metres_per_unit M".
 namespace lucarne::io {
 
 struct Remarks {
@@ -15,10 +15,10 @@ struct Remarks {
     std::optional<uint32_t> color_bits;
     std::optional<double> metres_per_unit;
 };
-/// Comments of others are passed over. `file` names the file in errors: a comment of ours that makes no
-/// sense.
+/// Reads these comments and skips all others. Errors: a comment of Lucarne that is malformed; `file` names
+/// the file in the error.
 Result<Remarks> remarks_of(const std::string& file, const std::vector<std::string>& comments);
-/// The lines that say the same of `info`, each behind `prefix` ("comment ").
+/// Returns the lines with these comments for `info`, each after `prefix` ("comment ").
 std::string remark_lines(const ScanInfo& info, std::string_view prefix);
 
 }  // namespace lucarne::io

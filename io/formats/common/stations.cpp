@@ -21,7 +21,7 @@ Result<std::vector<Station>> stations_from_json(const std::string& file, std::st
     if (text.size() > 256 * kMostStations) return wrong("are too many");
     const auto json = nlohmann::json::parse(text, nullptr, false);
     if (!json.is_object() || !json.contains("stations") || !json["stations"].is_array())
-        return wrong("are no JSON object with a list of stations");
+        return wrong("are not a JSON object with a list of stations");
     if (json["stations"].size() > kMostStations) return wrong("are too many");
     std::vector<Station> stations;
     for (const auto& entry : json["stations"]) {

@@ -11,21 +11,21 @@
 
 #include "io/formats/common/number.h"
 
-// Words and numbers of text formats, whatever the locale.
+// Words and numbers of text formats, independent of the locale.
 namespace lucarne::io {
 
 constexpr bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/// The text behind the mark that some editors put before UTF-8.
+/// Returns the text after the byte order mark that some editors put before UTF-8.
 constexpr std::string_view without_mark(std::string_view text) {
     constexpr std::string_view kMark = "\xef\xbb\xbf";
     if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
     return text;
 }
 
-/// Cuts the next word off the front of `line`; empty when there is none.
+/// Removes the next word from the front of `line` and returns it; empty if there is none.
 inline std::string_view next_word(std::string_view& line) {
     size_t first = 0;
     while (first < line.size() && is_blank(line[first])) ++first;
@@ -36,7 +36,7 @@ inline std::string_view next_word(std::string_view& line) {
     return word;
 }
 
-/// ASCII letters in lower case.
+/// Converts ASCII letters to lower case.
 inline std::string lower(std::string_view text) {
     std::string result(text);
     for (char& c : result)
@@ -44,7 +44,7 @@ inline std::string lower(std::string_view text) {
     return result;
 }
 
-/// Whether two words differ only in the case of ASCII letters.
+/// Returns whether two words are equal apart from the case of ASCII letters.
 constexpr bool same_letters(std::string_view a, std::string_view b) {
     const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
     if (a.size() != b.size()) return false;
@@ -53,8 +53,8 @@ constexpr bool same_letters(std::string_view a, std::string_view b) {
     return true;
 }
 
-/// The index of what is called `name`; where nothing is, of the first whose name differs only in case; else
-/// the size.
+/// Returns the index of the entry called `name`. If there is none, returns the first whose name differs only
+/// in case, otherwise the size of the list.
 template <class List, class NameOf>
 size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
     size_t alike = list.size();
@@ -66,16 +66,17 @@ size_t index_of_name(const List& list, std::string_view name, NameOf name_of) {
     return alike;
 }
 
-/// Whether the float nearest to a decimal is that nearest to the double nearest to it: not where that double
-/// lies halfway between two floats, nor below their normal ones, which have other midpoints.
+/// Returns whether `value`, the double nearest to some decimal, surely rounds to the float nearest to that
+/// decimal. Returns false if `value` lies halfway between two floats, because the decimal may lie on either
+/// side, and for values below the normal floats, whose midpoints are elsewhere.
 inline bool rounds_to_float(double value) {
     constexpr uint64_t kHalfway = uint64_t{1} << 28, kBelowFloat = (uint64_t{1} << 29) - 1;
     if (std::abs(value) < std::numeric_limits<float>::min()) return value == 0;
     return (std::bit_cast<uint64_t>(value) & kBelowFloat) != kHalfway;
 }
 
-/// The whole word as a number; integers only without fraction and in range. "nan" and "inf" are numbers; what
-/// is too large for a float becomes infinite, what is too small zero.
+/// Parses the whole word as a number. An integer must have no fraction and be in range. "nan" and "inf" are
+/// numbers. A value too large for a float becomes infinite, one too small becomes zero.
 template <class T>
 std::optional<T> parse_number(std::string_view word) {
     if constexpr (std::is_floating_point_v<T>) {

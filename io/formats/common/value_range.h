@@ -2,25 +2,25 @@
 
 #include "io/points.h"
 
-// From where to where intensities go that have no 16 bits of their own.
+// The range of intensities that are not stored as 16-bit numbers already.
 namespace lucarne::io {
 
 struct Range {
     double low = 0, high = 1;  ///< low < high
 };
 
-/// What the format of a scan, or its file, says; empty where neither does.
+/// Returns the range that a scan's file or its format states; empty if neither does.
 std::optional<Range> stated_range(const FormatNotes& notes);
 
-/// Looks at the values of an attribute of one component.
+/// Finds the range of an attribute of one component from its values.
 class RangeSearch {
  public:
     RangeSearch(const Schema& schema, const Attribute& attribute)
         : stride_(schema.stride), attribute_(attribute) {}
 
-    /// True: further values may change what is found.
+    /// Looks at more records. Returns true if further values may still change the result.
     bool add(std::span<const std::byte> records);
-    /// Empty where whole numbers of 16 bits are all there is, or no two values differ.
+    /// Returns the range; empty if all values are whole numbers of 16 bits, or if no two values differ.
     std::optional<Range> found() const;
 
  private:

@@ -51,7 +51,7 @@ bool is_copc(const ByteSource& file) {
     std::array<std::byte, las::header_bytes(4) + 54> bytes{};
     if (file.size() < bytes.size() || !file.read_at(0, bytes)) return false;
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const size_t record = las::header_bytes(4);  // the info record comes first, at this place
+    const size_t record = las::header_bytes(4);  // the info record must come first, at this place
     return text.starts_with("LASF") && load<uint8_t>(&bytes[25]) == 4 &&
            load<uint16_t>(&bytes[94]) == record &&
            text.substr(record + 2, kUser.size() + 1) == std::string_view("copc\0", 5) &&
@@ -78,7 +78,7 @@ Result<File> File::open(std::shared_ptr<const ByteSource> input) {
     LUCARNE_ASSIGN(file.scan_, las_format().open(input, {}));
     std::vector<laz::ChunkPlace> chunks;
     for (const Node& node : file.nodes_) chunks.push_back(node.chunk);
-    header.vlrs.clear();  // scan_ has what is to be kept of them
+    header.vlrs.clear();  // scan_ keeps a copy of those that are needed
     file.points_ = {input, std::move(header), std::move(compression), std::move(chunks)};
     LUCARNE_TRY(file.read_box());
     return file;

@@ -15,53 +15,54 @@ inline constexpr std::string_view kUser = "copc";
 inline constexpr uint16_t kInfoRecord = 1, kHierarchyRecord = 1000;
 inline constexpr size_t kInfoBytes = 160, kEntryBytes = 32;
 inline constexpr uint32_t kMostLevel = 31;
-/// A node is held whole when it is drawn: no larger ones are read, bytes of its records.
+/// A node's records are held in memory as a whole when it is drawn, so larger nodes are rejected. In bytes.
 inline constexpr uint64_t kMostNodeBytes = uint64_t{256} << 20;
 
-/// What the info record says: the root cube, and where the root page of the hierarchy is.
+/// The content of the info record: the root cube, and the place of the hierarchy's root page.
 struct Info {
     glm::dvec3 centre{0.0};
     double half_size = 0;
-    double spacing = 0;  ///< of the root's points, half of it a level further down
+    double spacing = 0;  ///< of the root's points; halves with every level
     uint64_t page_offset = 0, page_bytes = 0;
     double gps_low = 0, gps_high = 0;
 
-    static Info load(std::span<const std::byte> data);  ///< kInfoBytes
+    static Info load(std::span<const std::byte> data);  ///< takes kInfoBytes
     std::vector<std::byte> bytes() const;
 };
 
-/// A node's place: its cell among 2^level per axis of the root cube.
+/// A node's key: its level and its cell, among 2^level cells per axis of the root cube.
 struct VoxelKey {
     uint32_t level = 0, x = 0, y = 0, z = 0;
 };
 
 struct Node {
     VoxelKey key;
-    laz::ChunkPlace chunk;  ///< of no points: none
+    laz::ChunkPlace chunk;  ///< zero if the node has no points
 };
 
-/// Whether the file begins as COPC must; false where it cannot be read.
+/// Returns whether the file begins like a COPC file; false if it cannot be read.
 bool is_copc(const ByteSource& file);
 
-/// Whether a file of this name is to be COPC: it ends in .copc.laz.
+/// Returns whether a file of this name should be COPC: it ends in .copc.laz.
 bool is_name(const std::filesystem::path& path);
 
-/// A COPC file with its hierarchy in memory; the points are read node by node. Thread-safe.
+/// A COPC file with its hierarchy in memory. The points are read node by node. Thread-safe.
 class File {
  public:
-    /// Reads all pages of the hierarchy. Memory is bounded by the file's size: pages and chunks must lie in
-    /// the file and must not overlap, so cycles end there. Errors: pages or chunks that do, keys outside the
-    /// root cube, more points than their bytes can hold, nodes over kMostNodeBytes, another sum of points
-    /// than the header's, and what makes it no LAZ that can be read.
+    /// Opens a file and reads all pages of the hierarchy. The file's size bounds the memory: pages and chunks
+    /// must lie in the file and must not overlap, which also excludes cycles. Errors: pages or chunks that
+    /// overlap or lie outside, keys outside the root cube, more points than their bytes can hold, nodes over
+    /// kMostNodeBytes, a sum of points that differs from the header's, and everything that makes the file
+    /// unreadable as LAZ.
     static Result<File> open(std::shared_ptr<const ByteSource> input);
 
     const Info& info() const { return info_; }
-    const PointSource& scan() const { return *scan_; }      ///< the same points as LAZ
+    const PointSource& scan() const { return *scan_; }      ///< the same points, read as LAZ
     std::span<const Node> nodes() const { return nodes_; }  ///< in the order of the pages
-    /// The box of the points as the header has it, cut to the root cube.
+    /// The bounding box of the points: the header's box, cut to the root cube.
     glm::dvec3 min() const { return min_; }
     glm::dvec3 max() const { return max_; }
-    /// The points of a node in the records of scan(). Errors: unreadable, damaged.
+    /// Reads the points of a node as records of scan(). Errors: unreadable, damaged.
     Result<std::vector<std::byte>> read(size_t node) const;
 
  private:

@@ -9,7 +9,7 @@ namespace lucarne::io::copc {
 namespace {
 
 constexpr uint64_t kBlockBytes = kEntryBytes << 15;  ///< of a page, read at a time
-constexpr int32_t kPage = -1;                        ///< as a number of points: the entry is another page's
+constexpr int32_t kPage = -1;                        ///< in place of a number of points: refers to a page
 
 auto refused(const ByteSource& file, const std::string& why) {
     return rejected(file.path().string(), why, "convert it, which reads it as the LAZ that it is");
@@ -31,14 +31,15 @@ class HierarchyReader {
         uint64_t offset, bytes;
     };
 
-    /// No two pages share a byte, so there is no cycle, and all entries together are no more than the file.
+    /// Adds a page. No two pages may share a byte, so there is no cycle, and all entries together are no
+    /// larger than the file.
     Result<void> add_page(uint64_t offset, uint64_t bytes) {
         if (offset > file_.size() || bytes > file_.size() - offset)
             return rejected(file_.path().string(),
                             "ends before a page of its hierarchy does; only convert can read it, as LAZ");
         if (bytes == 0 || bytes % kEntryBytes != 0)
             return refused(file_, "has a hierarchy page that is no list of entries");
-        const auto after = ends_.upper_bound(offset);  // the first page that ends behind our begin
+        const auto after = ends_.upper_bound(offset);  // the first page that ends after this one begins
         if (after != ends_.end() && after->second < offset + bytes)
             return refused(file_, "has hierarchy pages that overlap");
         ends_.emplace(offset + bytes, offset);
@@ -114,7 +115,7 @@ class HierarchyReader {
     const ByteSource& file_;
     const las::Header& header_;
     std::vector<Page> pages_;
-    std::map<uint64_t, uint64_t> ends_;  ///< of the pages, and their begins
+    std::map<uint64_t, uint64_t> ends_;  ///< end of each page, with its begin
     std::vector<Node> nodes_;
 };
 

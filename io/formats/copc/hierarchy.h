@@ -4,7 +4,7 @@
 
 namespace lucarne::io::copc {
 
-/// All nodes of a file, the root page's first. Errors: see File::open.
+/// Reads all nodes of a file, those of the root page first. Errors: see File::open.
 Result<std::vector<Node>> read_hierarchy(const ByteSource& file, const las::Header& header, const Info& info);
 
 }  // namespace lucarne::io::copc

@@ -11,18 +11,18 @@ namespace lucarne::io::copc {
 namespace {
 
 constexpr uint64_t kEvlrHeader = 60;
-/// A page holds so many levels of a subtree: at most 585 nodes and 4096 references, 150 KB.
+/// Number of levels of a subtree that a page holds: at most 585 nodes and 4096 references, 150 KB.
 constexpr uint32_t kPageLevels = 4;
 
-/// The hierarchy as pages: the root's first, each with the nodes of its levels and references to the pages
-/// below.
+/// The hierarchy as pages, the root's first. Each page holds the nodes of its levels and references to the
+/// pages below.
 class Pages {
  public:
-    /// Parents before their children.
+    /// Adds a node. Parents must come before their children.
     void add(const Node& node) { pages_[page_of(node.key)].nodes.push_back(node); }
 
     uint64_t root_bytes() const { return bytes_of(pages_[0]); }
-    /// One behind the other, the first at `offset` of the file.
+    /// Returns the pages one after the other. The first begins at `offset` of the file.
     std::vector<std::byte> bytes(uint64_t offset) const {
         std::vector<uint64_t> offsets;
         for (const Page& page : pages_) {

@@ -5,16 +5,17 @@
 
 namespace lucarne::io::copc {
 
-/// Writes a COPC file node by node. It appears when `finish` succeeds.
+/// Writes a COPC file node by node. The file appears when `finish` succeeds.
 class NodeWriter {
  public:
-    /// The records of `schema` as in create_scan's LAZ. Of `cube` the centre, half size and spacing count.
+    /// Creates a writer for records of `schema`, which are converted as in create_scan's LAZ. Only the
+    /// centre, half size and spacing of `cube` are used.
     static Result<std::unique_ptr<NodeWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                                       const ScanInfo& info, const WriteOptions& options,
                                                       const Info& cube);
 
-    /// Parents before their children, each once; a node may be without points. Errors: nodes over
-    /// kMostNodeBytes; the disk.
+    /// Writes a node. Parents must come before their children, and each node only once; a node may have no
+    /// points. Errors: nodes over kMostNodeBytes; the disk.
     Result<void> write(const VoxelKey& key, std::span<const std::byte> records);
     Result<void> finish();
 

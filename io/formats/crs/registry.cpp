@@ -17,12 +17,12 @@ using Object = std::unique_ptr<PJ, Close>;
 
 Context make_context() {
     Context context(proj_context_create());
-    proj_log_level(context.get(), PJ_LOG_NONE);  // what goes wrong is said by who asks
+    proj_log_level(context.get(), PJ_LOG_NONE);  // errors are reported by the caller
     proj_context_set_enable_network(context.get(), 0);
     return context;
 }
 
-/// Metres per unit of an axis; empty for angles and axes that are not there.
+/// Returns the metres per unit of an axis; empty for angles and for axes that do not exist.
 std::optional<double> axis_metres(const Context& context, const PJ* system, int axis) {
     const Object cs(proj_crs_get_coordinate_system(context.get(), system));
     double metres = 0;
@@ -33,7 +33,7 @@ std::optional<double> axis_metres(const Context& context, const PJ* system, int 
     return metres > 1e-9 && metres < 1e9 ? std::optional(metres) : std::nullopt;
 }
 
-/// Adds the units of a system and its parts; these do not nest deeply.
+/// Adds the units of a system and of its parts. Systems do not nest deeply.
 void add_units(const Context& context, const PJ* system, SystemUnits& units, int depth = 0) {
     if (!system || depth > 4) return;
     switch (proj_get_type(system)) {

@@ -22,8 +22,8 @@ std::string_view word_before(std::string_view text, size_t bracket) {
     return text.substr(first, bracket - first);
 }
 
-/// Calls visit(words, place) for every bracket with the keywords around it, its own last, until that is true
-/// or brackets stand too deep.
+/// Calls visit(words, place) for every bracket, where `words` are the keywords around it, its own last. Stops
+/// when `visit` returns true or the brackets nest too deeply.
 template <class Visit>
 void walk(std::string_view text, const Visit& visit) {
     std::array<std::string_view, kMostDepth> stack{};
@@ -43,7 +43,7 @@ void walk(std::string_view text, const Visit& visit) {
     }
 }
 
-/// The quoted text that follows the bracket at `at`, which is moved behind it.
+/// Returns the quoted text after the bracket at `at`, and moves `at` behind it.
 std::optional<std::string_view> quoted(std::string_view text, size_t& at) {
     const size_t open = text.find_first_not_of(" \t\r\n", at + 1);
     if (open == text.npos || text[open] != '"') return std::nullopt;
@@ -86,7 +86,7 @@ SystemUnits wkt_units(std::string_view wkt) {
     SystemUnits units;
     walk(wkt, [&](std::span<const std::string_view> words, size_t bracket) {
         const size_t depth = words.size();
-        // The base of a projected system is geographic as well, and counts for nothing.
+        // The base of a projected system is geographic as well, but does not count.
         const bool outer = depth == 1 || (depth == 2 && is_compound(words[0]));
         if (outer && is_geographic(words.back())) units.degrees = true;
         // UNIT["name",factor,...] or LENGTHUNIT of the system itself or of one of its axes.
@@ -125,14 +125,15 @@ CoordinateSystem wkt_system(std::string_view wkt) {
         }
         return false;
     });
-    // The horizontal part of a system that is not compound is that of its base, in degrees.
+    // Without a compound system, the "horizontal part" is the base of a projected system, which is in
+    // degrees.
     if (system.epsg == 0 && compound) system.epsg = horizontal;
     return system;
 }
 
 std::optional<std::string> utm_wkt(uint32_t epsg) {
     struct Datum {
-        uint32_t first, zone, zones;  ///< code of the first zone, its number, how many
+        uint32_t first, zone, zones;  ///< code of the first zone, its number, number of zones
         char half;                    ///< N or S of the equator
         const char *name, *datum, *spheroid;
         uint32_t code, datum_code;

@@ -1,4 +1,4 @@
-// From columns of bits to records.
+// Converts columns of bits to records.
 #include <algorithm>
 #include <cmath>
 
@@ -10,10 +10,11 @@ namespace {
 
 using Column = std::array<double, kBlockRecords>;
 
-/// Calls `use(at)`, where at(i) is the i-th value of a column in the type that its field has.
+/// Calls `use(at)`, where at(i) returns the i-th value of a column in the type of its field.
 template <class Use>
 void with_values(const Field& field, const uint64_t* raw, const Use& use) {
-    // Modulo 2^64: sums beyond the range of a field are odd values and no undefined ones.
+    // Computed modulo 2^64: a sum beyond the range of the field gives an odd value, but no undefined
+    // behaviour.
     const auto whole = [raw, minimum = static_cast<uint64_t>(field.minimum)](size_t i) {
         return static_cast<int64_t>(minimum + raw[i]);
     };
@@ -39,7 +40,7 @@ void to_doubles(const Field& field, const uint64_t* raw, size_t count, Column& o
     });
 }
 
-/// The records of a block that stay, and where they go.
+/// The records of a block that are kept, and where they are written.
 struct Kept {
     std::array<uint16_t, kBlockRecords> rows;
     size_t count = 0;
@@ -79,7 +80,7 @@ void scatter_whole(const Kept& kept, const Target& target, const At& at) {
     }
 }
 
-/// Real numbers: as they are, or for integers rounded and clamped.
+/// Stores real numbers: as they are, or rounded and clamped for integer types.
 template <class At>
 void scatter_real(const Kept& kept, const Target& target, const At& at) {
     if (target.type == ScalarType::f32) return scatter<float>(kept, target.offset, at);
@@ -102,14 +103,14 @@ void write_target(const Scan& scan, const RecordReader& reader, const Target& ta
     });
 }
 
-/// The three coordinates of every record in the file's frame.
+/// Computes the three coordinates of every record in the file's frame.
 void find_positions(const Scan& scan, const ScanLayout& layout, const RecordReader& reader, size_t count,
                     std::array<Column, 3>& p) {
     for (size_t axis = 0; axis < 3; ++axis)
         to_doubles(scan.fields[layout.coordinates[axis]], reader.column(layout.coordinates[axis]), count,
                    p[axis]);
     if (layout.spherical)
-        for (size_t i = 0; i < count; ++i) {  // ASTM E2807-11, 8.4.3: the elevation counts from the horizon
+        for (size_t i = 0; i < count; ++i) {  // ASTM E2807-11, 8.4.3: elevation is 0 at the horizon
             const double range = p[0][i], azimuth = p[1][i], elevation = p[2][i];
             p[0][i] = range * std::cos(elevation) * std::cos(azimuth);
             p[1][i] = range * std::cos(elevation) * std::sin(azimuth);
@@ -160,7 +161,7 @@ void write_normals(const Schema& schema, const Scan& scan, const ScanLayout& lay
     }
 }
 
-/// Colours that the file says are none look like those of scans without.
+/// Colours that the file marks as invalid look like those of scans without colours.
 void write_colors(const Scan& scan, const ScanLayout& layout, const RecordReader& reader, const Kept& kept) {
     for (const Target& target : layout.color) write_target(scan, reader, target, kept);
     if (!layout.color_invalid) return;

@@ -13,7 +13,7 @@
 namespace lucarne::io::e57 {
 namespace {
 
-constexpr size_t kLongestText = 1024;  ///< of a name or GUID that is kept
+constexpr size_t kLongestText = 1024;  ///< of a name or GUID
 constexpr size_t kLongestCrs = 65536;
 
 std::string_view trimmed(std::string_view text) {
@@ -27,7 +27,7 @@ std::string text_of(pugi::xml_node node, size_t longest = kLongestText) {
     return std::string(trimmed(std::string_view(node.text().get())).substr(0, longest));
 }
 
-/// A number in an element's text or an attribute; an empty one is `missing`.
+/// Parses the number in an element's text or an attribute. An empty text gives `missing`.
 template <class T>
 Result<T> number(const std::string& file, std::string_view text, T missing, const std::string& what) {
     text = trimmed(text);
@@ -106,7 +106,7 @@ Result<Pose> parse_pose(const std::string& file, pugi::xml_node node) {
     const double squared = w * w + x * x + y * y + z * z;
     pose.unturned = !(squared > 1e-12 && squared < 1e12);
     if (pose.unturned) return pose;  // it cannot be normalised; some writers leave it 0
-    // The matrix of a quaternion (Shoemake 1985), columns first; 2 / |q|^2 normalises it.
+    // The matrix of a quaternion (Shoemake 1985), column by column; 2 / |q|^2 normalises it.
     const double s = 2.0 / squared;
     pose.rotation = {{1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)},
                      {s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)},
@@ -116,7 +116,7 @@ Result<Pose> parse_pose(const std::string& file, pugi::xml_node node) {
 
 Result<void> parse_limits(const std::string& file, pugi::xml_node node, Scan& scan) {
     const pugi::xml_node intensity = node.child("intensityLimits"), color = node.child("colorLimits");
-    // A limit may be a ScaledInteger: its text is the integer.
+    // A limit may be a ScaledInteger. Its text is then the unscaled integer.
     const auto limit = [&](pugi::xml_node parent, const char* name) -> Result<double> {
         const pugi::xml_node element = parent.child(name);
         LUCARNE_ASSIGN(const double value, number(file, element.text().get(), 0.0, std::string(name)));
@@ -138,7 +138,7 @@ Result<void> parse_limits(const std::string& file, pugi::xml_node node, Scan& sc
     return {};
 }
 
-/// None where a side is missing or no number: nothing follows from it.
+/// Returns nothing if a side is missing or is no number: the box is not needed.
 std::optional<std::array<glm::dvec3, 2>> parse_bounds(pugi::xml_node node) {
     std::array<glm::dvec3, 2> bounds{};
     for (int axis = 0; axis < 3; ++axis)
@@ -183,7 +183,7 @@ Result<Scan> parse_scan(const std::string& file, pugi::xml_node node) {
     return scan;
 }
 
-/// Images are listed, never read: what is odd about one is not worth an error.
+/// Images are listed but never read, so a malformed image is not an error.
 Image parse_image(pugi::xml_node node) {
     Image image;
     image.name = text_of(node.child("name"));
@@ -254,7 +254,7 @@ std::optional<std::array<size_t, 3>> Scan::find(const std::array<std::string_vie
 Result<Document> parse_document(const std::string& file, std::string& xml) {
     if (std::count(xml.begin(), xml.end(), '<') > static_cast<std::ptrdiff_t>(kMostTags))
         return rejected(file, fmt::format("has more than {} tags in its XML section", kMostTags));
-    // pugixml knows no entities but the five of XML itself and leaves document types out: nothing expands.
+    // pugixml knows only the five entities of XML itself and skips document types, so nothing can expand.
     pugi::xml_document tree;
     const auto parsed =
         tree.load_buffer_inplace(xml.data(), xml.size(), pugi::parse_default, pugi::encoding_utf8);

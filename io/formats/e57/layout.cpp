@@ -16,10 +16,10 @@ constexpr Names kSpherical = {"sphericalRange", "sphericalAzimuth", "sphericalEl
 constexpr Names kColor = {"colorRed", "colorGreen", "colorBlue"};
 constexpr Names kNormal = {"nor:normalX", "nor:normalY", "nor:normalZ"};
 
-/// Which values an attribute has to hold, over all scans.
+/// The range of the values that an attribute must hold, over all scans.
 struct Range {
     bool any_float = false, any_double = false;
-    int64_t low = 0, high = 0;  ///< of the integers; both 0 where there are none
+    int64_t low = 0, high = 0;  ///< of the integer fields; both 0 if there are none
 
     void include(const Field& field) {
         switch (field.kind) {
@@ -39,7 +39,7 @@ struct Range {
         const auto at = [&](int64_t whole) {
             return std::abs(static_cast<double>(whole) * field.scale + field.offset);
         };
-        // A float that keeps neighbouring values apart is enough.
+        // A float is enough if it keeps neighbouring values apart.
         const double largest = std::max(at(field.minimum), at(field.largest()));
         (largest * 0x1p-22 < std::abs(field.scale) ? any_float : any_double) = true;
     }
@@ -61,8 +61,8 @@ struct Range {
     }
 };
 
-/// How a scan has its colours: as `type` with `bits` of full intensity (ScanInfo::color_bits), unless `bits`
-/// says that they have to be spread.
+/// How a scan stores its colours: as `type` with `bits` of full intensity (ScanInfo::color_bits). Without
+/// `bits` they must be rescaled.
 struct ColorKind {
     ScalarType type = ScalarType::u16;
     std::optional<uint32_t> bits;
@@ -83,7 +83,8 @@ ColorKind color_kind(const Scan& scan, const std::array<size_t, 3>& fields) {
     kind.type = range.type();
     const double likely = !whole ? 1.0 : declared > 255 && declared < 65536 ? 65535.0 : 255.0;
     kind.white = scan.color_maximum && *scan.color_maximum > 0 ? *scan.color_maximum : likely;
-    // Limits are sometimes those of the data: what takes all of 8 or 16 bits means all of them.
+    // Some files state the limits of the data instead. Limits that need all of 8 or 16 bits therefore count
+    // as the full range.
     if (kind.white > 127 && kind.white <= 255)
         kind.white = 255, kind.bits = 8;
     else if (kind.white > 32767 && kind.white <= 65535)
@@ -131,7 +132,7 @@ class LayoutMaker {
         return {};
     }
 
-    /// As the scans store them where all do it alike and none is moved.
+    /// Positions keep the scans' own type if all scans use the same one and no pose moves any of them.
     void position() {
         Schema& schema = layout_.schema;
         for (size_t n = 0; n < filled_.size(); ++n) {
@@ -175,7 +176,7 @@ class LayoutMaker {
         layout_.schema.add(std::string(names::color), alike ? common->type : ScalarType::u16, 3);
         layout_.color_bits = alike ? *common->bits : 16;
         const Attribute& attribute = layout_.schema.attributes.back();
-        // Where there is no colour an albedo of .5 (as for scans without any), which is .735 in sRGB.
+        // Points without colour get an albedo of .5, which is .735 in sRGB, as in scans without colours.
         const double white = color_white(layout_.color_bits);
         const double missing = attribute.type == ScalarType::u8 || attribute.type == ScalarType::u16
                                    ? std::round(.735 * white)
@@ -209,7 +210,7 @@ class LayoutMaker {
             layout_.schema.add(std::string(names::normal), doubles ? ScalarType::f64 : ScalarType::f32, 3);
     }
 
-    /// Whether a field has become part of what schemas have a place for.
+    /// Returns whether a field has become part of the position, the colour or the normal.
     bool is_taken(size_t scan, size_t field) const {
         const ScanLayout& layout = layout_.scans[scan];
         const auto in = [&](const std::array<size_t, 3>& group) {
@@ -236,7 +237,7 @@ class LayoutMaker {
                 place->second.include(field);
             }
         for (const auto& [name, range] : found) {
-            // These names promise a shape or a meaning that a field of this file does not have.
+            // These names imply a shape or a meaning that a field of this file does not have.
             bool reserved = false;
             for (const auto known : {names::color, names::normal, names::normal_oct, names::area, names::scan,
                                      names::point_source_id})

@@ -3,28 +3,28 @@
 #include "io/formats/e57/packets.h"
 #include "io/points.h"
 
-// Scans with fields of their own become one stream of records with one schema.
+// Combines scans with different fields into one stream of records with one schema.
 namespace lucarne::io::e57 {
 
-/// An attribute of one component: the field's value, as it is or times `gain`.
+/// An attribute of one component: the value of a field, or the value times `gain`.
 struct Target {
-    std::optional<size_t> field;  ///< none where this scan has no such field: `missing`
+    std::optional<size_t> field;  ///< none if this scan has no such field; `missing` is used then
     ScalarType type = ScalarType::f64;
     uint32_t offset = 0;  ///< in the record
     double gain = 1.0;
     double missing = 0.0;
 };
 
-/// How the records of one scan become ours.
+/// How the records of one scan become records of the schema.
 struct ScanLayout {
     std::array<size_t, 3> coordinates{};  ///< x, y, z or range, azimuth, elevation
     bool spherical = false;
-    std::optional<size_t> invalid;        ///< the field that says which points are invalid
-    std::optional<size_t> color_invalid;  ///< the field that says which colours are
-    std::optional<Pose> pose;             ///< only one that moves
+    std::optional<size_t> invalid;        ///< field that marks invalid points
+    std::optional<size_t> color_invalid;  ///< field that marks invalid colours
+    std::optional<Pose> pose;             ///< none if it moves nothing
     std::vector<Target> targets;
-    std::array<Target, 3> color;                  ///< the three of colour, unless the schema has none
-    std::optional<std::array<size_t, 3>> normal;  ///< turned by the pose
+    std::array<Target, 3> color;                  ///< the three colour components, if the schema has colour
+    std::optional<std::array<size_t, 3>> normal;  ///< the three fields of the normal; the pose turns it
     uint16_t station = 0;
 };
 
@@ -34,12 +34,12 @@ struct Layout {
     std::vector<ScanLayout> scans;
 };
 
-/// The union of the scans' fields; scans without records count for nothing. Errors: scans without
-/// coordinates, more than kMostFields attributes in all.
+/// Returns a layout with the union of the scans' fields. Scans without records are ignored. Errors: scans
+/// without coordinates, more than kMostFields attributes in all.
 Result<Layout> make_layout(const std::string& file, const Document& document);
 
-/// Writes the block that `reader` holds behind one another at `to`, without the points that are invalid or
-/// not finite.
+/// Converts the block that `reader` holds to consecutive records at `to`. Leaves out points that are invalid
+/// or not finite.
 struct Converted {
     size_t kept = 0, invalid = 0;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kSectionHeaderBytes = 32;
 constexpr uint8_t kVectorSection = 1;
-constexpr size_t kSlack = 16;  ///< that unpack_bits may touch behind the last byte
+constexpr size_t kSlack = 16;  ///< bytes that unpack_bits may read after the last one
 enum PacketType : uint8_t { kIndexPacket = 0, kDataPacket = 1, kEmptyPacket = 2 };
 constexpr size_t kPacketHeaderBytes = 4, kDataHeaderBytes = 6;
 
@@ -36,7 +36,7 @@ Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, cons
     if (header.bytes - section.begin < kSectionHeaderBytes) return wrong("reaches beyond its end");
     PageInput input(file, section.begin, section.begin + kSectionHeaderBytes);
     LUCARNE_ASSIGN(const auto raw, input.peek(kSectionHeaderBytes));
-    if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is none");
+    if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is not one");
     auto bytes = load<uint64_t>(&raw[8]);
     const auto data = load<uint64_t>(&raw[16]);
     if (salvage) bytes = std::min(bytes, header.bytes - section.begin);
@@ -90,7 +90,7 @@ uint64_t RecordReader::Stream::values() const {
     return (8 * uint64_t{held} - next_bit) / bits;
 }
 
-/// How many records, up to `most`, every stream has values for.
+/// Returns the number of records, up to `most`, for which every stream has values.
 uint64_t RecordReader::complete(uint64_t most) const {
     for (const Stream& stream : streams_)
         if (stream.wanted) most = std::min(most, stream.values());
@@ -116,7 +116,7 @@ Result<size_t> RecordReader::read(size_t most) {
         return rejected(input_.path(), fmt::format("ends early: {} points of a scan are missing", left_));
     for (size_t i = 0; i < streams_.size(); ++i) {
         Stream& stream = streams_[i];
-        if (!stream.wanted) continue;  // zeros from the beginning
+        if (!stream.wanted) continue;  // its column has been zero from the beginning
         unpack_bits(stream.bytes.data(), stream.next_bit, stream.bits, count, &columns_[i * kBlockRecords]);
         stream.next_bit += count * stream.bits;
     }
@@ -124,7 +124,7 @@ Result<size_t> RecordReader::read(size_t most) {
     return count;
 }
 
-/// Takes the next packet with points; passes over others, and stops at the end of the section.
+/// Reads the next packet with points. Skips other packets, and stops at the end of the section.
 Result<void> RecordReader::next_data_packet() {
     while (input_.left() >= kPacketHeaderBytes) {
         LUCARNE_ASSIGN(const auto head, input_.peek(kPacketHeaderBytes));
@@ -161,7 +161,7 @@ Result<void> RecordReader::take_data_packet(std::span<const std::byte> packet) {
 
 void RecordReader::append(Stream& stream, std::span<const std::byte> bytes) {
     const auto done = static_cast<size_t>(stream.next_bit / 8);
-    if (done > stream.held / 2) {  // moved no more often than read, however far the stream is ahead
+    if (done > stream.held / 2) {  // moves no more bytes than are read, however far the stream is ahead
         std::memmove(stream.bytes.data(), stream.bytes.data() + done, stream.held - done);
         stream.held -= done;
         stream.next_bit -= 8 * uint64_t{done};

@@ -3,39 +3,41 @@
 #include "io/formats/e57/document.h"
 #include "io/formats/e57/pages.h"
 
-// Binary sections (ASTM E2807-11, 9.3-9.5): the points of a scan are bytestreams, one a field, cut into
-// packets. A stream's values are bits on end, lowest first; they run on from packet to packet.
+// Binary sections (ASTM E2807-11, 9.3-9.5). The points of a scan are bytestreams, one per field, cut into
+// packets. The values of a stream are packed bit by bit, lowest bit first, and continue from packet to
+// packet.
 namespace lucarne::io::e57 {
 
-/// Where the packets of one scan lie, logical.
+/// Where the packets of one scan lie, as logical offsets.
 struct Section {
     uint64_t begin = 0;  ///< of the section with its header
     uint64_t data = 0, end = 0;
 };
 
-/// Reads and checks the header of a scan's section. Errors: no such section, one that reaches beyond the
-/// file, more records than its bits can hold (kMostConstant where they take none). With `salvage` what lies
-/// beyond the file is left out.
+/// Reads and checks the header of a scan's section. Errors: no such section, a section that reaches beyond
+/// the file, more records than its bits can hold (kMostConstant if a record takes no bits). With `salvage`
+/// the part beyond the file is left out.
 Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, const FileHeader& header,
                              const Scan& scan, bool salvage = false);
 
-/// What one record takes; 0 where all fields are constants.
+/// Returns the bits that one record takes; 0 if all fields are constants.
 uint64_t record_bits(const Scan& scan);
 inline constexpr uint64_t kMostConstant = uint64_t{1} << 16;
 inline constexpr size_t kBlockRecords = 1024;
 
-/// The records of a scan, block by block, a column a field. Holds one buffer of the file and what of the
-/// streams runs ahead of others, at most kMostAhead bytes.
+/// Reads the records of a scan block by block, as one column per field. Holds one buffer of the file, and the
+/// part of some streams that runs ahead of others: at most kMostAhead bytes.
 class RecordReader {
  public:
     RecordReader(const std::shared_ptr<const ByteSource>& file, const Section& section, const Scan& scan,
                  bool salvage = false);
 
-    /// Reads up to min(most, kBlockRecords) records; 0 at the end of the scan. Errors: damaged packets, and
-    /// packets that end before the records do; with `salvage` the scan ends before them.
+    /// Reads up to min(most, kBlockRecords) records. Returns their number, 0 at the end of the scan. Errors:
+    /// damaged packets, and packets that end before the records do. With `salvage` the scan ends before these
+    /// instead.
     Result<size_t> read(size_t most);
-    uint64_t left() const { return left_; }  ///< records that were not read
-    /// The values of a field in the last block: the bits of a float, or an integer less its minimum.
+    uint64_t left() const { return left_; }  ///< records that have not been read yet
+    /// Returns a field's values in the last block: the bits of a float, or an integer less its minimum.
     const uint64_t* column(size_t field) const { return &columns_[field * kBlockRecords]; }
 
     static constexpr size_t kMostAhead = size_t{64} << 20;
@@ -43,9 +45,9 @@ class RecordReader {
  private:
     struct Stream {
         unsigned bits = 0;
-        bool wanted = false;           ///< text is passed over
-        std::vector<std::byte> bytes;  ///< with kSlack bytes behind them
-        size_t held = 0;               ///< bytes that are of the stream
+        bool wanted = false;           ///< false for text, which is skipped
+        std::vector<std::byte> bytes;  ///< followed by kSlack spare bytes
+        size_t held = 0;               ///< bytes that belong to the stream
         uint64_t next_bit = 0;         ///< in `bytes`
         uint64_t values() const;
     };
@@ -63,8 +65,8 @@ class RecordReader {
     std::vector<uint64_t> columns_;
 };
 
-/// Unpacks `count` values of `bits` bits (0 to 64) from bit `first` on. Up to 8 bytes behind the last are
-/// touched.
+/// Unpacks `count` values of `bits` bits (0 to 64), starting at bit `first`. May read up to 8 bytes after the
+/// last value.
 void unpack_bits(const std::byte* bytes, uint64_t first, unsigned bits, size_t count, uint64_t* values);
 
 }  // namespace lucarne::io::e57

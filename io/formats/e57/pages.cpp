@@ -72,7 +72,7 @@ PageInput::PageInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uin
       skip_first_(static_cast<size_t>(begin % kPageContent)) {
     if (end <= begin) return;
     const uint64_t pages = (end + kPageContent - 1) / kPageContent - next_page_;
-    // Behind what is left over from before there is room for as many pages as are read at once.
+    // There is room for the pages that are read at once, after the unconsumed bytes of earlier pages.
     buffer_.resize(static_cast<size_t>(std::min(pages, kPagesAtOnce) * kPageBytes) +
                    (pages > kPagesAtOnce ? kLargestPeek : 0));
 }
@@ -89,7 +89,8 @@ Result<std::span<const std::byte>> PageInput::peek(size_t bytes) {
     return std::span<const std::byte>(buffer_).subspan(first_, usable_bytes);
 }
 
-/// Reads as many pages as fit behind what is left, verifies them and closes the gaps of their checksums.
+/// Reads as many pages as fit after the unconsumed bytes, verifies them and closes the gaps left by their
+/// checksums.
 Result<void> PageInput::fill() {
     std::memmove(buffer_.data(), buffer_.data() + first_, last_ - first_);
     last_ -= first_;

@@ -7,9 +7,9 @@
 
 #include "io/files/file.h"
 
-// The lowest layer of E57 (ASTM E2807-11, 6.2-6.3): pages of 1024 bytes, of which the last four are the
-// CRC-32C of the others, highest byte first. Physical offsets count all bytes, logical ones those without
-// checksums.
+// The lowest layer of E57 (ASTM E2807-11, 6.2-6.3): pages of 1024 bytes. The last four bytes of a page are
+// the CRC-32C of the others, highest byte first. Physical offsets count all bytes; logical offsets leave out
+// the checksums.
 namespace lucarne::io::e57 {
 
 inline constexpr uint64_t kPageBytes = 1024, kPageContent = 1020;
@@ -20,25 +20,27 @@ struct FileHeader {
     uint64_t xml_begin = 0, xml_end = 0;  ///< logical
 };
 
-/// Errors: versions and page sizes other than the standard's, a file shorter than its header says or than its
-/// XML. With `salvage` the file may be shorter than its header says, as long as its XML is there.
+/// Reads and checks the file header. Errors: versions and page sizes other than the standard's, a file
+/// shorter than its header says or than its XML. With `salvage` the file may be shorter than its header says,
+/// as long as its XML is there.
 Result<FileHeader> read_file_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
-/// The logical offset of `physical`, which names `what` in errors: inside the file, not inside a checksum.
+/// Converts a physical offset to a logical one. The offset must be inside the file and not inside a checksum.
+/// `what` names it in errors.
 Result<uint64_t> logical_offset(const std::string& file, const FileHeader& header, uint64_t physical,
                                 const std::string& what);
 
-/// Sequential reading of the logical range [begin, end), every page's checksum verified. Nothing else than
-/// one buffer is held, no larger than the range needs.
+/// Reads the logical range [begin, end) sequentially and verifies the checksum of every page. Holds one
+/// buffer, no larger than the range needs.
 class PageInput {
  public:
     /// With `salvage` the range ends before the first page whose checksum is wrong.
     PageInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end, bool salvage = false);
 
-    /// At least `bytes` (at most kLargestPeek); fewer left in the range is an error. Valid until the next
-    /// call.
+    /// Returns at least `bytes` bytes (at most kLargestPeek). Fewer left in the range is an error. Valid
+    /// until the next call.
     Result<std::span<const std::byte>> peek(size_t bytes);
-    void skip(size_t bytes) { first_ += bytes; }  ///< of what `peek` returned
+    void skip(size_t bytes) { first_ += bytes; }  ///< part of what `peek` returned
     uint64_t position() const { return next_page_ * kPageContent + skip_first_ - (last_ - first_); }
     uint64_t left() const { return position() < end_ ? end_ - position() : 0; }
     std::string path() const { return file_->path().string(); }
@@ -53,7 +55,7 @@ class PageInput {
     bool salvage_;
     size_t skip_first_;  ///< bytes of the first page that lie before the range
     std::vector<std::byte> buffer_;
-    size_t first_ = 0, last_ = 0;  ///< what is buffered and not consumed
+    size_t first_ = 0, last_ = 0;  ///< the buffered bytes that are not consumed yet
 };
 
 }  // namespace lucarne::io::e57

@@ -13,11 +13,11 @@
 namespace lucarne::io {
 namespace {
 
-/// Everything that is read of a file but its points.
+/// Everything that is read of a file except its points.
 struct E57 {
     std::shared_ptr<const ByteSource> file;
     e57::Document document;
-    std::vector<e57::Section> sections;  ///< of each scan; empty for one without records
+    std::vector<e57::Section> sections;  ///< one per scan; empty for a scan without records
     e57::Layout layout;
     bool salvage = false;
     Losses losses;
@@ -87,7 +87,7 @@ class E57Source final : public PointSource {
                                    counted(document.images.size(), "images"));
         info_.file_bytes = e57_.file->size();
         info_.modified = e57_.file->modified();
-        set_unit(info_, options, 1.0);  // the format is in metres
+        set_unit(info_, options, 1.0);  // E57 is in metres by definition
         info_.color_bits = e57_.layout.color_bits;
         info_.losses = e57_.losses;
         add_loss(info_.losses, "images, which are listed but not read", document.images.size());
@@ -100,7 +100,8 @@ class E57Source final : public PointSource {
             for (const e57::Field& field : scan.fields)
                 if (field.kind == e57::Field::Kind::text)
                     add_loss(info_.losses, "texts of points, which are not read", scan.records);
-            // Spherical coordinates count from the scanner; others without a pose may count from anywhere.
+            // Spherical coordinates are relative to the scanner. Others without a pose may be relative to
+            // anything.
             if (scan.records > 0 && (scan.pose || e57_.layout.scans[i].spherical))
                 info_.stations.push_back(
                     {e57_.layout.scans[i].station, scan.pose ? scan.pose->translation : glm::dvec3(0.0)});
@@ -110,7 +111,7 @@ class E57Source final : public PointSource {
         info_.notes.intensity_limits = intensity_limits();
     }
 
-    /// That hold for the intensities of all scans.
+    /// Returns limits that hold for the intensities of all scans.
     std::optional<IntensityLimits> intensity_limits() const {
         std::optional<IntensityLimits> all;
         for (const e57::Scan& scan : e57_.document.scans) {
@@ -145,7 +146,7 @@ Result<std::string> read_xml(const std::shared_ptr<const ByteSource>& file, cons
     return xml;
 }
 
-/// No two scans share bytes, nor do they with the XML section.
+/// Checks that no two scans share bytes with each other or with the XML section.
 Result<void> check_apart(const std::string& name, const e57::FileHeader& header, const E57& e57) {
     std::vector<std::pair<uint64_t, uint64_t>> ranges = {{header.xml_begin, header.xml_end}};
     for (size_t i = 0; i < e57.sections.size(); ++i)
@@ -157,8 +158,8 @@ Result<void> check_apart(const std::string& name, const e57::FileHeader& header,
     return {};
 }
 
-/// The scan's section. `constant` counts the points of all scans that take no bytes: kMostConstant in a file,
-/// or one a byte of it.
+/// Reads the section of a scan. `constant` counts the points of all scans that take no bytes: a file may have
+/// kMostConstant of them, or one per byte of the file.
 Result<e57::Section> checked_section(const std::shared_ptr<const ByteSource>& file,
                                      const e57::FileHeader& header, const e57::Scan& scan, bool salvage,
                                      uint64_t& constant) {
@@ -167,7 +168,7 @@ Result<e57::Section> checked_section(const std::shared_ptr<const ByteSource>& fi
     const uint64_t most = std::max(e57::kMostConstant, file->size());
     if (constant + scan.records > most)
         return rejected(file->path().string(),
-                        fmt::format("promises {} points that take no bytes, at most {} can be",
+                        fmt::format("promises {} points that take no bytes, at most {} are accepted",
                                     constant + scan.records, most));
     constant += scan.records;
     return section;
@@ -178,19 +179,19 @@ void warn_of_poses(const std::string& name, const e57::Document& document) {
         std::count_if(document.scans.begin(), document.scans.end(),
                       [](const e57::Scan& scan) { return scan.pose && scan.pose->unturned; });
     if (unturned > 0)
-        log::warn("{}: the rotation of {} of its {} scans has no length, it is left out", name, unturned,
+        log::warn("{}: the rotation of {} of its {} scans has no length and is ignored", name, unturned,
                   document.scans.size());
 }
 
-/// E57 is metres by definition, whatever its coordinate system counts in.
+/// E57 is in metres by definition, whatever unit its coordinate system uses.
 void warn_of_unit(const std::string& name, const e57::Document& document) {
     const SystemUnits units = wkt_units(document.coordinate_system);
     if (units.degrees)
-        log::warn("{}: its coordinate system counts in degrees, but E57 in metres; metres are taken", name);
+        log::warn("{}: its coordinate system is in degrees, but E57 is in metres; metres are assumed", name);
     else if (units.horizontal.value_or(1.0) != 1.0)
         log::warn(
-            "{}: its coordinate system counts in units of {:.9g} m, but E57 in metres; metres are taken, say "
-            "--unit if it does not",
+            "{}: its coordinate system is in units of {:.9g} m, but E57 is in metres; metres are assumed; "
+            "use --unit if that is wrong",
             name, *units.horizontal);
 }
 
@@ -219,7 +220,7 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
     LUCARNE_TRY(check_apart(name, header, e57));
     LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
-        log::warn("{}: there are more bytes than its header promises, they are left out", name);
+        log::warn("{}: it has more bytes than its header promises; they are ignored", name);
     e57.file = std::move(file);
     return std::make_unique<E57Source>(std::move(e57), options);
 }

@@ -12,19 +12,19 @@
 namespace lucarne::io::las {
 namespace {
 
-constexpr uint16_t kWktBit = 1 << 4;  // of the global encoding
+constexpr uint16_t kWktBit = 1 << 4;  // in the global encoding
 constexpr uint16_t kModelTypeKey = 1024, kLinearUnitsKey = 3076, kLinearUnitSizeKey = 3077;
 constexpr uint16_t kProjectedKey = 3072, kGeodeticKey = 2048, kGeoTextsRecord = 34737;
 constexpr uint16_t kVerticalKey = 4096, kVerticalUnitsKey = 4099;
 constexpr std::array<uint16_t, 3> kCitations = {3073, 1026, 2049};
-constexpr double kSameHeights = 1e-5;  ///< feet of the USA and of the world are the same for heights
+constexpr double kSameHeights = 1e-5;  ///< the two feet count as the same for heights
 constexpr uint16_t kModelGeographic = 2, kUserDefined = 32767;
 
 bool plausible(double metres) {
     return metres > 1e-9 && metres < 1e9;
 }
 
-/// The usual units of length are known by heart (EPSG registry, "units of measure").
+/// Returns the usual units of length without the registry (EPSG registry, "units of measure").
 std::optional<double> unit_of_code(uint16_t code) {
     if (code == 9001) return 1.0;
     if (code == 9002) return 0.3048;           // international foot
@@ -34,11 +34,11 @@ std::optional<double> unit_of_code(uint16_t code) {
 
 struct GeoKeys {
     std::optional<uint16_t> model, unit, projected, geodetic, vertical, vertical_unit;
-    std::array<std::string, 3> names;  ///< of the projected system, of all, of the geodetic system
+    std::array<std::string, 3> names;  ///< of the projected system, of the whole, of the geodetic system
     std::optional<double> unit_size;
 };
 
-/// A citation: `count` characters at `first` of the record, up to its bar.
+/// Returns a citation: up to `count` characters of the record from `first` on, up to its bar.
 std::string citation(std::string_view texts, size_t first, size_t count) {
     std::string name;
     for (const char c : texts.substr(std::min(first, texts.size()), count)) {
@@ -75,14 +75,14 @@ std::span<const std::byte> doubles_of(const Header& header) {
     return doubles ? std::span<const std::byte>(doubles->data) : std::span<const std::byte>{};
 }
 
-/// Whether the text counts, or the GeoTIFF keys beside it.
+/// Returns whether the well-known text is in effect, and not the GeoTIFF keys.
 bool text_counts(const Header& header) {
     return (header.global_encoding & kWktBit) || !header.find(kProjectionUser, kGeoKeyRecord);
 }
 
 Units units_of_text(std::string_view text) {
     if (text.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == text.npos)
-        return {};  // nothing is stated
+        return {};  // the text states no system
     Units units{wkt_units(text), {}};
     if (units.known()) return units;
     if (const auto understood = understood_units(text)) static_cast<SystemUnits&>(units) = *understood;
@@ -90,8 +90,8 @@ Units units_of_text(std::string_view text) {
     return units;
 }
 
-/// The unit of heights: its own key, else that of their system. Codes below 4096 and user-defined ones tell
-/// nothing.
+/// Returns the unit of heights: from its own key, otherwise from the heights' system. Codes below 4096 and
+/// user-defined systems give none.
 std::optional<double> vertical_unit(const GeoKeys& keys) {
     if (keys.vertical_unit) return unit_of_code(*keys.vertical_unit);
     if (!keys.vertical || *keys.vertical == kUserDefined) return std::nullopt;
@@ -109,13 +109,13 @@ Units units_of_keys(const GeoKeys& keys) {
     } else if (keys.unit && *keys.unit != kUserDefined) {
         units.horizontal = unit_of_code(*keys.unit);
         if (!units.horizontal)
-            units.unknown = fmt::format("EPSG:{} is no unit of length known here", *keys.unit);
+            units.unknown = fmt::format("EPSG:{} is not a known unit of length", *keys.unit);
     } else if (keys.projected && *keys.projected != kUserDefined) {
         const auto system = registered_units(*keys.projected);
         if (system) units.horizontal = system->horizontal;
         if (!units.vertical && system) units.vertical = system->vertical;
         if (!units.horizontal)
-            units.unknown = fmt::format("EPSG:{} is no projection known here", *keys.projected);
+            units.unknown = fmt::format("EPSG:{} is not a known projection", *keys.projected);
     } else {
         units.unknown = "its GeoTIFF keys have none";
     }
@@ -135,15 +135,14 @@ void warn_of_units(const std::string& file, const Units& units, bool given) {
     if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
     if (!units.unknown.empty() && !given)
         log::warn(
-            "{}: its coordinate system does not tell its unit ({}); metres are assumed, say --unit if it is "
-            "another",
+            "{}: its coordinate system does not state its unit ({}); metres are assumed; "
+            "use --unit if that is wrong",
             file, units.unknown);
     if (units.vertical && units.horizontal &&
         std::abs(*units.vertical / *units.horizontal - 1) > kSameHeights)
         log::warn(
-            "{}: its heights are in units of {:.9g} m, its other coordinates of {:.9g} m; all are taken for "
-            "the latter, "
-            "heights are not converted",
+            "{}: its heights are in units of {:.9g} m, its other coordinates in units of {:.9g} m; "
+            "the latter is used for all, and heights are not converted",
             file, *units.vertical, *units.horizontal);
 }
 
@@ -182,7 +181,7 @@ void set_projection(Header& header, std::vector<Vlr> records) {
 }
 
 Vlr wkt_record(const std::string& wkt) {
-    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // with its final zero
+    const auto bytes = std::as_bytes(std::span(wkt.c_str(), wkt.size() + 1));  // including the final zero
     return {std::string(kProjectionUser), kWktRecord, "coordinate system", bytes.size() > 0xffff,
             std::vector<std::byte>(bytes.begin(), bytes.end())};
 }
@@ -198,9 +197,8 @@ void prefer_wkt(const std::string& file, Header& header) {
         header.vlrs.push_back(wkt_record(*wkt));
     else
         log::warn(
-            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read nothing but well-known "
-            "text do "
-            "not see it",
+            "{}: keeps its coordinate system ({}) as GeoTIFF keys; tools that read only well-known text "
+            "do not see it",
             file, system.epsg ? fmt::format("EPSG:{}", system.epsg) : system.name);
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kOriginalPrefix = "original_", kOriginalDescription = "lucarne: of its own type";
 constexpr size_t kTypeAt = 2, kOptionsAt = 3, kNameAt = 4, kNameBytes = 32, kScaleAt = 112, kOffsetAt = 136,
                  kDescriptionAt = 160;
-constexpr uint8_t kRangeBits = 6, kScaleBit = 8, kOffsetBit = 16;  ///< of the options: which numbers count
+constexpr uint8_t kRangeBits = 6, kScaleBit = 8, kOffsetBit = 16;  ///< option bits: which entries are valid
 
 bool is_float(ScalarType t) {
     return t == ScalarType::f32 || t == ScalarType::f64;
@@ -24,23 +24,25 @@ bool is_float(ScalarType t) {
 bool is_signed(ScalarType t) {
     return t == ScalarType::i8 || t == ScalarType::i16 || t == ScalarType::i32 || t == ScalarType::i64;
 }
-/// Whether `wide` can hold every value of `narrow`.
+/// Returns whether `wide` can hold every value of `narrow`.
 bool holds(ScalarType wide, ScalarType narrow) {
     if (wide == narrow) return true;
     const size_t w = scalar_bytes(wide), n = scalar_bytes(narrow);
-    if (is_float(wide)) return w > n;  // f64 holds f32 and integers up to 32 bits, f32 those up to 16
+    if (is_float(wide))
+        return w > n;  // f64 holds f32 and integers up to 32 bits; f32 holds integers up to
+                       // 16 bits
     if (is_float(narrow)) return false;
     return w > n && (is_signed(wide) || !is_signed(narrow));
 }
 
-/// Whether a field of a point format takes the attribute as it is.
+/// Returns whether a field of the point format can hold the attribute exactly.
 bool has_field(const Schema& fields, const Attribute& attribute) {
     const Attribute* field = fields.find(attribute.name);
     return field && field->components == attribute.components && holds(field->type, attribute.type);
 }
 
-/// Names that LAS readers give the fields of a record, in any case, and those that we give them. Colour is
-/// three to others and one to us.
+/// Returns whether a name is used for a field of the record, by LAS readers (in any case) or by Lucarne.
+/// Other readers have three fields for colour, Lucarne has one.
 bool is_reserved(const Schema& fields, std::string_view name) {
     constexpr std::array<std::string_view, 24> kDimensions = {"x",
                                                               "y",
@@ -73,7 +75,7 @@ bool is_reserved(const Schema& fields, std::string_view name) {
            (name != names::color && fields.find(name));
 }
 
-/// Where in a record's data the `nth` entry of that name stands.
+/// Returns where the `nth` entry with that name begins in a record's data.
 std::optional<size_t> find_entry(const Vlr& record, std::string_view name, size_t nth) {
     const auto entries = entries_of(record.data);
     for (size_t at = 0; at < entries.size(); at += kDescriptorBytes)
@@ -81,8 +83,7 @@ std::optional<size_t> find_entry(const Vlr& record, std::string_view name, size_
     return std::nullopt;
 }
 
-/// The source's own entry of the extra bytes record for an attribute of this name, the `nth` of that name;
-/// empty where it had none.
+/// Returns the source's own entry for the `nth` attribute of this name; empty if it had none.
 std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribute, std::string_view name,
                                       size_t nth = 1) {
     const auto at = kept ? find_entry(*kept, name, nth) : std::nullopt;
@@ -93,7 +94,7 @@ std::span<const std::byte> kept_entry(const Vlr* kept, const Attribute& attribut
     return same ? entry : std::span<const std::byte>();
 }
 
-/// The scales and offsets of an entry's components; undocumented bytes have none.
+/// Returns the scales and offsets of an entry's components; undocumented bytes have none.
 constexpr std::array<double, 6> kPlain = {1, 1, 1, 0, 0, 0};
 std::array<double, 6> scaling(std::span<const std::byte> entry) {
     auto all = kPlain;
@@ -107,7 +108,7 @@ std::array<double, 6> scaling(std::span<const std::byte> entry) {
     return all;
 }
 
-/// Whether equal numbers are equal values by both entries, and one of them can stand for both.
+/// Returns whether equal numbers mean equal values in both entries, so that one entry can stand for both.
 bool alike(std::span<const std::byte> a, std::span<const std::byte> b) {
     const auto values = scaling(a);
     return values == scaling(b) && (a[kTypeAt] == b[kTypeAt] || values == kPlain);
@@ -116,11 +117,11 @@ bool alike(std::span<const std::byte> a, std::span<const std::byte> b) {
 void clear_options(Vlr& record, size_t entry, uint8_t bits) {
     std::byte& options = record.data[entry + kOptionsAt];
     if (record.data[entry + kTypeAt] != std::byte{0})
-        options &= static_cast<std::byte>(~bits);  // else a size
+        options &= static_cast<std::byte>(~bits);  // otherwise they are a size
 }
 
-/// That of an attribute whose name was numbered when it was read, as another or a field had it before: see
-/// unique_name.
+/// Returns the entry of an attribute whose name got a number when it was read, because another attribute or a
+/// field already had the name: see unique_name.
 std::span<const std::byte> numbered_entry(const Vlr* kept, const Attribute& attribute, const Schema& fields) {
     const size_t bar = attribute.name.rfind('_');
     if (bar == std::string::npos) return {};
@@ -130,15 +131,15 @@ std::span<const std::byte> numbered_entry(const Vlr* kept, const Attribute& attr
     return kept_entry(kept, attribute, name, fields.find(name) ? *number - 1 : *number);
 }
 
-/// `name` in at most so many bytes, with all of its last character or nothing of it.
+/// Returns at most `most` bytes of `name`, without a partial character at the end.
 std::string cut_to(const std::string& name, size_t most) {
     size_t end = std::min(name.size(), most);
     while (end < name.size() && end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
     return name.substr(0, end);
 }
 
-/// As much of `name` as an entry holds, numbered where another entry has it: laspy opens no file with two
-/// alike, nor with half a character at their end.
+/// Returns as much of `name` as an entry holds, with a number if another entry has the same. laspy opens no
+/// file in which two names are equal or end in a partial character.
 std::string entry_name(const std::string& name, std::set<std::string>& taken) {
     std::string own = cut_to(name, kNameBytes);
     for (size_t number = 2; !taken.insert(own).second; ++number) {
@@ -148,7 +149,7 @@ std::string entry_name(const std::string& name, std::set<std::string>& taken) {
     return own;
 }
 
-/// The entry of the extra bytes record for an attribute: the source's own where it had one.
+/// Returns the entry of the extra bytes record for an attribute: the source's own entry if it had one.
 Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attribute& attribute,
                                              const Schema& fields, const Vlr* kept,
                                              std::set<std::string>& taken) {
@@ -168,7 +169,7 @@ Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attr
         store(&entry[kTypeAt],
               static_cast<uint8_t>(static_cast<unsigned>(attribute.type) + 10 * (attribute.components - 1)));
     } else if (bytes <= 255) {
-        store(&entry[kOptionsAt], static_cast<uint8_t>(bytes));  // undocumented: its size instead of its type
+        store(&entry[kOptionsAt], static_cast<uint8_t>(bytes));  // undocumented: size in place of type
     } else {
         return failed(path,
                       fmt::format("LAS cannot hold the attribute {} of {} bytes", attribute.name, bytes),
@@ -179,7 +180,7 @@ Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attr
     return entry;
 }
 
-/// The record, made if it is not there yet.
+/// Returns the record, and creates it if it is missing.
 Vlr& extra_record(Header& header) {
     const auto found = std::find_if(header.vlrs.begin(), header.vlrs.end(),
                                     [](const Vlr& v) { return v.is(kSpecUser, kExtraBytesRecord); });
@@ -233,7 +234,7 @@ std::optional<Vlr> extras_record(const FormatNotes& notes) {
 
 std::vector<std::string> add_entries(Vlr& record, const Vlr& more) {
     std::vector<std::string> differing;
-    std::map<std::string, size_t> times;  // a name may come more than once in either
+    std::map<std::string, size_t> times;  // either record may hold a name more than once
     const auto entries = entries_of(more.data);
     for (size_t at = 0; at < entries.size(); at += kDescriptorBytes) {
         const auto entry = entries.subspan(at, kDescriptorBytes);

@@ -13,12 +13,12 @@ namespace lucarne::io::las {
 namespace {
 
 constexpr size_t kVlrHeader = 54, kEvlrHeader = 60;
-/// Compressed scans of over so many bytes as records do not shrink to less than 1 / kMostRatio; one flat
-/// raster repeated may, but it is small.
+/// Compressed scans whose records exceed kLargeScan bytes do not shrink to less than 1 / kMostRatio. A
+/// repeated flat raster may, but it is small.
 constexpr uint64_t kLargeScan = uint64_t{256} << 20, kMostRatio = 4096;
-constexpr uint64_t kRoomOfNoPoints = 1024;  ///< bytes that an empty chunk table does not need
+constexpr uint64_t kRoomOfNoPoints = 1024;  ///< an empty chunk table takes fewer bytes than this
 
-/// A fixed-width text field: up to its first NUL, in printable ASCII.
+/// Reads a text field of fixed width: up to its first NUL, in printable ASCII.
 std::string text_field(const std::byte* at, size_t width) {
     std::string text;
     for (size_t i = 0; i < width && at[i] != std::byte{0}; ++i) {
@@ -28,7 +28,7 @@ std::string text_field(const std::byte* at, size_t width) {
     return text;
 }
 
-/// Reads records of one kind from [at, end). Stops with a warning at the first that does not fit.
+/// Reads records of one kind from [at, end). Stops with a warning at the first record that does not fit.
 class RecordReader {
  public:
     RecordReader(const ByteSource& file, Header& header)
@@ -65,7 +65,7 @@ class RecordReader {
     }
     Result<void> keep(Vlr vlr, uint64_t at, uint64_t bytes) {
         if (vlr.is("copc", 1000))
-            return {};  // a hierarchy of nodes: for io/formats/copc/copc.h, page by page
+            return {};  // the COPC hierarchy: io/formats/copc/copc.h reads it page by page
         if (bytes > kMostRecordBytes - kept_) {
             log::warn("{}: the record {} {} of {} bytes is too large to be kept", file_.path().string(),
                       vlr.user_id, vlr.record_id, bytes);
@@ -122,7 +122,7 @@ Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
     if (h.minor >= 4) {
         raw.evlr_offset = load<uint64_t>(b + 235);
         raw.evlr_count = load<uint32_t>(b + 243);
-        // Some writers of 1.4 fill only the old 32-bit count.
+        // Some writers of 1.4 fill in only the old 32-bit count.
         if (const auto count = load<uint64_t>(b + 247); count != 0) h.points = count;
     }
     return h;
@@ -183,7 +183,7 @@ Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
         return rejected(file.path().string(),
                         fmt::format("is truncated: its header promises {}, {} {} there",
                                     counted(h.points, "points"), there, there == 1 ? "is" : "are"));
-    if (h.points == 0 && there > 0)  // a writer that was interrupted leaves such files
+    if (h.points == 0 && there > 0)  // an interrupted writer leaves such files
         log::warn("{}: its header promises no points, but there is room for {}", file.path().string(), there);
     return {};
 }

@@ -8,7 +8,7 @@
 namespace lucarne::io::las {
 namespace {
 
-// Offsets of the tail in a LAS record and in ours.
+// Offsets of the tail in a LAS record and in a record of the schema.
 constexpr size_t kLegacyTail = 20, kLegacyOutTail = 24;
 constexpr size_t kExtendedTail = 22, kExtendedOutTail = 26;
 
@@ -23,7 +23,7 @@ struct Legacy {  // point formats 0-3, LAS 1.4 R15 table 7
         std::memcpy(out + 14, fields, sizeof fields);
         std::memcpy(out + 20, in + 16, 4);  // scan angle rank, user data, point source id
     }
-    /// Returns the bits that did not fit.
+    /// Packs the bit fields. Returns the bits that did not fit.
     static unsigned pack(const std::byte* in, std::byte* out) {
         std::memcpy(out, in, 14);
         uint8_t f[6];
@@ -57,7 +57,7 @@ struct Extended {  // point formats 6-8, LAS 1.4 R15 table 16
     }
 };
 
-/// `tail_bytes` is a constant where the compiler is to unroll the copy.
+/// If `tail_bytes` is a constant, the compiler unrolls the copy.
 template <class Kind>
 void unpack_all(const std::byte* in, size_t in_stride, size_t count, std::byte* out, size_t out_stride,
                 size_t tail_bytes) {
@@ -93,7 +93,7 @@ void unpack_records(uint8_t point_format, size_t stride, const std::byte* in, si
     return unpack_all<Legacy>(in, stride, count, out, out_stride, tail);
 }
 
-/// One by one, without the wave packet between fields and extra bytes.
+/// Decodes record by record and leaves out the wave packet between the fields and the extra bytes.
 void decode_around_waves(const Header& header, const std::byte* in, size_t count, std::byte* out,
                          size_t out_stride) {
     const size_t fields = record_bytes(header.point_format), wave = header.wave_bytes;
@@ -129,7 +129,8 @@ void add_core(Schema& schema, bool extended) {
     schema.add(std::string(names::point_source_id), ScalarType::u16);
 }
 
-/// An extra holds what one of the first `fields` attributes only comes near to.
+/// Renames the field of this name among the first `fields` attributes: it only approximates an extra, which
+/// gets the name.
 void rename_field(Schema& schema, size_t fields, std::string_view name) {
     for (size_t i = 0; i < fields; ++i)
         if (schema.attributes[i].name == name)
@@ -143,7 +144,7 @@ void add_extra(Schema& schema, const Header& header) {
         const auto entries = entries_of(vlr->data);
         for (size_t at = 0; left > 0 && at < entries.size(); at += kDescriptorBytes) {
             const auto descriptor = entries.subspan(at, kDescriptorBytes);
-            if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // of no bytes
+            if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // no bytes
             const auto type = extra_type(descriptor);
             if (!type || type->components * scalar_bytes(type->type) > left) break;
             const ExtraName extra = name_of_extra(fields, descriptor);
@@ -162,13 +163,14 @@ std::span<const std::byte> entries_of(std::span<const std::byte> record) {
 }
 
 std::optional<ExtraType> extra_type(std::span<const std::byte> descriptor) {
-    // LAS 1.4 R15, table 24: 1-10 are scalars, 11-20 and 21-30 (deprecated) the same two and three times.
+    // LAS 1.4 R15, table 24: types 1-10 are scalars; 11-20 and 21-30 (deprecated) are the same with two and
+    // three components.
     constexpr std::array kTypes = {ScalarType::u8,  ScalarType::i8,  ScalarType::u16, ScalarType::i16,
                                    ScalarType::u32, ScalarType::i32, ScalarType::u64, ScalarType::i64,
                                    ScalarType::f32, ScalarType::f64};
     const auto type = std::to_integer<uint8_t>(descriptor[2]),
                options = std::to_integer<uint8_t>(descriptor[3]);
-    if (type == 0 && options > 0) return ExtraType{ScalarType::u8, options};  // undocumented, `options` bytes
+    if (type == 0 && options > 0) return ExtraType{ScalarType::u8, options};  // undocumented: `options` bytes
     if (type == 0 || type > 30) return std::nullopt;
     return ExtraType{kTypes[(type - 1u) % 10u], (type - 1u) / 10u + 1u};
 }

@@ -1,4 +1,4 @@
-// What is made of the LAS header in the notes of a scan: see header.h.
+// What is derived from the LAS header in the notes of a scan: see header.h.
 #include <fmt/format.h>
 
 #include "io/formats/common/format.h"

@@ -1,4 +1,4 @@
-// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see las_header.h.
+// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see header.h.
 #include "io/formats/las/laz/reader.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class LasReader final : public PointReader {
         }
         return batch.count;
     }
-    uint64_t dropped() const override { return 0; }  // integers with a finite scale and offset
+    uint64_t dropped() const override { return 0; }  // integers are finite, and so are scale and offset
 
  private:
     BufferedInput input_;
@@ -54,8 +54,8 @@ class LasReader final : public PointReader {
     uint64_t left_;
 };
 
-/// Hands on what a reader gives and warns, once a source, of points that are far outside what the header
-/// states. It looks at every eighth point: what is damaged comes in longer runs.
+/// Passes on the points of a reader, and warns once per source about points far outside the box that the
+/// header states. It checks every eighth point, because damage comes in longer runs.
 class WatchedReader final : public PointReader {
  public:
     WatchedReader(std::unique_ptr<PointReader> reader, const std::string& name,
@@ -70,8 +70,7 @@ class WatchedReader final : public PointReader {
         const glm::dvec3 at = position_of(schema_, &batch.bytes[*found * schema_.stride]);
         log::warn(
             "{}: has points far outside the bounds that its header states, one at {:.6g} {:.6g} {:.6g}; it "
-            "may be "
-            "damaged",
+            "may be damaged",
             name_, at.x, at.y, at.z);
         return got;
     }
@@ -106,8 +105,7 @@ class LasSource final : public PointSource {
         if (header_.find("lascompatible", 22204))
             log::warn(
                 "{}: is LAS 1.4 stored as an older version (LASzip's compatibility mode); classes, returns "
-                "and "
-                "angles that do not fit that stand in extra bytes only",
+                "and angles that do not fit the older version are only in extra bytes",
                 name);
         info_.declared_points = header_.points;
         info_.file_bytes = file_->size();
@@ -117,7 +115,7 @@ class LasSource final : public PointSource {
         const auto system = las::coordinate_system(header_);
         auto unit = units.horizontal;
         if (!unit && (!system.name.empty() || system.epsg))
-            unit = 1.0;  // a system has a unit: the one that is assumed
+            unit = 1.0;  // a system has a unit: metres are assumed
         set_unit(info_, options, unit);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
@@ -128,7 +126,7 @@ class LasSource final : public PointSource {
         }
         const Attribute* color = schema_.find(names::color);
         if (color && color->type == ScalarType::u16 &&
-            color->components == 3) {  // extra bytes may have that name
+            color->components == 3) {  // extra bytes may have that name as well
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
         LasNotes kept = header_;
@@ -160,22 +158,23 @@ class LasSource final : public PointSource {
     }
 
  private:
-    /// Such a scale means what it says, but is hardly ever meant.
+    /// A negative scale is valid, but hardly ever intended.
     void warn_of_mirrors(const std::string& name) const {
         for (int axis = 0; axis < 3; ++axis)
             if (header_.scale[axis] < 0)
-                log::warn("{}: its scale for {} is negative ({}): the scan is mirrored, if nobody meant it",
-                          name, "xyz"[axis], header_.scale[axis]);
+                log::warn(
+                    "{}: its scale for {} is negative ({}): the scan is mirrored unless this is intended",
+                    name, "xyz"[axis], header_.scale[axis]);
     }
 
     void skip_waves() {
         add_loss(header_.losses, "wave packets of points, which are not read", header_.points);
-        // Descriptors (100 to 354) and packets (65535) that nothing points to any more.
+        // Descriptors (100 to 354) and packets (65535), to which nothing refers any more.
         std::erase_if(header_.vlrs, [](const las::Vlr& vlr) {
             const bool wave = (vlr.record_id >= 100 && vlr.record_id < 355) || vlr.record_id == 65535;
             return vlr.user_id == las::kSpecUser && wave;
         });
-        constexpr uint16_t kWaveBits = 6;  // packets inside the file, or in another
+        constexpr uint16_t kWaveBits = 6;  // packets inside the file, or in another file
         header_.global_encoding &= static_cast<uint16_t>(~kWaveBits);
     }
 
@@ -189,17 +188,17 @@ class LasSource final : public PointSource {
             header_.points = there;
         }
         compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks), salvage};
-        // What a writer of plain LAS must not repeat.
+        // Records that a writer of plain LAS must not repeat.
         std::erase_if(header_.vlrs,
                       [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });
         return {};
     }
 
-    /// Number `block` of `blocks` that are spread evenly over the file; of compressed points, which only come
-    /// one after the other, the front of a chunk.
+    /// Reads number `block` of `blocks` that are spread evenly over the file. Compressed points can only be
+    /// read in order, so then a block is the front of a chunk.
     Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
         if (compressed_) {
-            constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; of one
+            constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; per block
             const size_t chunk = block * compressed_->chunks.size() / blocks;
             const uint64_t most = std::min(kDecoded / blocks, kDecodedBytes / header_.record_length);
             return laz::decode_chunk(*compressed_, chunk, std::max<uint64_t>(most, 1));
@@ -212,8 +211,8 @@ class LasSource final : public PointSource {
         return raw;
     }
 
-    /// The specification wants colour spread over 16 bits, many writers store 0-255: told by a sample from
-    /// all over the file. Nothing is converted, so a wrong guess loses nothing.
+    /// Returns whether colours use 8 or 16 bits, judged from a sample of the whole file: the specification
+    /// requires 16 bits, but many writers store 0-255. Nothing is converted, so a wrong guess loses nothing.
     Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
         constexpr uint64_t kBlocks = 64, kChunks = 16;
         const uint64_t blocks = compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size())
@@ -258,7 +257,7 @@ const Format& las_format() {
 }
 
 const Format&
-laz_format() {  // opened as LAS: the header tells them apart, further back than `recognises` looks
+laz_format() {  // opened like LAS: only the header, beyond what `recognises` sees, tells them apart
     static constexpr Format kFormat{"LAZ", ".laz", [](std::string_view) { return false; }, open_las,
                                     las::create_compressed};
     return kFormat;

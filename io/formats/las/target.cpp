@@ -19,14 +19,14 @@ namespace {
 
 constexpr double kLargestInteger = std::numeric_limits<int32_t>::max();
 
-/// The point format for a schema: that of the file it came from, or a larger one where it lacks a field.
+/// Chooses the point format for a schema: that of the source file, or a larger one if that lacks a field.
 void choose_format(Header& header, const Schema& schema, bool from_las, Container container) {
     const auto has = [&](std::string_view name) { return schema.find(name) != nullptr; };
     bool extended = container == Container::copc || has(names::scan_angle) || has(names::scanner_channel) ||
                     has(names::nir);
     if (from_las)
         extended = extended || extended_format(header.point_format);
-    else if (!has(names::scan_angle_rank))  // not out of an older LAS file: let every class and return fit
+    else if (!has(names::scan_angle_rank))  // not from an older LAS file: make room for all classes
         extended = extended || has(names::classification) || has(names::return_number) ||
                    has(names::number_of_returns);
     const bool gps = has(names::gps_time) || (from_las && has_gps_time(header.point_format));
@@ -37,11 +37,11 @@ void choose_format(Header& header, const Schema& schema, bool from_las, Containe
         header.point_format = nir ? 8 : color ? 7 : 6;
     } else {
         header.point_format = static_cast<uint8_t>((gps ? 1 : 0) + (color ? 2 : 0));
-        if (color) header.minor = std::max<uint8_t>(header.minor, 2);  // an older one knows none
+        if (color) header.minor = std::max<uint8_t>(header.minor, 2);  // LAS 1.0 and 1.1 have no colour
     }
 }
 
-/// The record, made if it is not there yet.
+/// Returns the record, and creates it if it is missing.
 Vlr& record_of(Header& header, std::string_view user, uint16_t id) {
     const auto found =
         std::find_if(header.vlrs.begin(), header.vlrs.end(), [&](const Vlr& v) { return v.is(user, id); });
@@ -50,13 +50,14 @@ Vlr& record_of(Header& header, std::string_view user, uint16_t id) {
     return header.vlrs.back();
 }
 
-/// What a writer has to know of values before it gets them.
+/// What a writer must know about the values in advance.
 struct Survey {
-    Lattice lattice;                 ///< of the positions
-    std::optional<Range> intensity;  ///< of those that have to be spread over 16 bits
+    Lattice lattice;                 ///< the lattice of the positions
+    std::optional<Range> intensity;  ///< the range of intensities that must be spread over 16 bits
 };
 
-/// An intensity that the field cannot hold, unless what it holds instead is there as well; else null.
+/// Returns an intensity that the field cannot hold; null if there is none, or if the schema has the field's
+/// own value as well.
 const Attribute* wide_intensity(const Schema& schema, const std::vector<Attribute>& extra) {
     if (schema.find(std::string(kNearPrefix) + std::string(names::intensity))) return nullptr;
     const auto found = std::find_if(extra.begin(), extra.end(), [](const Attribute& a) {
@@ -65,9 +66,9 @@ const Attribute* wide_intensity(const Schema& schema, const std::vector<Attribut
     return found == extra.end() ? nullptr : &*found;
 }
 
-/// Positions that are not integers yet get what the options know, else the decimals that they have.
-/// Intensities are spread from the limits that their format has, else from what they are; whole numbers that
-/// fit stay.
+/// Finds the lattice for positions that are not integers yet: the one in `options`, otherwise the decimals
+/// that they have. Finds the range of intensities: the one that their format states, otherwise that of their
+/// values; whole numbers that fit the field stay unchanged.
 Result<Survey> survey_of(const Schema& schema, const FormatNotes& notes, const Attribute* intensity,
                          const WriteOptions& options) {
     Survey survey{{schema.scale, schema.offset}, {}};
@@ -100,11 +101,12 @@ void add_stations(Header& header, const std::vector<Station>& stations) {
     Vlr& record = record_of(header, kOurUser, kStationsRecord);
     record.description = "scanner positions";
     record.data.assign(bytes.begin(), bytes.end());
-    record.extended = json.size() > 0xffff;  // more than an ordinary record can hold
+    record.extended = json.size() > 0xffff;  // too large for an ordinary record
     if (record.extended) header.minor = 4;
 }
 
-/// The coordinate system of what is no LAS, or of several scans, and the extra bytes of these.
+/// Adds the coordinate system if the source was not LAS or several scans were merged, and the merged extra
+/// bytes.
 void state_merged(const std::string& path, Header& header, const FormatNotes& notes) {
     for (const std::string& note : {notes.system_note, notes.extras_note})
         if (!note.empty()) log::warn("{}: {}", path, note);
@@ -113,16 +115,16 @@ void state_merged(const std::string& path, Header& header, const FormatNotes& no
     if (!notes.las || notes.projection) set_projection(header, projection_records(notes));
 }
 
-/// Says the unit of length where the header would be read as saying another. Without a coordinate system it
-/// gets a local one of that unit (OGC 01-009, LOCAL_CS; the datum's type is the largest of local ones); its
-/// own is kept.
+/// States the unit of length if the header would otherwise be read in another unit. A header without a
+/// coordinate system gets a local one with that unit (OGC 01-009, LOCAL_CS; 32767 is the largest datum type
+/// for local ones). A header with a coordinate system keeps it.
 void state_unit(const std::string& path, Header& header, double metres) {
     const double stated = units_of(header).metres();
     if (same_unit(stated, metres)) return;
     if (header.find(kProjectionUser, kWktRecord) || header.find(kProjectionUser, kGeoKeyRecord)) {
         log::warn(
-            "{}: its coordinate system says units of {} m, but they were read as {} m; say --unit {} to open "
-            "it",
+            "{}: its coordinate system states units of {} m, but the points are in units of {} m; use --unit "
+            "{} to open it",
             path, stated, metres, metres);
         return;
     }
@@ -132,7 +134,7 @@ void state_unit(const std::string& path, Header& header, double metres) {
     set_projection(header, {wkt_record(wkt)});
 }
 
-/// An angle out of the whole degrees that older formats have instead.
+/// Derives a scan angle from the whole degrees of older formats.
 std::optional<Converter::Field> angle_of_rank(const Schema& from, const Attribute& field) {
     constexpr double kAngleUnit = 0.006;  // degrees (LAS 1.4 R15, table 16)
     const Attribute* rank = from.find(names::scan_angle_rank);
@@ -140,7 +142,8 @@ std::optional<Converter::Field> angle_of_rank(const Schema& from, const Attribut
     return Converter::Field{.from = *rank, .to = field, .factor = 1 / kAngleUnit, .fills = true};
 }
 
-/// What a field gets that nothing of its name and type is for: what comes near, or follows from another.
+/// Returns how to fill a field to which no attribute corresponds by name and type: with an approximation, or
+/// with a value derived from another attribute.
 std::optional<Converter::Field> derived_field(const Schema& from, const Attribute& field, bool extended,
                                               const std::optional<Range>& intensity) {
     const bool near = field.name.starts_with(kNearPrefix);
@@ -168,15 +171,15 @@ Converter make_converter(const Schema& from, const Schema& to, const std::vector
             if (const auto made = derived_field(from, field, extended, intensity)) converter.map(*made);
             continue;
         }
-        // Colours of 16 bits stay as they are; the specification wants all others spread over 16 bits.
+        // Colours of 16 bits stay as they are. Others are spread over 16 bits, as the specification requires.
         const bool spread = field.name == names::color && a->type != ScalarType::u16;
         converter.map({*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0});
         if (field.name != names::scan_angle) continue;
-        // Of scans of both kinds each point has one of the two.
+        // If scans of both kinds are merged, each point has only one of the two angles.
         if (const auto angle = angle_of_rank(from, field)) converter.map(*angle);
     }
     for (size_t k = 0; k < extra.size(); ++k) {
-        const Attribute& target = to.attributes[fields + k];  // the same bytes, but maybe without their type
+        const Attribute& target = to.attributes[fields + k];  // the same bytes, but the type may be lost
         converter.map({{extra[k].name, target.type, target.components, extra[k].offset}, target});
     }
     return converter;

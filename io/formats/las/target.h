@@ -5,27 +5,28 @@
 #include "io/formats/las/layout.h"
 #include "io/formats/scan.h"
 
-// Which LAS file can hold the records of a schema, and how they are brought into its layout.
+// Chooses a LAS file that can hold the records of a schema, and converts the records to its layout.
 namespace lucarne::io::las {
 
-/// Turns records of any schema into records of make_schema(header).
+/// Converts records of any schema to records of make_schema(header).
 class Converter {
  public:
     Converter() = default;
     Converter(const Schema& from, const Schema& to) : from_(from), to_(to) {}
 
-    /// An attribute becomes another: value * factor + shift, `most` at most.
+    /// How one attribute becomes another: value * factor + shift, but no more than `most`.
     struct Field {
         Attribute from, to;
         double factor = 1.0, shift = 0.0, most = std::numeric_limits<double>::infinity();
-        bool fills = false;  ///< only what is 0 so far
+        bool fills = false;  ///< only replaces values of 0
     };
     void map(const Field& field) { fields_.push_back(field); }
-    /// False where a position does not fit 32-bit integers with the target's scale and offset.
+    /// Returns false if a position does not fit 32-bit integers with the target's scale and offset.
     bool convert(const std::byte* in, size_t count, std::byte* out);
-    /// By how much positions were rounded so far, at most: less than their type tells apart is none.
+    /// Returns the largest rounding of a position so far. Differences below the resolution of its type do not
+    /// count.
     double rounded() const { return rounded_; }
-    /// Nothing to do: both schemas are the same.
+    /// Returns whether both schemas are the same, so that there is nothing to convert.
     bool identity() const { return from_ == to_; }
 
  private:
@@ -44,11 +45,12 @@ struct Target {
     Converter converter;
 };
 
-/// The header kept in `info.notes` where the source was LAS, else the smallest point format that has a
-/// field for every attribute it knows. What has no field, or does not fit the field's type, becomes extra
-/// bytes (where it does not fit, the field gets what comes near: las_extras.h). Positions that are not
-/// integers yet get the lattice of `options`, else the decimals that its preview shows, else the finest its
-/// box allows. COPC has point formats 6 to 8 only.
+/// Chooses the header and the conversion. If the source was LAS, takes the header kept in `info.notes`.
+/// Otherwise takes the smallest point format that has a field for every attribute it knows. An attribute
+/// without a field, or one that does not fit the field's type, becomes extra bytes; in the second case the
+/// field gets an approximation (see extras.h). Positions that are not integers yet get the lattice of
+/// `options`, otherwise the decimals that its preview shows, otherwise the finest lattice that their box
+/// allows. COPC allows only point formats 6 to 8.
 Result<Target> make_target(const std::string& path, const Schema& schema, const ScanInfo& info,
                            const WriteOptions& options, Container container);
 

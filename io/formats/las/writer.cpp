@@ -1,4 +1,4 @@
-// LAS 1.0-1.4 and LAZ. Source: see las_header.h.
+// LAS 1.0-1.4 and LAZ. Source: see header.h.
 #include "io/formats/las/writer.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr uint64_t kMost32 = std::numeric_limits<uint32_t>::max();
 constexpr size_t kPieceBytes = size_t{2} << 20;
 constexpr uint8_t kCompressedBit = 0x80;
 
-/// Little-endian fields one after the other.
+/// Appends little-endian fields.
 class Bytes {
  public:
     template <class T>
@@ -36,9 +36,9 @@ class Bytes {
     std::vector<std::byte> data_;
 };
 
-/// A record's own header; its data follow.
+/// Appends a record's own header; its data must follow.
 void append_record_header(Bytes& out, const Vlr& vlr, uint8_t minor) {
-    out.put<uint16_t>(minor == 0 ? 0xaabb : 0);  // a signature in LAS 1.0, reserved since
+    out.put<uint16_t>(minor == 0 ? 0xaabb : 0);  // a signature in LAS 1.0, reserved since then
     out.text(vlr.user_id, 16);
     out.put(vlr.record_id);
     if (vlr.extended)
@@ -51,7 +51,7 @@ void append_record_header(Bytes& out, const Vlr& vlr, uint8_t minor) {
 Bytes header_block(const Header& h, const Statistics& s, uint64_t points_offset, uint64_t evlr_offset) {
     const auto records = static_cast<uint32_t>(
         std::count_if(h.vlrs.begin(), h.vlrs.end(), [](const Vlr& v) { return !v.extended; }));
-    // Readers of LAS 1.3 and older know 32-bit counts only; with point formats 6 and up they must be 0.
+    // Readers of LAS 1.3 and older know only the 32-bit counts, which must be 0 for point formats 6 and up.
     const bool old_counts = !extended_format(h.point_format) && h.points <= kMost32;
     Bytes b;
     b.text("LASF", 4);
@@ -92,7 +92,7 @@ Bytes header_block(const Header& h, const Statistics& s, uint64_t points_offset,
     return b;
 }
 
-/// The records before the points.
+/// Returns the records that come before the points.
 Result<Bytes> front_records(const std::string& path, const Header& header) {
     Bytes front;
     for (const Vlr& vlr : header.vlrs) {
@@ -102,7 +102,7 @@ Result<Bytes> front_records(const std::string& path, const Header& header) {
         append_record_header(front, vlr, header.minor);
         front.text(vlr.text(), vlr.data.size());
     }
-    if (header.minor == 0) front.put<uint16_t>(0xddcc);  // LAS 1.0: the signature before the points
+    if (header.minor == 0) front.put<uint16_t>(0xddcc);  // LAS 1.0 has a signature before the points
     return front;
 }
 
@@ -125,7 +125,7 @@ void Statistics::add(const std::byte* records, size_t count, size_t stride, cons
         ++returns[load<uint8_t>(records + return_offset) & 15];
         if (!time) continue;
         const auto at = load<double>(records + time->offset);
-        gps_low = std::min(gps_low, at);  // NaN: stays
+        gps_low = std::min(gps_low, at);  // NaN changes nothing
         gps_high = std::max(gps_high, at);
     }
 }

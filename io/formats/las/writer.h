@@ -9,35 +9,36 @@
 
 namespace lucarne::io::las {
 
-/// What a header says about the points, gathered as they pass.
+/// What a header says about the points. It is collected while they are written.
 struct Statistics {
     std::array<int32_t, 3> low, high;
     std::array<uint64_t, 16> returns{};  ///< by return number
     double gps_low = std::numeric_limits<double>::infinity(), gps_high = -gps_low;
 
     Statistics();
-    /// Records that begin with these fields.
+    /// Adds records that begin with these fields.
     void add(const std::byte* records, size_t count, size_t stride, const Schema& fields);
 };
 
-/// A LAS or LAZ file, as its target has it.
+/// Writes a LAS, LAZ or COPC file for a target.
 class Writer final : public PointWriter {
  public:
     Writer(OutputFile file, std::string path, Target target, uint32_t in_stride);
-    Writer(const Writer&) = delete;  // its points are written through a reference to its file
+    Writer(const Writer&) = delete;  // the compressor holds a reference to file_
     Writer& operator=(const Writer&) = delete;
 
-    /// Leaves room for the header and writes the records before the points. Of LAZ: chunks of so many points,
-    /// or, with laz::kVariableChunks, of what is written between two calls of end_chunk().
+    /// Leaves room for the header and writes the records that come before the points. For LAZ, a chunk has so
+    /// many points; with laz::kVariableChunks it has the points written between two calls of end_chunk().
     Result<void> begin(uint32_t chunk_points = laz::kUsualChunk);
     Result<void> write(std::span<const std::byte> records) override;
     Result<void> end_chunk();
-    /// Ends the points: the chunks are known then, and where the extended records will begin.
+    /// Ends the points. Afterwards the chunks are known, and so is the place of the extended records.
     Result<void> finish_points();
     const std::vector<laz::ChunkPlace>& chunks() const { return compressed_->chunks(); }
     uint64_t position() const { return file_.position(); }
     const Statistics& statistics() const { return statistics_; }
-    /// Until finish(): records may change, but those before the points not in number and length.
+    /// The header may be changed until finish(), but not the number and length of the records before the
+    /// points.
     Header& header() { return target_.header; }
     Result<void> finish() override;
 
@@ -56,10 +57,10 @@ class Writer final : public PointWriter {
     std::vector<std::byte> converted_, buffer_;
 };
 
-/// See create_scan.
+/// For create_scan.
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options);
-/// LAZ: the same header and records, compressed.
+/// For create_scan, LAZ: the same header and records, compressed.
 Result<std::unique_ptr<PointWriter>> create_compressed(const std::filesystem::path& path,
                                                        const Schema& schema, const ScanInfo& info,
                                                        const WriteOptions& options);

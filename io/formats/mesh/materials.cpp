@@ -20,7 +20,7 @@ std::optional<Color8> color_of(std::string_view rest) {
     for (size_t k = 0; k < 3; ++k) {
         const auto word = next_word(rest);
         const auto value = parse_number<double>(word);
-        // One number alone is grey.
+        // A single number means grey.
         if (!value && (k == 0 || !word.empty())) return std::nullopt;
         rgb[k] = value.value_or(rgb[0]);
     }
@@ -31,11 +31,11 @@ std::optional<Color8> color_of(std::string_view rest) {
     return color;
 }
 
-/// The options before a picture's name; what is left is the name, which may hold blanks.
+/// Reads the options before a picture's name. Returns the rest, which is the name and may hold blanks.
 std::string_view texture_options(std::string_view rest, Material& material) {
     struct Option {
         std::string_view name;
-        int least, most;  ///< words that follow; those beyond the least only if they are numbers
+        int least, most;  ///< number of words that follow; words beyond `least` must be numbers
     };
     static constexpr std::array<Option, 13> kOptions = {{{"-blendu", 1, 1},
                                                          {"-blendv", 1, 1},

@@ -27,12 +27,12 @@ void Mesh::add(std::span<const Corner> polygon, uint32_t material, std::optional
     for (const Corner& c : polygon) {
         const glm::dvec3& p = outline.emplace_back(positions[c.position]);
         if (usable(p.x) && usable(p.y) && usable(p.z)) continue;
-        // Where its outline went nobody knows, nor what of the rest was inside.
+        // Without this position neither the outline nor the inside of the polygon is known.
         not_finite += polygon.size() - 2;
         return;
     }
     fanned += !triangulate(outline, cut);
-    // What only some triangles have is held from the first that has it on.
+    // A list that only some triangles need begins with the first of these.
     const auto put = [&](auto& list, bool has, const auto& value, const auto& none) {
         if (list.empty() && !has) return;
         list.resize(triangles.size(), none);
@@ -54,7 +54,7 @@ void Mesh::add(std::span<const Corner> polygon, uint32_t material, std::optional
 }
 
 void Mesh::finish() {
-    // Where no corner names them they are those of the positions, if there is one for each.
+    // If no corner has indices, the entries belong to the positions, provided that there is one for each.
     if (normal_corners.empty() && normals.size() != positions.size()) normals.clear();
     if (coordinate_corners.empty() && coordinates.size() != positions.size()) coordinates.clear();
     const auto each_list = [&](const auto& call) {

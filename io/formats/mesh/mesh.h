@@ -11,37 +11,38 @@
 
 #include "io/image/image.h"
 
-// A triangle mesh in memory: what OBJ and PLY files hold, before it is sampled.
+// A triangle mesh in memory: the content of an OBJ or PLY file before it is sampled.
 namespace lucarne::io::mesh {
 
 inline constexpr uint32_t kNone = 0xffffffff;
 using Corners = std::array<uint32_t, 3>;
 using Color8 = std::array<uint8_t, 3>;  ///< sRGB
 
-/// The sRGB grey of an albedo of .5: where a mesh with colours has none.
+/// The sRGB grey of an albedo of .5, for parts without a colour in a mesh with colours.
 inline constexpr Color8 kNoColor = {188, 188, 188};
 
 struct Material {
     std::optional<Color8> color;
     uint32_t texture = kNone;
-    glm::dvec2 scale{1.0}, offset{0.0};  ///< of texture coordinates
-    bool clamp = false;                  ///< beyond its edges, instead of repeating it
+    glm::dvec2 scale{1.0}, offset{0.0};  ///< applied to texture coordinates
+    bool clamp = false;                  ///< beyond its edges the texture is clamped, not repeated
 };
 
-/// A corner of a polygon: indices of a position, and of texture coordinates and a normal or kNone.
+/// A corner of a polygon: the index of a position, and the indices of texture coordinates and a normal or
+/// kNone.
 struct Corner {
     uint32_t position = 0, coordinate = kNone, normal = kNone;
 };
 
 struct Mesh {
     std::vector<glm::dvec3> positions;
-    std::vector<Color8> colors;          ///< one a position, or none at all
-    std::vector<glm::vec3> normals;      ///< any length; 0 and what is not finite: none
-    std::vector<glm::vec2> coordinates;  ///< u to the right, v upwards
+    std::vector<Color8> colors;          ///< one per position, or none at all
+    std::vector<glm::vec3> normals;      ///< any length; zero or non-finite means none
+    std::vector<glm::vec2> coordinates;  ///< u points right, v points up
 
-    std::vector<Corners> triangles;  ///< of positions
-    /// One a triangle or none at all. Without corners of their own, normals and coordinates are those of the
-    /// positions.
+    std::vector<Corners> triangles;  ///< indices of positions
+    /// Each list has one entry per triangle or is empty. If these two are empty, normals and coordinates
+    /// belong to the positions.
     std::vector<Corners> coordinate_corners, normal_corners;
     std::vector<Color8> face_colors;
     std::vector<uint32_t> face_materials;
@@ -50,10 +51,10 @@ struct Mesh {
     std::vector<Image8> textures;
 
     uint64_t without_area = 0, not_finite = 0;  ///< triangles that are left out
-    uint64_t fanned = 0;                        ///< polygons too large to be cut by their ears
-    /// The area of the triangles before each, and of all at the end; set by finish().
+    uint64_t fanned = 0;                        ///< polygons with too many corners for ear clipping
+    /// The area of all triangles before each triangle, and at the end of all triangles. Set by finish().
     std::vector<double> area_before;
-    glm::dvec3 low{0.0}, high{0.0};  ///< the box of the triangles
+    glm::dvec3 low{0.0}, high{0.0};  ///< bounding box of the triangles
 
     double area() const { return area_before.empty() ? 0.0 : area_before.back(); }
     bool colored() const;
@@ -62,10 +63,10 @@ struct Mesh {
         return {positions[c[0]], positions[c[1]], positions[c[2]]};
     }
 
-    /// Cuts a polygon whose indices are right into triangles, unless one of its positions is not usable.
-    /// Corners that lack a normal or coordinates are fine.
+    /// Cuts a polygon into triangles and adds them. The indices must be valid; corners may lack a normal or
+    /// coordinates. Leaves out a polygon with an unusable position.
     void add(std::span<const Corner> polygon, uint32_t material, std::optional<Color8> color);
-    /// Leaves out triangles without area; sums up areas.
+    /// Removes triangles without area and sums up the areas.
     void finish();
 };
 

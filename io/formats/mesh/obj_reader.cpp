@@ -1,5 +1,5 @@
-// OBJ: polygons with texture coordinates, normals and materials; vertices alone are a point cloud. Source:
-// Wavefront, "Object Files (.obj)", 1992 (Bourke's copy), and colours behind the coordinates as MeshLab and
+// OBJ: polygons with texture coordinates, normals and materials. Vertices alone are a point cloud. Source:
+// Wavefront, "Object Files (.obj)", 1992 (Bourke's copy); colours after the coordinates, as MeshLab and
 // others write them.
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace mesh;
 
-constexpr std::array<std::string_view, 6> kNumbered = {"v", "vn", "vt", "vp", "f", "l"};  ///< numbers follow
+constexpr std::array<std::string_view, 6> kNumbered = {"v", "vn", "vt", "vp", "f", "l"};  ///< take numbers
 constexpr std::array<std::string_view, 5> kNamed = {"o", "g", "s", "mtllib", "usemtl"};
 
 bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
@@ -38,7 +38,7 @@ class ObjParser {
 
     Result<void> parse() {
         LUCARNE_TRY(input_.skip_mark());
-        std::string joined;  // of a line that goes on behind a backslash
+        std::string joined;  // a line that continues after a backslash
         for (;;) {
             LUCARNE_ASSIGN(const auto got, input_.line('\n'));
             if (!got) break;
@@ -68,7 +68,7 @@ class ObjParser {
     uint64_t other() const { return other_; }
     uint64_t faces() const { return faces_; }
     const Losses& losses() const { return losses_; }
-    /// Texture coordinates and normals that corners of triangles name and that are not there.
+    /// Texture coordinates and normals that corners of triangles name but that do not exist.
     uint64_t missing() const { return missing_; }
 
  private:
@@ -76,7 +76,7 @@ class ObjParser {
         return rejected(name_, fmt::format("line {} {}", line_, why));
     }
 
-    /// One statement. Where it makes no sense and the file ends with it, the file is cut off.
+    /// Reads one statement. If it is malformed and the file ends with it, the file is cut off.
     Result<void> take(std::string_view line) {
         auto done = statement(line);
         if (done || done.error().kind != ErrorKind::input_rejected) return done;
@@ -89,7 +89,7 @@ class ObjParser {
         return {};
     }
 
-    /// What is lost keeps its number: indices behind it count it.
+    /// Adds a placeholder for a lost entry, so that later entries keep their indices.
     void stand_in(std::string_view word) {
         if (word == "v") mesh_.positions.emplace_back(std::numeric_limits<double>::quiet_NaN());
         if (word == "vn") mesh_.normals.emplace_back(0.0f);
@@ -126,7 +126,7 @@ class ObjParser {
         return text;
     }
 
-    /// Reads up to as many numbers as there is room for; at least `least`. Returns how many.
+    /// Reads as many numbers as there is room for, but at least `least`. Returns how many.
     Result<size_t> numbers(std::string_view rest, std::span<double> values, size_t least) const {
         size_t count = 0;
         for (auto word = next_word(rest); !word.empty() && word[0] != '#'; word = next_word(rest)) {
@@ -153,7 +153,8 @@ class ObjParser {
         return {};
     }
 
-    /// Colours are 0 to 1, give or take what rounding did to a white; or 0 to 255 where any is larger.
+    /// Colours range from 0 to 1 (a white may be slightly more through rounding), or from 0 to 255 if any is
+    /// larger.
     void finish_colors() {
         if (raw_colors_.empty()) return;
         raw_colors_.resize(mesh_.positions.size(), glm::vec3(-1.0f));
@@ -168,8 +169,9 @@ class ObjParser {
         }
     }
 
-    /// An index counts from 1, or backwards from -1 at the last above; given from 0 on. What it names may
-    /// stand further down; kNowhere where that cannot be.
+    /// Converts an index, which counts from 1, or backwards from -1 for the last entry above, to one that
+    /// counts from 0. The entry may stand further down in the file. Returns kNowhere if there can be no such
+    /// entry.
     Result<uint32_t> index(std::string_view word, size_t above, std::string_view of) const {
         const auto number = parse_number<int64_t>(word);
         if (!number) return wrong(fmt::format("has '{}' for the number of a {}", printable(word), of));
@@ -179,7 +181,7 @@ class ObjParser {
 
     Result<void> face(std::string_view rest) {
         polygon_.clear();
-        bool late = false;  // names vertices further down
+        bool late = false;  // names vertices further down in the file
         for (auto word = next_word(rest); !word.empty() && word[0] != '#'; word = next_word(rest)) {
             std::array<std::string_view, 3> parts;
             for (size_t i = 0; i < 3; ++i) {
@@ -213,7 +215,8 @@ class ObjParser {
         return {};
     }
 
-    /// Adds the faces whose vertices stand below them, and forgets what corners name that never came.
+    /// Adds the faces whose vertices stand below them. Clears the indices of normals and coordinates that
+    /// never came.
     Result<void> finish_faces() {
         for (const LateFace& face : late_faces_) {
             const auto polygon = std::span(late_corners_).subspan(face.first, face.corners);
@@ -242,7 +245,7 @@ class ObjParser {
         return {};
     }
 
-    /// Whether the last corner is there and names what the first does.
+    /// Returns whether the last corner is complete: it has the same kinds of indices as the first.
     bool whole() const {
         if (polygon_.size() < 3) return false;
         const Corner &first = polygon_.front(), &last = polygon_.back();
@@ -250,7 +253,7 @@ class ObjParser {
                (first.normal == kNone) == (last.normal == kNone);
     }
 
-    /// The rest of the line is one name, which may hold blanks, or several.
+    /// The rest of the line is one name, which may hold blanks, or several names.
     void library(std::string_view rest) {
         const auto take = [&](std::string_view name) {
             std::filesystem::path path;
@@ -262,7 +265,7 @@ class ObjParser {
         for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) take(word);
     }
 
-    static constexpr uint32_t kNowhere = kNone - 1;  ///< beyond the end of any list
+    static constexpr uint32_t kNowhere = kNone - 1;  ///< beyond the end of every list
     struct LateFace {
         uint64_t line = 0;
         size_t first = 0, corners = 0;  ///< in late_corners_
@@ -280,7 +283,7 @@ class ObjParser {
     std::vector<LateFace> late_faces_;
     Losses losses_;
     uint32_t material_ = kNone;
-    bool strange_ = false;  ///< words that an OBJ of vertices need not have
+    bool strange_ = false;  ///< saw words that an OBJ of vertices has no need for
     uint64_t line_ = 0, other_ = 0, faces_ = 0, missing_ = 0;
 };
 
@@ -313,7 +316,7 @@ Result<std::unique_ptr<PointSource>> open_obj(std::shared_ptr<const ByteSource> 
     return sampled(std::move(mesh), std::move(info), parser.state(), options);
 }
 
-/// Text whose first statement is one of OBJ's, and no header of rows ("v x y z").
+/// Returns whether the first statement of the text is one of OBJ's, and not a header of rows ("v x y z").
 bool is_obj(std::string_view head) {
     auto line = first_statement(head);
     const auto word = next_word(line), next = next_word(line);

@@ -15,18 +15,19 @@ namespace lucarne::io::mesh {
 namespace {
 
 constexpr double kCandidates = 8;            ///< per square of the spacing
-constexpr int kBlock = 48, kLeastBlock = 4;  ///< cells
+constexpr int kBlock = 48, kLeastBlock = 4;  ///< in cells
 constexpr int kHalo = 2, kMostHalo = 7;
 constexpr size_t kBlocksAtOnce = 32;
-/// Candidates of a block before it is split.
+/// A block with more candidates is split.
 constexpr size_t kMostCandidates = size_t{1} << 18;
-/// Of the candidates in a cell only the first count, or sheets upon sheets would fill the memory. A plane
-/// gives up to 50.
+/// Only the first so many candidates in a cell count; otherwise many layers of surface would fill the memory.
+/// A plane gives up to 50.
 constexpr uint8_t kMostInCell = 200;
-/// So few candidates are faster compared with each other than the cells of a block are cleared, of which a
-/// sliver crosses thousands.
+/// For so few candidates, comparing all pairs is faster than clearing the cells of a block: a sliver may
+/// cross thousands of cells.
 constexpr size_t kFew = 64;
-/// Sides that turn this far from each other do not see each other: a thin wall has samples on both.
+/// Surfaces whose normals differ by more than this angle do not affect each other: a thin wall gets samples
+/// on both sides.
 constexpr float kSameSide = -0.5f;
 constexpr uint64_t kSeed = 0x6d657368;
 
@@ -48,21 +49,22 @@ glm::dvec3 high_of(const Points& p) {
     return glm::max(p[0], glm::max(p[1], p[2]));
 }
 
-/// The corner opposite the longest of three edges; `a` is the squared length of the one opposite corner 0.
+/// Returns the corner opposite the longest of three edges. `a` is the squared length of the edge opposite
+/// corner 0.
 size_t widest(double a, double b, double c) {
     return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
 }
 
-/// Whether a triangle reaches into a box, or misses it by less than rounding tells: they do not where an axis
-/// parts them, one of the box, the normal, or across an edge of each (Akenine-Moeller 2001, "Fast 3D
-/// triangle-box overlap testing").
+/// Returns whether a triangle overlaps a box, or misses it by no more than rounding errors. They do not
+/// overlap if an axis separates them: an axis of the box, the normal, or a cross product of an edge of each
+/// (Akenine-Moeller 2001, "Fast 3D triangle-box overlap testing").
 bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
     if (!overlap(low_of(p), high_of(p), low, high)) return false;
     const glm::dvec3 middle = (low + high) * 0.5, half = (high - low) * 0.5;
     const Points q = {p[0] - middle, p[1] - middle, p[2] - middle};
     const double far = glm::length(q[0]) + glm::length(q[1]) + glm::length(q[2]);
-    // `factors`: the product of the lengths that the axis was made from. The normal of a sliver is short
-    // beside them, and rounding turns it.
+    // `factors` is the product of the lengths that the axis was computed from. A sliver's normal is short
+    // compared to them, and rounding changes its direction.
     const auto parts = [&](const glm::dvec3& axis, double factors) {
         const double a = glm::dot(axis, q[0]), b = glm::dot(axis, q[1]), c = glm::dot(axis, q[2]);
         const double reach = glm::dot(glm::abs(axis), half);
@@ -78,7 +80,7 @@ bool touches(const Points& p, const glm::dvec3& low, const glm::dvec3& high) {
     });
 }
 
-/// Sorts numbers that are spread evenly over 64 bits: into as many buckets first.
+/// Sorts numbers that are spread evenly over 64 bits, by distributing them to as many buckets first.
 void spread_sort(std::vector<uint64_t>& numbers) {
     const int bits = std::bit_width(numbers.size() / 2);
     if (bits == 0) return std::sort(numbers.begin(), numbers.end());
@@ -94,10 +96,10 @@ void spread_sort(std::vector<uint64_t>& numbers) {
 
 }  // namespace
 
-/// The cells around a block whose candidates are looked at.
+/// A block with the cells around it, whose candidates are examined.
 struct Sampler::Region {
     glm::ivec3 low, high, size;
-    glm::bvec3 open_low, open_high;  ///< whether the mesh goes on there
+    glm::bvec3 open_low, open_high;  ///< whether the mesh continues on that side
     glm::dvec3 box_low, box_high;
     uint32_t cell(const glm::ivec3& at) const {
         return static_cast<uint32_t>((at.z * size.y + at.y) * size.x + at.x);
@@ -116,9 +118,9 @@ struct Sampler::Candidates {
     static constexpr uint64_t kIndex = (uint64_t{1} << 24) - 1;
     std::vector<One> list;
     std::vector<uint64_t> order;     ///< of each: the upper 40 bits of its hash, and its index
-    std::vector<glm::vec3> normals;  ///< one a triangle of the block
+    std::vector<glm::vec3> normals;  ///< one per triangle of the block
 
-    /// Sorts by order, and leaves out what is too many in a cell.
+    /// Sorts by order and drops the candidates that are too many for their cell.
     void sort(const Region& region) {
         spread_sort(order);
         if (order.size() <= kMostInCell) return;
@@ -130,7 +132,7 @@ struct Sampler::Candidates {
             return false;
         });
     }
-    /// Forgets what `sort` left out.
+    /// Removes the candidates that `sort` dropped.
     void shrink() {
         std::vector<One> kept;
         for (uint64_t& o : order) {
@@ -141,10 +143,10 @@ struct Sampler::Candidates {
     }
 };
 
-/// A triangle that is being cut: positions are linear in the shares of the second and the third corner.
+/// A triangle that is being cut. Positions are linear in the weights of the second and third corner.
 struct Sampler::Face {
     glm::dvec3 corner, u, v;
-    double uu, uv, vv;          ///< products of u and v: lengths from shares
+    double uu, uv, vv;          ///< products of u and v, to get lengths from weights
     uint32_t triangle, number;  ///< in the mesh, in the block
     glm::dvec3 at(const glm::dvec2& share) const { return corner + u * share.x + v * share.y; }
     double squared(const glm::dvec2& share) const {
@@ -152,8 +154,8 @@ struct Sampler::Face {
     }
 };
 
-/// A part of a triangle. The candidates of the whole mesh are numbered on: these have those from `begin` to
-/// `end`.
+/// A part of a triangle. The candidates of the whole mesh are numbered consecutively; this part has the
+/// numbers from `begin` to `end`.
 struct Sampler::Piece {
     std::array<glm::dvec2, 3> shares;
     double begin, end;
@@ -194,8 +196,8 @@ bool Sampler::next(std::vector<Sample>& samples) {
     return !samples.empty();
 }
 
-/// Halves a block along every axis that is longer than half the longest, into whole blocks while it is
-/// larger.
+/// Halves a block along every axis longer than half of the longest, at multiples of the block size while it
+/// is larger.
 void Sampler::split(Block block, std::vector<Block>& children) const {
     const glm::ivec3 size = block.high - block.low;
     const int longest = std::max({size.x, size.y, size.z});
@@ -226,7 +228,7 @@ Sampler::Region Sampler::region_of(const Block& block, int halo) const {
     region.size = region.high - region.low;
     region.open_low = glm::greaterThan(region.low, glm::ivec3(0));
     region.open_high = glm::lessThan(region.high, cells_);
-    // A little more, for what is rounded.
+    // A little more, because of rounding.
     region.box_low = origin_ + (glm::dvec3(region.low) - 0.01) * cell_;
     region.box_high = origin_ + (glm::dvec3(region.high) + 0.01) * cell_;
     return region;
@@ -250,7 +252,8 @@ void Sampler::sample(Block block, std::vector<Sample>& samples) const {
     }
 }
 
-/// The candidates of a region, in their order. False: they are too many, and the block can be split.
+/// Collects the candidates of a region, in their order. Returns false if they are too many and the block can
+/// be split.
 bool Sampler::gather(const Region& region, const Block& block, bool may_fail, Candidates& found) const {
     found = {};
     size_t room = kMostCandidates;
@@ -308,18 +311,18 @@ void Sampler::cut(const Region& region, const Face& face, const Piece& piece, Ca
     found.list.push_back({at, glm::vec2(share), face.number, region.cell(cell - region.low)});
 }
 
-/// Adds those of the block that stay. False: `surely` is asked for, and some depend on what lies beyond the
-/// region.
+/// Adds the candidates of the block that are kept. Returns false if `surely` is set and some candidates
+/// depend on what lies beyond the region.
 bool Sampler::choose(const Region& region, const Block& block, bool surely, const Candidates& candidates,
                      std::vector<Sample>& samples) const {
     struct Kept {
         glm::dvec3 at;
         glm::vec3 normal;
-        uint32_t next;  ///< in its cell, counted from 1
+        uint32_t next;  ///< next in the same cell, counted from 1
         bool unsure;
     };
-    const bool few = candidates.order.size() <= kFew;       // all in one list
-    std::vector<uint32_t> first(few ? 1 : region.cells());  // 0: none
+    const bool few = candidates.order.size() <= kFew;       // then all are in one list
+    std::vector<uint32_t> first(few ? 1 : region.cells());  // 0 means none
     std::vector<Kept> kept;
     kept.reserve(candidates.order.size() / 8);
     const double near = radius_ * radius_;
@@ -330,7 +333,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
         const glm::ivec3 at(number % region.size.x, number / region.size.x % region.size.y,
                             number / region.size.x / region.size.y);
         bool unsure = false;
-        /// Whether one that stays in this cell drives the candidate out.
+        /// Returns whether a kept candidate in this cell excludes this one.
         const auto taken = [&](uint32_t cell) {
             for (uint32_t entry = first[few ? 0 : cell]; entry != 0; entry = kept[entry - 1].next) {
                 const Kept& other = kept[entry - 1];
@@ -342,7 +345,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
             return false;
         };
         if (taken(candidate.cell)) continue;
-        // The disc reaches into the nearer neighbour along each axis.
+        // Along each axis the disc reaches only into the nearer neighbour.
         const glm::dvec3 in_cell = (candidate.at - origin_) / cell_ - glm::dvec3(at + region.low);
         const glm::ivec3 side = at + glm::ivec3(glm::greaterThanEqual(in_cell, glm::dvec3(0.5))) * 2 - 1;
         bool out = false;
@@ -351,7 +354,7 @@ bool Sampler::choose(const Region& region, const Block& block, bool surely, cons
                                   (k & 4) != 0 ? side.z : at.z);
             if (glm::any(glm::lessThan(cell, glm::ivec3(0))) ||
                 glm::any(glm::greaterThanEqual(cell, region.size)))
-                // Where the mesh goes on nobody knows what stays.
+                // What is kept beyond the region is unknown if the mesh continues there.
                 unsure = unsure || glm::any(region.open_low && glm::lessThan(cell, glm::ivec3(0))) ||
                          glm::any(region.open_high && glm::greaterThanEqual(cell, region.size));
             else

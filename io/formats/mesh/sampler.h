@@ -7,37 +7,39 @@
 
 #include "io/formats/mesh/mesh.h"
 
-// Blue noise on a mesh, in pieces that hang together: the same samples whatever the threads and the order.
+// Samples a mesh with blue noise, block by block. The samples are the same for any number of threads and any
+// order.
 //
-// Candidates are stratified by area: the mesh's triangles are halved until a piece has a share of at most
-// one, and a piece's random numbers follow from its triangle and its place in it. Of these a Poisson-disk set
-// is chosen as by throwing darts in the order of a hash (Cook 1986; in parallel: Bowers et al. 2010,
-// "Parallel Poisson disk sampling with spectrum analysis on surfaces"): a candidate stays unless one before
-// it in that order stays within the disc's radius and faces the same side. That is a question about its
-// neighbourhood only: a block of space is answered with a halo around it, and where the halo is too thin to
-// be sure, again with a wider one.
+// Candidates are stratified by area: the mesh's triangles are halved until a piece has a share of at most one
+// candidate, and a piece's random numbers follow from its triangle and its place in it. From the candidates a
+// Poisson-disk set is chosen as if by throwing darts in the order of a hash (Cook 1986; in parallel: Bowers
+// et al. 2010, "Parallel Poisson disk sampling with spectrum analysis on surfaces"). A candidate is kept
+// unless an earlier kept one lies within the disc's radius and faces the same side. This depends only on the
+// candidate's neighbourhood, so each block of space is computed with a halo around it. If the halo turns out
+// too thin to decide, the block is computed again with a wider one.
 namespace lucarne::io::mesh {
 
-/// On average one sample stands on this many squares of the spacing; no two are nearer than kNearest
-/// spacings.
+/// The radius of the discs in spacings: no two samples are nearer. With this radius the average is one sample
+/// per square of the spacing.
 inline constexpr double kNearest = 0.76;
 
 struct Sample {
     glm::dvec3 position;
-    glm::vec2 share;  ///< of the second and the third corner
+    glm::vec2 share;  ///< barycentric weights of the second and third corner
     uint32_t triangle;
 };
 
 class Sampler {
  public:
-    /// The mesh is finished and outlives this; its spacing at least a millionth of its box.
+    /// The mesh must be finished and must outlive this. The spacing must be at least a millionth of the box's
+    /// diagonal.
     Sampler(const Mesh& mesh, double spacing);
-    /// The samples of the next blocks; false at the end. All cores work.
+    /// Returns the samples of the next blocks, computed on all cores; false at the end.
     bool next(std::vector<Sample>& samples);
 
  private:
     struct Block {
-        glm::ivec3 low, high;  ///< cells
+        glm::ivec3 low, high;  ///< in cells
         std::vector<uint32_t> triangles;
     };
     struct Region;
@@ -54,7 +56,7 @@ class Sampler {
                 std::vector<Sample>& samples) const;
 
     const Mesh& mesh_;
-    double radius_, cell_, density_;  ///< a cell's side is two radii; density: candidates per area
+    double radius_, cell_, density_;  ///< a cell's side is two radii; density is candidates per area
     glm::dvec3 origin_;
     glm::ivec3 cells_;
     std::vector<Block> stack_;

@@ -20,7 +20,7 @@
 namespace lucarne::io::mesh {
 namespace {
 
-/// Finer than this share of the box's diagonal no spacing is: cells are counted in 32 bits.
+/// No spacing may be smaller than this share of the box's diagonal, because cells are counted in 32 bits.
 constexpr double kLeastShare = 1e-6;
 
 class SampleReader final : public PointReader {
@@ -47,7 +47,7 @@ class SampleReader final : public PointReader {
 
  private:
     void fill(const Sample& sample, std::byte* record) const {
-        // Far from the origin coordinates may be coarser than the whole mesh, and so than 2^31 steps.
+        // Far from the origin, coordinates may be coarser than the whole mesh, and thus than 2^31 steps.
         constexpr double kLeast = std::numeric_limits<int32_t>::min(),
                          kMost = std::numeric_limits<int32_t>::max();
         const glm::dvec3 steps =
@@ -87,7 +87,7 @@ class VertexReader final : public PointReader {
             if (!mesh_->colors.empty())
                 for (size_t k = 0; k < 3; ++k) store(record + 24 + k, mesh_->colors[next_][k]);
         }
-        // All of these may have been dropped, and more follow.
+        // All of these vertices may have been dropped although more follow.
         if (batch.count == 0 && next_ < mesh_->positions.size()) return read(batch, most);
         batch.bytes.resize(batch.count * stride);
         return batch.count;
@@ -119,10 +119,10 @@ class MeshSource final : public PointSource {
     std::shared_ptr<const Mesh> mesh_;
     Schema schema_;
     ScanInfo info_;
-    double spacing_;  ///< in the file's unit; 0: vertices only
+    double spacing_;  ///< in the file's unit; 0 if there are only vertices
 };
 
-/// What was asked for, or a default, in the file's unit.
+/// Returns the requested spacing, or a default, in the file's unit.
 Result<double> spacing_of(const Mesh& mesh, const ScanInfo& info, const ReadOptions& options) {
     const double area = mesh.area(), diagonal = glm::length(mesh.high - mesh.low);
     const auto of_count = [&](uint64_t count) { return std::sqrt(area / static_cast<double>(count)); };
@@ -144,7 +144,7 @@ Result<double> spacing_of(const Mesh& mesh, const ScanInfo& info, const ReadOpti
         "ask for fewer");
 }
 
-/// Steps that are a power of ten, as fine as 32 bits allow.
+/// Positions in steps of a power of ten, as fine as 32 bits allow.
 Schema sample_schema(const Mesh& mesh) {
     Schema schema;
     schema.position = PositionType::i32_scaled;
@@ -154,14 +154,14 @@ Schema sample_schema(const Mesh& mesh) {
     const double step = std::pow(10.0, std::clamp(std::ceil(std::log10(longest / 4e9)), -30.0, 30.0));
     schema.scale = glm::dvec3(step);
     const glm::dvec3 middle = (mesh.low + mesh.high) * 0.5;
-    // Whole thousands of steps, so that coordinates are decimals as well.
+    // A whole multiple of a million steps, so that coordinates are decimal fractions as well.
     schema.offset = glm::round(middle / (step * 1e6)) * (step * 1e6);
     schema.add(std::string(names::normal), ScalarType::f32, 3);
     if (mesh.colored()) schema.add(std::string(names::color), ScalarType::u8, 3);
     return schema;
 }
 
-/// Completes what the reader of the file has noted.
+/// Completes the notes that the reader of the file has made.
 MeshNotes& note(const Mesh& mesh, ScanInfo& info) {
     info.notes.color_bits = info.color_bits = 8;
     if (!info.notes.mesh) info.notes.mesh.emplace();
@@ -187,7 +187,7 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t 
         log::warn("{}: {} with a coordinate that is not finite: left out", info.path,
                   counted(mesh.not_finite, "triangles"));
     if (mesh.fanned > 0)
-        log::warn("{}: {} of over 256 corners, too many to be cut properly: wrong where not convex",
+        log::warn("{}: {} with over 256 corners: cut as fans, which is wrong if they are not convex",
                   info.path, counted(mesh.fanned, "polygons"));
     const double metres = info.metres_per_unit;
     info.declared_points = static_cast<uint64_t>(mesh.area() / (spacing * spacing));
@@ -199,7 +199,7 @@ Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t 
             counted(info.declared_points, "points"));
     note(mesh, info).samples = {mesh.area() * metres * metres, spacing * metres, info.declared_points,
                                 mesh.low, mesh.high};
-    // A cache of these samples is another one as soon as any of this differs.
+    // A change of any of these makes a cache of these samples out of date.
     info.modified = static_cast<int64_t>(
         mix64(mix64(static_cast<uint64_t>(info.modified), std::bit_cast<uint64_t>(spacing)), state));
     Schema schema = sample_schema(mesh);

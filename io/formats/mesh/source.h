@@ -7,29 +7,29 @@
 
 namespace lucarne::io::mesh {
 
-/// More samples are refused when they are asked for.
+/// More samples than this are refused.
 inline constexpr uint64_t kMostSamples = uint64_t{1} << 30;
-/// Nobody asked: a thousandth of the box's diagonal, or finer where the vertices stand denser, for no more
-/// than this.
+/// The limit of the default spacing, which is a thousandth of the box's diagonal, or finer if the vertices
+/// are denser.
 inline constexpr uint64_t kMostDefaultSamples = 20'000'000;
 
-/// Whether a scan's points are samples of a mesh, which take seconds to make. Its notes tell the mesh's size
-/// and about how many samples there are.
+/// Returns whether a scan's points are samples of a mesh, which take seconds to compute. The scan's notes
+/// then state the mesh's size and the approximate number of samples.
 bool is_sampled(const ScanInfo& info);
 
-/// What is lost of damaged files, beside what io::lost has.
+/// Kinds of loss in damaged mesh files, in addition to io::lost.
 inline constexpr std::string_view kCutFaces = "faces that are not there: the file ends before them",
                                   kDamagedFaces = "faces that make no sense",
                                   kCutLine = "lines that are cut off, and all that may have followed",
                                   kDamagedLines = "lines that make no sense";
 
-/// What is known of the file: path, format, bytes, time, unit; `notes.mesh` may say more.
-/// `state` is a hash of all else that the samples follow from: textures.
-/// The mesh is finished and has triangles. Errors: a spacing that would give too many samples.
+/// Returns the samples of a mesh. The mesh must be finished and have triangles. `info` describes the file:
+/// path, format, bytes, time, unit; `notes.mesh` may say more. `state` is a hash of everything else that the
+/// samples depend on: textures. Errors: a spacing that would give too many samples.
 Result<std::unique_ptr<PointSource>> sampled(Mesh mesh, ScanInfo info, uint64_t state,
                                              const ReadOptions& options);
 
-/// The vertices of a mesh, without its surface, with their colours.
+/// Returns the vertices of a mesh with their colours, without its surface.
 Result<std::unique_ptr<PointSource>> vertices_only(Mesh mesh, ScanInfo info);
 
 }  // namespace lucarne::io::mesh

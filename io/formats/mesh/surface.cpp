@@ -9,7 +9,7 @@
 namespace lucarne::io::mesh {
 namespace {
 
-/// At most so many samples of a texture along a side of a sample's square.
+/// Largest number of texture samples along one side of a sample's square.
 constexpr int kMostTaps = 4;
 
 // IEC 61966-2-1.
@@ -24,7 +24,7 @@ Color8 to_bytes(const glm::vec3& linear) {
     return {to_byte(linear.x), to_byte(linear.y), to_byte(linear.z)};
 }
 
-/// A texel's number along a side of `count`.
+/// Returns the index of a texel along a side of `count` texels.
 size_t wrapped(double number, uint32_t count, bool clamp) {
     if (clamp) return static_cast<size_t>(std::clamp(number, 0.0, count - 1.0));
     const double whole = number - std::floor(number / count) * count;
@@ -80,8 +80,8 @@ Color8 Surface::color(const Sample& sample) const {
     return material && material->color ? *material->color : kNoColor;
 }
 
-/// Taps on a grid over a square of the spacing in the triangle's plane; those outside the triangle do not
-/// count, for there the texture may show anything.
+/// Averages taps on a grid over a square of the spacing in the triangle's plane. Taps outside the triangle
+/// are skipped, because the texture may show anything there.
 Color8 Surface::textured(const Sample& sample, const Material& material, const Corners& corners) const {
     const Image8& image = mesh_.textures[material.texture];
     const auto [a, b, c] = mesh_.points(sample.triangle);
@@ -96,7 +96,7 @@ Color8 Surface::textured(const Sample& sample, const Material& material, const C
         std::abs(along_u.x * along_v.y - along_u.y * along_v.x) * image.width * image.height;
     const double wanted = spacing_ * std::sqrt(texels / area);
     const int taps = wanted < kMostTaps ? std::max(1, static_cast<int>(std::lround(wanted))) : kMostTaps;
-    // Two directions at right angles in the plane, as shares.
+    // Two orthogonal directions in the plane, as corner weights.
     const double uu = glm::dot(u, u), uv = glm::dot(u, v);
     const double length = std::sqrt(uu), height = area / length;
     const glm::dvec2 right(spacing_ / length, 0), up(-uv / uu * spacing_ / height, spacing_ / height);
@@ -115,7 +115,7 @@ Color8 Surface::textured(const Sample& sample, const Material& material, const C
                               along_v * static_cast<double>(sample.share.y)));
 }
 
-/// Between four texels, in linear light. v counts upwards, rows count down.
+/// Interpolates between four texels in linear light. v points up, rows count down.
 glm::vec3 Surface::texel(const Image8& image, const Material& material, const glm::dvec2& at) const {
     const double x = at.x * image.width - 0.5, y = (1 - at.y) * image.height - 0.5;
     if (!(std::abs(x) < 1e15) || !(std::abs(y) < 1e15)) return glm::vec3(linear_[kNoColor[0]]);

@@ -5,15 +5,16 @@
 
 namespace lucarne::io::mesh {
 
-/// What a mesh looks like at a sample: normals interpolated between corners, colours in linear light.
+/// What a mesh looks like at a sample: normals interpolated between corners, colours averaged in linear
+/// light.
 class Surface {
  public:
     Surface(const Mesh& mesh, double spacing);
-    /// Of length 1, on the side from which the corners turn left unless the corners' own normals say
-    /// otherwise.
+    /// Returns the unit normal: from the corners' own normals if they have some, otherwise the face's, on the
+    /// side from which its corners turn left.
     glm::vec3 normal(const Sample& sample) const;
-    /// The texture, averaged over the sample's square of its triangle; else the triangle's colour, else that
-    /// of its corners, else its material's.
+    /// Returns the colour: the texture, averaged over the sample's square within its triangle; otherwise the
+    /// colour of the triangle, of its corners or of its material, in this order.
     Color8 color(const Sample& sample) const;
 
  private:

@@ -11,7 +11,7 @@
 namespace lucarne::io::mesh {
 namespace {
 
-constexpr uint64_t kMostText = uint64_t{64} << 20;  ///< bytes of a material file
+constexpr uint64_t kMostText = uint64_t{64} << 20;  ///< of a material file
 constexpr size_t kMostTexts = 64, kMostTextures = 4096;
 constexpr uint64_t kMostAllPixels = uint64_t{1} << 28;  ///< of all textures together, three bytes each
 

@@ -12,17 +12,17 @@
 
 namespace lucarne::io::mesh {
 
-/// The files that a mesh names: materials and pictures. None may lie outside the mesh's own folder: of a path
-/// that leads out, or begins at a root or drive, the bare name is looked for beside the file that names it.
-/// What is missing or broken is said, and done without.
+/// Reads the files that a mesh names: materials and pictures. None may lie outside the mesh's own folder. If
+/// a path leads out of it, or begins at a root or drive, its last part is looked for beside the file that
+/// names it. Missing or broken files are reported and ignored.
 class Companions {
  public:
     Companions(Mesh& mesh, const std::filesystem::path& mesh_file);
-    /// The number of a picture in the mesh's textures; kNone where there is none to be had.
+    /// Returns the number of a picture in the mesh's textures; kNone if it cannot be read.
     uint32_t texture(std::string_view name, const std::filesystem::path& from);
-    /// The text of a material file, once each; `path` is its place.
+    /// Returns the text of a material file, only once for each file. Sets `path` to its place.
     std::optional<std::string> text(std::string_view name, std::filesystem::path& path);
-    uint64_t state() const { return state_; }  ///< changes with size and time of any file
+    uint64_t state() const { return state_; }  ///< changes with the size and time of any of the files
 
  private:
     std::filesystem::path place(std::string_view name, const std::filesystem::path& from) const;

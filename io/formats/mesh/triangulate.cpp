@@ -10,15 +10,15 @@ namespace lucarne::io::mesh {
 namespace {
 
 /// Cutting an ear off changes only whether its two neighbours are ears (Eberly 2002, "Triangulation by ear
-/// clipping"). Of polygons that touch or cross themselves this is not true: where no ear is known all corners
-/// are looked at again, this often in a polygon, so that its cost stays that of the square of its corners.
+/// clipping"). This does not hold for polygons that touch or cross themselves. So when no ear is known, all
+/// corners are checked again, but at most this often per polygon, so that the cost stays quadratic.
 constexpr int kMostLooks = 4;
 
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The polygon as seen against its mean normal, along the axis nearest to it: it turns left.
+/// Projects the polygon along the axis nearest to its mean normal, so that it turns left.
 std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> polygon) {
     glm::dvec3 normal(0.0);
     for (size_t i = 0; i < polygon.size(); ++i)
@@ -39,14 +39,14 @@ std::vector<glm::dvec2> flattened(std::span<const glm::dvec3> polygon) {
 
 bool convex(const std::vector<glm::dvec2>& flat) {
     const size_t n = flat.size();
-    double around = 0;  // turns left everywhere, and once only
+    double around = 0;  // the polygon must turn left everywhere and go round once
     for (size_t i = 0; i < n; ++i) {
         const glm::dvec2 &a = flat[i], &b = flat[(i + 1) % n], &c = flat[(i + 2) % n];
         if (!(turn(a, b, c) >= 0)) return false;
         const glm::dvec2 in = b - a, out = c - b;
         around += std::atan2(in.x * out.y - in.y * out.x, in.x * out.x + in.y * out.y);
     }
-    return around < 7;  // 2 pi, not 4 pi
+    return around < 7;  // 2 pi for one turn, 4 pi for two
 }
 
 bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<uint32_t>& left, size_t at) {
@@ -56,14 +56,14 @@ bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<uint32_t>& le
     if (!(turn(a, b, c) > 0)) return false;
     for (const uint32_t other : left) {
         const glm::dvec2& p = flat[other];
-        // A bridge to a hole visits a place twice: what lies on a corner is not inside.
+        // A bridge to a hole visits a place twice, so a point that coincides with a corner is not inside.
         if (p == a || p == b || p == c) continue;
         if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
     }
     return true;
 }
 
-/// The first ear from `at` on, which is `at` itself where there is none.
+/// Returns the first ear from `at` on; `at` itself if there is none.
 size_t next_ear(const std::vector<bool>& ears, const std::vector<uint32_t>& left, size_t at) {
     for (size_t tried = 0; tried < left.size() && !ears[left[at]]; ++tried) at = (at + 1) % left.size();
     return at;
@@ -95,7 +95,7 @@ bool triangulate(std::span<const glm::dvec3> polygon, std::vector<std::array<uin
             for (size_t i = 0; i < n; ++i) look(i);
             ear = next_ear(ears, left, ear);
         }
-        // Where nothing is an ear the polygon crosses itself: any corner has to do.
+        // If nothing is an ear, the polygon crosses itself, and any corner is cut off.
         triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
         look((ear + n - 2) % (n - 1));

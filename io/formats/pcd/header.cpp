@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint64_t kMostHeader = uint64_t{1} << 20;
 constexpr size_t kMostFields = 256;
-constexpr uint64_t kMostValues = 4096;  ///< of a point
+constexpr uint64_t kMostValues = 4096;  ///< in one point
 
 std::optional<ScalarType> type_of(char letter, uint32_t size) {
     switch (letter << 8 | static_cast<int>(size)) {
@@ -42,7 +42,7 @@ std::optional<ScalarType> type_of(char letter, uint32_t size) {
     }
 }
 
-/// Entries and types are in upper case by the format; some writers use lower case.
+/// Converts to upper case, which the format requires for entries and types; some writers use lower case.
 std::string upper(std::string_view word) {
     std::string result(word);
     for (char& c : result)

@@ -25,14 +25,15 @@ struct Header {
     Encoding encoding = Encoding::ascii;
     std::vector<Field> fields;
     uint64_t points = 0, width = 0, height = 1;
-    std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};  ///< x, y, z and a quaternion w, x, y, z
+    std::array<double, 7> viewpoint = {0, 0, 0, 1, 0, 0, 0};  ///< x, y, z, then a quaternion w, x, y, z
     std::vector<std::string> comments;                        ///< the lines without "# "
     uint64_t data_offset = 0;
-    uint64_t data_line = 1;  ///< number of the first line of data
+    uint64_t data_line = 1;  ///< line number of the first line of data
     uint64_t record_bytes() const;
 };
 
-/// Rejects a header that is malformed, larger than 1 MiB, without x, y and z, or that contradicts itself.
+/// Reads the header. Rejects a header that is malformed, larger than 1 MiB or without x, y and z, or that
+/// contradicts itself.
 Result<Header> read_header(const std::shared_ptr<const ByteSource>& file);
 
 }  // namespace lucarne::io::pcd

@@ -16,7 +16,7 @@ bool is_packed_color(const Field& field) {
     return (same_letters(field.name, "rgb") || has_alpha(field)) && field.bytes() == 4 && field.count == 1;
 }
 
-/// The names of a field's values; empty for what is left out.
+/// Returns a property for each of a field's values; its name is empty if the value is left out.
 std::vector<ply::Property> properties_of(const Field& field, bool packed) {
     std::vector<ply::Property> properties;
     if (packed)  // 0xAARRGGBB, little-endian
@@ -65,7 +65,7 @@ ply::Layout binary_layout(const Fields& fields, Fields::const_iterator color) {
 
 Layout make_layout(const Header& header) {
     const Fields& fields = header.fields;
-    // One packed colour, the first; none where other fields are the colour.
+    // The first packed colour, unless other fields are the colour already.
     auto color = std::find_if(fields.begin(), fields.end(), is_packed_color);
     Layout layout{binary_layout(fields, color), {}};
     const auto& columns = layout.binary.columns;

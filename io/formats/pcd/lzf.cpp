@@ -5,7 +5,7 @@
 namespace lucarne::io::pcd {
 namespace {
 constexpr size_t kWindow = 8192;                  ///< the largest distance
-constexpr uint64_t kBuffer = uint64_t{64} << 10;  ///< many passes stand side by side
+constexpr uint64_t kBuffer = uint64_t{64} << 10;  ///< small, because many passes exist at the same time
 }  // namespace
 
 LzfInput::LzfInput(std::shared_ptr<const ByteSource> file, uint64_t begin, uint64_t end)

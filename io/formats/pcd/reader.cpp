@@ -18,7 +18,7 @@ namespace {
 
 using namespace pcd;
 
-/// Binary records, one behind the other.
+/// Reads consecutive binary records.
 class BinaryReader final : public PointReader {
  public:
     BinaryReader(std::shared_ptr<const ByteSource> file, const Header& header, const ply::Layout& layout)
@@ -55,13 +55,13 @@ class BinaryReader final : public PointReader {
 };
 
 /// Where each field begins in a compressed stream, which holds all values of the first field, then all of the
-/// second.
+/// second, and so on.
 struct Compressed {
-    uint64_t begin = 0, end = 0;  ///< of the stream in the file
+    uint64_t begin = 0, end = 0;  ///< the stream's place in the file
     std::vector<LzfInput::State> fields;
 };
 
-/// Compressed fields, decoded side by side.
+/// Decodes compressed fields in parallel passes.
 class CompressedReader final : public PointReader {
  public:
     CompressedReader(const std::shared_ptr<const ByteSource>& file, const Header& header,
@@ -150,7 +150,7 @@ class PcdSource final : public PointSource {
             info_.color_bits = remarks.color_bits.value_or(color->type == ScalarType::u16 ? 16u : 0u);
         const auto& v = header_.viewpoint;
         const glm::dvec3 viewpoint(v[0], v[1], v[2]);
-        // Who writes a cloud without a grid often leaves the viewpoint at its default.
+        // Writers of clouds without a grid often leave the viewpoint at its default.
         if (info_.stations.empty() && (organised || viewpoint != glm::dvec3(0.0)))
             info_.stations.push_back({1, viewpoint});
         info_.notes.pcd = {header_.width, header_.height, header_.viewpoint};
@@ -184,11 +184,11 @@ class PcdSource final : public PointSource {
     }
 
  private:
-    /// That the file can hold what its header promises.
+    /// Checks that the file can hold what its header promises.
     Result<void> check_size() {
         const uint64_t there = file_->size() - header_.data_offset;
         uint64_t most = there / layout_.binary.packed_bytes;
-        // A value of text takes two bytes with what separates it, but for the very last; three bytes of LZF
+        // A value of text takes two bytes with its separator, except for the very last. Three bytes of LZF
         // become at most 264.
         if (header_.encoding == Encoding::ascii) most = (there + 1) / (2 * layout_.rows.fields.size());
         if (header_.encoding == Encoding::compressed) most = there * 88 / layout_.binary.packed_bytes;
@@ -202,14 +202,14 @@ class PcdSource final : public PointSource {
                                     header_.points, most));
     }
 
-    /// The others are cut off.
+    /// Keeps the first `points` points; the others count as cut off.
     void keep_first(uint64_t points) {
         add_loss(info_.losses, lost::cut_off, header_.points - points);
         header_.points = header_.width = points;
         header_.height = 1;
     }
 
-    /// Decodes all once, so that it is known to be whole.
+    /// Decodes everything once, to know that it is complete and where each field begins.
     Result<void> find_fields() {
         if (header_.points == 0) return {};
         std::array<std::byte, 8> sizes{};
@@ -234,7 +234,7 @@ class PcdSource final : public PointSource {
                 const auto bytes = static_cast<size_t>(std::min<uint64_t>(left, passed.size()));
                 auto done = input.read(std::span(passed).first(bytes));
                 if (!done && salvage_ && done.error().kind == ErrorKind::input_rejected) {
-                    // Points as far as the last field goes, as the others are whole then.
+                    // Only the last field is incomplete, so the points up to its end are whole.
                     const uint64_t before = header_.points * (layout_.binary.packed_bytes - field.bytes());
                     const bool last = &field == &header_.fields.back();
                     keep_first(last ? (input.state().decoded - before) / field.bytes() : 0);

@@ -12,13 +12,13 @@
 namespace lucarne::io::pcd {
 namespace {
 
-/// A field of the file and where its values stand in a record.
+/// A field of the file, and where its values are in a record.
 struct Output {
     enum class Kind : uint8_t {
         copy,
-        axis,  ///< of a scaled position: number `from`, as a double
+        axis,  ///< axis number `from` of a scaled position, as a double
         rgb,   ///< three bytes, packed
-        rgba,  ///< the same, and a byte at `alpha`
+        rgba,  ///< the same, with a fourth byte at `alpha`
     };
     Kind kind = Kind::copy;
     Field field;
@@ -69,7 +69,7 @@ class OutputPlan {
 
     void add(std::string name, ScalarType type, uint32_t count, uint32_t from,
              Output::Kind kind = Output::Kind::copy) {
-        std::replace(name.begin(), name.end(), ' ', '_');  // fields are told apart by blanks
+        std::replace(name.begin(), name.end(), ' ', '_');  // blanks separate the fields
         std::string unique = name;
         const auto taken = [&](const Output& o) { return o.field.name == unique; };
         for (int n = 2; std::any_of(outputs_.begin(), outputs_.end(), taken); ++n)
@@ -109,7 +109,7 @@ class PcdWriter final : public CountedWriter {
     }
 
  private:
-    /// Of a PCD source, as it was; else the only station.
+    /// Returns the viewpoint: that of a PCD source, otherwise the only station.
     static std::string viewpoint_of(const ScanInfo& info) {
         if (info.notes.pcd) return fmt::format("{}", fmt::join(info.notes.pcd->viewpoint, " "));
         const glm::dvec3 at = info.stations.size() == 1 ? info.stations[0].position : glm::dvec3(0.0);

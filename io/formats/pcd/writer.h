@@ -6,7 +6,7 @@
 
 namespace lucarne::io::pcd {
 
-/// See create_scan.
+/// For create_scan.
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options);
 

@@ -45,7 +45,7 @@ class HeaderParser {
             if (!line) return rejected(name_, "ends inside its PLY header, or the header is over 1 MiB");
             std::string_view rest = *line;
             const std::string word = lower(next_word(rest));
-            if (number == 1 || word.empty()) continue;  // "ply", recognised before
+            if (number == 1 || word.empty()) continue;  // "ply", checked before
             if (word == "end_header") break;
             if (word == "comment" || word == "obj_info") {
                 (word == "comment" ? header_.comments : header_.infos).push_back(trimmed(rest));

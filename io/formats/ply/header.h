@@ -15,8 +15,8 @@ enum class Encoding { ascii, little_endian, big_endian };
 
 struct Property {
     std::string name;
-    ScalarType type = ScalarType::f32;  ///< of the entries of a list
-    std::optional<ScalarType> count;    ///< of a list: the type of its length
+    ScalarType type = ScalarType::f32;  ///< for a list, the type of its entries
+    std::optional<ScalarType> count;    ///< only for a list: the type of its length
 };
 
 struct Element {
@@ -24,7 +24,7 @@ struct Element {
     uint64_t count = 0;
     std::vector<Property> properties;
     bool has_list() const;
-    uint64_t record_bytes() const;  ///< in the binary encodings; without lists only
+    uint64_t record_bytes() const;  ///< in the binary encodings; only without lists
 };
 
 struct Header {
@@ -38,15 +38,15 @@ struct Header {
     const Element& vertices() const { return elements[vertex]; }
 };
 
-/// Rejects a header that is malformed, larger than 1 MiB, or names no vertex element with x and y; without
-/// `salvage` also one that promises more than the file has bytes.
+/// Reads the header. Rejects a header that is malformed, larger than 1 MiB, or without a vertex element with
+/// x and y. Without `salvage` also rejects one that promises more entries than the file has bytes.
 Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
-/// "uchar", "uint8"...; empty for unknown words.
+/// Returns the type that "uchar", "uint8"... name; empty for unknown words.
 std::optional<ScalarType> type_of(std::string_view word);
-std::string_view word_of(ScalarType type);  ///< "uchar"; PLY has no 64-bit integers: empty for those
+std::string_view word_of(ScalarType type);  ///< "uchar"; empty for 64-bit integers, which PLY lacks
 
-/// The properties and comments, for a later export.
+/// Returns the properties and comments, for a later export.
 PlyNotes notes_of(const Header& header);
 
 }  // namespace lucarne::io::ply

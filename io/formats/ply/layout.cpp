@@ -41,7 +41,7 @@ class LayoutMaker {
             if (done_[i] || properties_[i].name.empty()) continue;
             if (group(i, kColorNames, names::color) || group(i, kNormalNames, names::normal)) continue;
             std::string name = attribute_name(i);
-            // These names promise a shape that a single property does not have.
+            // These names imply a shape that a single property does not have.
             for (const auto reserved : {names::color, names::normal, names::normal_oct, names::area})
                 if (name == reserved) name.insert(0, "ply_");
             layout_.schema.add(unique_name(layout_.schema, name), properties_[i].type);
@@ -54,7 +54,7 @@ class LayoutMaker {
  private:
     size_t index(std::string_view name) const { return index_of_name(properties_, name, &Property::name); }
 
-    /// What a property is called as an attribute: one of io::names, whatever the case of its letters.
+    /// Returns the attribute name of a property: one of io::names, regardless of case, if it matches.
     std::string attribute_name(size_t property) const {
         const std::string& theirs = properties_[property].name;
         for (const std::string_view ours : kKnown)
@@ -85,7 +85,7 @@ class LayoutMaker {
         }
     }
 
-    /// The type of an attribute of three components, if these can be one.
+    /// Returns the type of an attribute of these three components; empty if they cannot form one.
     std::optional<ScalarType> common(const std::array<size_t, 3>& members, bool color) const {
         const ScalarType first = properties_[members[0]].type;
         const bool same = std::all_of(members.begin(), members.end(),
@@ -102,7 +102,7 @@ class LayoutMaker {
     bool group(size_t first, const std::array<Triple, N>& spellings, std::string_view name) {
         if (layout_.schema.find(name)) return false;
         for (const Triple& triple : spellings) {
-            // Of thousands of properties few are looked for among all.
+            // A quick check first: few of the possibly thousands of properties are worth searching for.
             if (std::ranges::none_of(triple, [&](auto name_of_one) {
                     return same_letters(name_of_one, properties_[first].name);
                 }))
@@ -130,7 +130,7 @@ class LayoutMaker {
             layout_.big_endian && bytes > 1 ? Layout::Step::Kind::swap : Layout::Step::Kind::copy;
         Layout::Step step{kind, properties_[property].type, offsets_[property], to, 1};
         done_[property] = true;
-        // Neighbours on both sides go in one step; a step of copies counts bytes.
+        // Neighbouring scalars go in one step. A copy step counts bytes.
         if (kind == Layout::Step::Kind::copy) step.count = bytes;
         if (!layout_.steps.empty()) {
             auto& last = layout_.steps.back();
@@ -146,7 +146,7 @@ class LayoutMaker {
     }
 
     Layout layout_;
-    std::vector<Property> properties_;  ///< without the lists
+    std::vector<Property> properties_;  ///< without lists
     std::vector<uint32_t> offsets_;
     std::vector<bool> done_;
 };

@@ -4,11 +4,11 @@
 
 #include "io/formats/ply/header.h"
 
-// How a PLY vertex becomes a record of ours.
+// Converts a PLY vertex to a record of the schema.
 namespace lucarne::io::ply {
 
-/// The scalar properties of a vertex, packed in order: the file's own record where it is binary and has no
-/// lists, else put together first.
+/// The scalar properties of a vertex, packed in order. A binary record without lists has this form already;
+/// otherwise the record is packed first.
 struct Layout {
     /// Copies, byte-swaps or widens `count` neighbouring scalars.
     struct Step {
@@ -16,7 +16,8 @@ struct Layout {
         ScalarType type = ScalarType::u8;  ///< in the file
         uint32_t from = 0, to = 0, count = 1;
     };
-    /// A scalar property and the component it became. The attribute "" is the position.
+    /// A scalar property, and the component of an attribute that it becomes. The attribute "" is the
+    /// position.
     struct Column {
         Property property;
         std::string attribute;
@@ -27,16 +28,15 @@ struct Layout {
     std::vector<Step> steps;
     uint32_t packed_bytes = 0;
     bool big_endian = false;
-    bool flat = false;  ///< the file has no z: it is 0
+    bool flat = false;  ///< the file has no z, so z is 0
 
-    /// False (and the record is of no use) where a coordinate is not finite.
+    /// Returns false if a coordinate is not finite; the record is then invalid.
     bool unpack(const std::byte* packed, std::byte* record) const;
 };
 
-/// `x`, `y`, `z` become the position: f32 where all three are float, else f64, which holds every PLY type.
-/// red/green/blue (or diffuse_red..., r/g/b) become `color`, nx/ny/nz (or normal_x...) `normal`, where their
-/// types allow; everything else keeps its name and type.
-/// What has no name is left out.
+/// Maps `x`, `y`, `z` to the position: f32 if all three are float, otherwise f64, which holds every PLY type.
+/// Maps red/green/blue (or diffuse_red..., r/g/b) to `color` and nx/ny/nz (or normal_x...) to `normal`, if
+/// their types allow it. Everything else keeps its name and type. Properties without a name are left out.
 Layout make_layout(const std::vector<Property>& properties, Encoding encoding);
 
 }  // namespace lucarne::io::ply

@@ -20,9 +20,9 @@ namespace {
 
 constexpr size_t kNowhere = ~size_t{0};
 
-/// The index of a property, of these names the first that is there.
+/// Returns the index of the first property that has one of these names.
 size_t property_of(const Element& element, std::initializer_list<std::string_view> names, bool list) {
-    size_t alike = kNowhere;  // but for the case of its letters
+    size_t alike = kNowhere;  // first match that differs only in case
     for (const auto name : names)
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const Property& p = element.properties[i];
@@ -56,7 +56,7 @@ class MeshLoader {
             LUCARNE_TRY(skip_element(input_, header_, header_.elements[e]));
         LUCARNE_TRY(vertices(header_.vertices()));
         LUCARNE_TRY(faces_among(header_.vertex + 1, header_.elements.size()));
-        // Faces that stand before their vertices are passed over first.
+        // Faces that stand before their vertices are skipped in the first pass.
         input_ = BufferedInput(file_, header_.data_offset, file_->size());
         lost_place_ = false;
         LUCARNE_TRY(faces_among(0, header_.vertex));
@@ -107,7 +107,7 @@ class MeshLoader {
             LUCARNE_ASSIGN(const bool kept,
                            next_entry(element, i, {vertex_losses_, lost::damaged, lost::cut_off}));
             if (lost_place_) break;
-            // One that is lost keeps its number; its faces are left out.
+            // A lost vertex keeps its index; its faces are left out.
             const auto value = [&](size_t property) {
                 return !kept                  ? std::numeric_limits<double>::quiet_NaN()
                        : property == kNowhere ? 0.0
@@ -124,18 +124,18 @@ class MeshLoader {
     }
 
     uint8_t byte(double value) const {
-        // A "char" that means uchar comes as a negative number.
+        // A "char" that means uchar is read as a negative number.
         const double whole = std::round((wraps_ && value < 0 ? value + 256 : value) * to_byte_);
         return static_cast<uint8_t>(whole >= 0 ? std::min(whole, 255.0) : 0.0);
     }
 
-    /// Where what is lost is counted, and as what.
+    /// Where losses are counted, and under which names.
     struct Tally {
         Losses& losses;
         std::string_view damaged, cut;
     };
-    /// Reads entry `i`, from 0, into entry_; false where it is lost. Behind it nothing can be read where the
-    /// place in the file is lost.
+    /// Reads entry `i` (from 0) into entry_. Returns false if it is lost. Once the place in the file is lost,
+    /// nothing after it can be read.
     Result<bool> next_entry(const Element& element, uint64_t i, const Tally& tally) {
         const uint64_t begin = input_.position(), left = element.count - i;
         LUCARNE_ASSIGN(const Fate fate, fate_of(read_entry(input_, header_, element, i + 1, entry_), input_,
@@ -226,7 +226,8 @@ class MeshLoader {
         mesh_.add(polygon_, material, color);
     }
 
-    /// Two a corner; a list of any other length is none, as MeshLab writes for faces without.
+    /// A list has two coordinates per corner. Any other length means no coordinates, as MeshLab writes for
+    /// faces without them.
     void add_coordinates(std::span<const double> list) {
         if (by_vertex_ || list.size() != 2 * polygon_.size()) return;
         for (size_t c = 0; c < polygon_.size(); ++c) {
@@ -246,8 +247,8 @@ class MeshLoader {
     double to_byte_;
     bool salvage_;
     bool wraps_ = false;       ///< colours are bytes
-    bool by_vertex_ = false;   ///< texture coordinates
-    bool lost_place_ = false;  ///< where the next entry begins is not known
+    bool by_vertex_ = false;   ///< texture coordinates belong to vertices
+    bool lost_place_ = false;  ///< the beginning of the next entry is unknown
 };
 
 }  // namespace

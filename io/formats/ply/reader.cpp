@@ -1,4 +1,4 @@
-// PLY: ASCII, binary little and big endian. Source: see ply_header.h.
+// PLY: ASCII, binary little and big endian. Source: see header.h.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -111,7 +111,7 @@ class PlyReader final : public PointReader {
     bool salvage_;
     uint64_t left_, dropped_ = 0;
     Losses lost_;
-    std::vector<std::byte> packed_;  ///< a vertex put together from words or around lists
+    std::vector<std::byte> packed_;  ///< a vertex packed from words or from between lists
 };
 
 class PlySource final : public PointSource {
@@ -145,7 +145,7 @@ class PlySource final : public PointSource {
 
     const Schema& schema() const override { return layout_.schema; }
     const ScanInfo& info() const override { return info_; }
-    /// It stands for a mesh of which no face is left.
+    /// Records the faces' losses when the vertices replace a mesh without any face left.
     void stand_in(const Losses& faces) {
         add_losses(info_.losses, faces);
         add_loss(info_.losses, lost::cut_off, cut_off_);
@@ -167,20 +167,20 @@ class PlySource final : public PointSource {
  private:
     bool fixed() const { return header_.encoding != ply::Encoding::ascii && !header_.vertices().has_list(); }
 
-    /// Passes over the elements before the vertices, and checks that these can be there.
+    /// Skips the elements before the vertices, and checks that the vertices can be there.
     Result<void> find_vertices() {
         BufferedInput input(file_, header_.data_offset, file_->size());
         for (size_t e = 0; e < header_.vertex; ++e)
             LUCARNE_TRY(skip_element(input, header_, header_.elements[e]));
         vertices_offset_ = input.position();
         const auto& vertices = header_.vertices();
-        // A word of text takes two bytes with what separates it, but for the very last.
+        // A word of text takes two bytes with its separator, except for the very last.
         const uint64_t least =
             header_.encoding == ply::Encoding::ascii ? 2 * vertices.properties.size() : layout_.packed_bytes;
         const uint64_t there =
             (file_->size() - vertices_offset_ + (header_.encoding == ply::Encoding::ascii)) / least;
         if (salvage_) {
-            // In text one more, so that others are known to be missing behind the last line.
+            // For text one more, so that rows are known to be missing after the last line.
             clamp_vertices(there + (header_.encoding == ply::Encoding::ascii));
             return {};
         }
@@ -217,19 +217,19 @@ class PlySource final : public PointSource {
         }
     }
 
-    /// Where lines that are no vertices may begin at the earliest: the next element, or the end.
+    /// Returns the earliest place where lines that are no vertices may begin: the next element, or the end.
     uint64_t end_of_lines() const {
         const auto& vertices = header_.vertices();
         const auto next = header_.elements.begin() + static_cast<std::ptrdiff_t>(header_.vertex) + 1;
         const bool last = std::all_of(next, header_.elements.end(),
                                       [](const Element& element) { return element.count == 0; });
-        // A value takes two bytes with what separates it.
+        // A value takes two bytes with its separator.
         const uint64_t least = 2 * vertices.properties.size() * std::min(vertices.count, file_->size());
         return last ? file_->size() : std::min(file_->size(), vertices_offset_ + least);
     }
 
-    /// Offsets from which kBlockPoints vertices each are a sample of all. Where only the pass itself can tell
-    /// where a vertex begins, as binary lists are of any length, there is but the first.
+    /// Returns offsets. kBlockPoints vertices from each form a sample of all. With binary lists, which have
+    /// any length, only a pass can tell where a vertex begins, so only the first offset is returned.
     Result<std::vector<uint64_t>> sample_places() const {
         std::vector<uint64_t> places = {vertices_offset_};
         const uint64_t count = header_.vertices().count;
@@ -251,8 +251,8 @@ class PlySource final : public PointSource {
         return places;
     }
 
-    /// Full intensity is told by the largest component of a sample. Nothing is converted, so a wrong guess
-    /// loses nothing.
+    /// Returns the number of colour bits, judged by the largest component of a sample. Nothing is converted,
+    /// so a wrong guess loses nothing.
     Result<uint32_t> find_color_bits(std::optional<uint32_t> stated) const {
         const Attribute* color = layout_.schema.find(names::color);
         if (!color || color->type == ScalarType::u8) return 8u;
@@ -262,7 +262,7 @@ class PlySource final : public PointSource {
         for (const uint64_t place : places) {
             PlyReader reader(file_, header_, layout_, place, {});
             PointBatch batch;
-            // What is wrong further inside is for the real pass to report.
+            // The real pass will report errors further inside.
             (void)reader.read(batch, places.size() > 1 ? kBlockPoints : kBlocks * kBlockPoints);
             for (size_t i = 0; i < batch.count * 3; ++i) {
                 const std::byte* record = batch.bytes.data() + i / 3 * layout_.schema.stride;
@@ -279,7 +279,7 @@ class PlySource final : public PointSource {
     std::shared_ptr<const ByteSource> file_;
     ply::Header header_;
     bool salvage_;
-    bool faces_known_;  ///< another reads the mesh, and says what of it is lost
+    bool faces_known_;  ///< someone else reads the mesh and reports its losses
     ply::Layout layout_;
     uint64_t vertices_offset_ = 0, cut_off_ = 0;
     ScanInfo info_;

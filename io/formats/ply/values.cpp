@@ -20,7 +20,7 @@ double native_value(ScalarType type, const std::byte* at, bool big_endian) {
     return scalar_at(type, native.data());
 }
 
-/// The length of a list, 0 or more.
+/// Reads the length of a list, 0 or more.
 Result<uint64_t> list_length(BufferedInput& input, ScalarType type, bool big_endian) {
     LUCARNE_ASSIGN(const std::byte* at, take(input, scalar_bytes(type)));
     const double length = native_value(type, at, big_endian);
@@ -64,7 +64,7 @@ Result<void> read_words(BufferedInput& input, const Header& header, const Elemen
         if (p.count) {
             LUCARNE_ASSIGN(count, value(*p.count, p));
         }
-        // The line ends a list that promises more than it holds.
+        // The line may end before the list has as many values as it promises.
         for (double i = 0; i < count; ++i) {
             LUCARNE_ASSIGN(const double v, value(p.type, p));
             entry.values.push_back(v);
@@ -147,7 +147,7 @@ bool parse_scalar(ScalarType type, std::string_view word, std::byte* at) {
         default:
             break;
     }
-    // Whole numbers are sometimes written as 255.0; all PLY integers are exact in a double.
+    // Whole numbers are sometimes written as 255.0. All PLY integers are exact in a double.
     const auto value = parse_number<double>(word);
     if (!value || !(std::abs(*value) < 0x1p33) || *value != std::trunc(*value)) return false;
     const auto whole = static_cast<int64_t>(*value);
@@ -192,7 +192,7 @@ Result<Fate> fate_of(Result<void> done, const BufferedInput& input, const Header
     if (!done && (!salvage || done.error().kind != ErrorKind::input_rejected))
         return tl::unexpected(std::move(done).error());
     const bool text = header.encoding == Encoding::ascii;
-    // Nobody knows how the last line went on where others are missing behind it.
+    // If entries are missing after an unfinished last line, that line may be cut off within its last number.
     const bool cut = salvage && text && input.open_line() && (left > 1 || promises_behind(header, element));
     if (done && !cut) return Fate::kept;
     return text && !input.at_end() && input.position() > begin ? Fate::lost : Fate::rest_lost;

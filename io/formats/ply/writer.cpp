@@ -1,4 +1,4 @@
-// PLY, binary little-endian. Source: see ply_header.h.
+// PLY, binary little-endian. Source: see header.h.
 #include "io/formats/ply/writer.h"
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 namespace lucarne::io::ply {
 namespace {
 
-/// A property of the file and where its value stands in a record.
+/// A property of the file, and where its value is in a record.
 struct Output {
     std::string name;
     ScalarType from = ScalarType::u8, to = ScalarType::u8;
     uint32_t offset = 0;
 };
 
-/// The columns that the source had; none where it was no PLY.
+/// Returns the columns of the source; none if it was not PLY.
 std::vector<Layout::Column> source_columns(const FormatNotes& notes) {
     if (!notes.ply) return {};
     std::vector<Property> properties;
@@ -34,7 +34,7 @@ class OutputPlan {
     std::vector<Output> make(const std::vector<Layout::Column>& columns) {
         for (const Layout::Column& column : columns) {
             const auto value = find(column.attribute, column.component);
-            // The source's own type where the attribute still holds its values.
+            // Keeps the source's own type if the attribute still holds its values.
             if (value)
                 add(column.attribute, column.component, column.property.name, *value,
                     keeps_type(column, value->type) ? column.property.type : value->type);
@@ -61,8 +61,8 @@ class OutputPlan {
         if (!a || component >= a->components) return std::nullopt;
         return Value{a->type, a->offset + component * static_cast<uint32_t>(scalar_bytes(a->type))};
     }
-    /// A source type that the reader turned into `held`: the same, bytes called char, integers as
-    /// coordinates.
+    /// Returns whether the reader turned this source type into `held`: the same type, bytes called char, or
+    /// integers as coordinates.
     static bool keeps_type(const Layout::Column& column, ScalarType held) {
         const ScalarType source = column.property.type;
         return source == held || (scalar_bytes(source) == 1 && scalar_bytes(held) == 1) ||  // char for uchar
@@ -90,7 +90,7 @@ class OutputPlan {
     }
     void add(const std::string& attribute, uint32_t component, const std::string& name, Value value,
              ScalarType to) {
-        std::string word = name;  // properties are told apart by blanks
+        std::string word = name;  // blanks separate the properties
         std::replace(word.begin(), word.end(), ' ', '_');
         std::string unique = word;
         const auto taken = [&](const Output& o) { return o.name == unique; };
@@ -124,7 +124,7 @@ class PlyWriter final : public CountedWriter {
     }
 
  private:
-    /// The comments of a PLY source, but for those that are written anew.
+    /// Returns the comments of a PLY source, except those that are written again.
     static std::string kept_lines(const ScanInfo& info) {
         if (!info.notes.ply) return {};
         std::string lines;

@@ -12,7 +12,7 @@ std::string with_points(std::string_view text) {
     return points;
 }
 
-/// Whether every word, without a comma at its end, has a decimal comma: "1,5, 2,5, 3,5".
+/// Returns whether every word, apart from a comma at its end, has a decimal comma: "1,5, 2,5, 3,5".
 bool may_be_decimal(std::string_view line) {
     auto words = split(line, ' ');
     return words.size() >= 3 && std::ranges::all_of(words, [](std::string_view word) {
@@ -44,7 +44,7 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
         line.remove_prefix(more ? length + 1 : length);
         while (!cell.empty() && is_blank(cell.back())) cell.remove_suffix(1);
         if ((more && separator != ' ') || !cell.empty())
-            cells.push_back(cell);  // one behind the last means nothing
+            cells.push_back(cell);  // a separator after the last cell means nothing
     }
     return cells;
 }

@@ -18,7 +18,7 @@ constexpr Triple kAxes = {"x", "y", "z"}, kColor = {"red", "green", "blue"}, kNo
 struct Alias {
     std::string_view theirs, ours;
 };
-// As compared: lower case, letters and digits only.
+// In the form in which names are compared: lower case, only letters and digits.
 constexpr std::array kAliases = std::to_array<Alias>({
     {"xm", "x"},
     {"ym", "y"},
@@ -66,15 +66,15 @@ constexpr std::array kAliases = std::to_array<Alias>({
     {"scananglerank", "scan_angle_rank"},
     {"infrared", "nir"},
 });
-// Of an axis that no column is called by its own name, as they may mean something else. What is no ASCII is
-// gone from names that are compared: "hhe" is Höhe.
+// Used only for an axis that no column names directly, because these names may mean something else. Names
+// that are compared have lost all non-ASCII letters: "hhe" is Höhe.
 constexpr std::array kSurveyors = std::to_array<Alias>({
     {"e", "x"},          {"east", "x"},     {"easting", "x"}, {"ost", "x"},      {"ostwert", "x"},
     {"rechtswert", "x"}, {"n", "y"},        {"north", "y"},   {"northing", "y"}, {"nord", "y"},
     {"nordwert", "y"},   {"hochwert", "y"}, {"h", "z"},       {"height", "z"},   {"elevation", "z"},
     {"elev", "z"},       {"altitude", "z"}, {"hhe", "z"},     {"hoehe", "z"},
 });
-/// Attributes whose type is agreed on (io/points.h).
+/// Attributes with a fixed type (io/points.h).
 struct Known {
     std::string_view name;
     ScalarType type;
@@ -95,7 +95,7 @@ constexpr std::array kKnown = std::to_array<Known>({
     {names::gps_time, ScalarType::f64},
 });
 
-/// As names are compared, without a unit in brackets.
+/// Returns a name in the form in which names are compared, without a unit in brackets.
 std::string plain_name(std::string_view theirs) {
     std::string plain;
     for (const char c : theirs.substr(0, theirs.find_first_of("[("))) {
@@ -106,7 +106,7 @@ std::string plain_name(std::string_view theirs) {
     }
     return plain;
 }
-/// Empty where there is none.
+/// Returns Lucarne's name; empty if there is none.
 std::string_view alias_of(std::string_view theirs, std::span<const Alias> aliases) {
     const auto found = std::ranges::find(aliases, plain_name(theirs), &Alias::theirs);
     return found == aliases.end() ? std::string_view() : found->ours;
@@ -183,7 +183,7 @@ bool looks_like_color(const Sample& sample, size_t column) {
     return whole || most <= 1;
 }
 
-/// Three columns of whole numbers from 0 to 255.
+/// Returns whether three columns hold whole numbers from 0 to 255.
 bool looks_like_bytes(const Sample& sample, size_t column) {
     for (size_t c = column; c < column + 3; ++c)
         if (const Look look = look_at(sample, c); !look.whole || look.least < 0 || look.most > 255)
@@ -191,14 +191,15 @@ bool looks_like_bytes(const Sample& sample, size_t column) {
     return true;
 }
 
-/// Whether a column counts up: the numbers of points.
+/// Returns whether a column counts up, as numbers of points do.
 bool counts_up(const Sample& sample, size_t column) {
     for (size_t row = 1; row < sample.rows(); ++row)
         if (!(sample.at(row, column) > sample.at(row - 1, column))) return false;
     return sample.rows() > 1 && look_at(sample, column).whole;
 }
 
-/// The columns of x, y and z. A stray line of words makes no column of words, nothing makes none of numbers.
+/// Returns the columns of x, y and z. A single line of words does not make its column a column of words, and
+/// a column without any number is not a column of numbers.
 std::optional<std::array<size_t, 3>> guess_axes(const Sample& sample) {
     std::vector<size_t> numbers;
     for (size_t column = 0; column < sample.columns && numbers.size() < 4; ++column) {
@@ -227,7 +228,7 @@ ScalarType guessed_type(std::string_view name, const Look& look, bool whole_file
     };
     for (const Known& known : kKnown)
         if (name == known.name && fits(known.type)) return known.type;
-    // Times in nanoseconds and the like, which a double would round.
+    // Times in nanoseconds and similar numbers, which a double would round.
     if (look.whole && look.least > 0x1p53 && look.most < 0x1p63) return ScalarType::i64;
     return look.numbers && whole_file && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
 }
@@ -301,7 +302,7 @@ class LayoutMaker {
     void scalar(size_t column) {
         const Column& c = columns_[column];
         std::string name = c.name;
-        // These names promise a shape that a single column does not have.
+        // These names imply a shape that a single column does not have.
         for (const auto reserved : {names::color, names::normal, names::normal_oct, names::area})
             if (name == reserved) name.insert(0, "text_");
         const auto type = c.type.value_or(guessed_type(name, look_at(sample_, column), sample_.whole));
@@ -343,7 +344,7 @@ Result<std::vector<Column>> parse_columns(std::string_view text) {
 std::optional<std::vector<Column>> written_columns(std::string_view text) {
     std::vector<Column> columns;
     for (const auto cell : split(text, ',')) {
-        const size_t colon = cell.rfind(':');  // names may have one
+        const size_t colon = cell.rfind(':');  // names may contain a colon
         const auto type = colon == cell.npos ? std::nullopt : scalar_type(cell.substr(colon + 1));
         if (!type || colon == 0) return std::nullopt;
         columns.push_back({printable(cell.substr(0, colon)), type});

@@ -1,6 +1,6 @@
 // PTX: scans as grids, each with the pose of its scanner. Source: Leica Geosystems, "Cyclone PTX format":
 // number of columns, number of rows, scanner position, its three axes, a 4x4 matrix for row vectors; then a
-// line a point: x y z intensity [r g b] in the scanner's coordinates, zeros where a ray met nothing.
+// line for each point: x y z intensity [r g b] in the scanner's coordinates, zeros where a ray hit nothing.
 #include <algorithm>
 #include <array>
 
@@ -20,14 +20,14 @@ namespace {
 using namespace text;
 
 struct Scan {
-    uint64_t rows = 0;  ///< that it promises
+    uint64_t rows = 0;  ///< promised by the header
     RowLayout::Pose pose;
     glm::dvec3 station{0.0};
     uint64_t begin = 0, end = 0, first_line = 0;
-    size_t values = 0;  ///< in a row: 3, 4 or 7
+    size_t values = 0;  ///< per row: 3, 4 or 7
 };
 
-/// The numbers of a line, if there are just as many.
+/// Returns the numbers of a line, if there are exactly N.
 template <size_t N>
 std::optional<std::array<double, N>> numbers(std::string_view line) {
     std::array<double, N> values{};
@@ -45,11 +45,11 @@ std::optional<uint64_t> whole(std::string_view line) {
     return next_word(line).empty() ? value : std::nullopt;
 }
 
-/// Finds the scans: the whole file is passed over, because only its lines tell where the next scan begins.
+/// Finds the scans. It must read the whole file, because only the lines tell where the next scan begins.
 class ScanFinder {
  public:
-    /// With `salvage` the last scan may have fewer rows than it promises, and what is behind the last that
-    /// can be made out is left out.
+    /// With `salvage` the last scan may have fewer rows than it promises, and unreadable text after the last
+    /// scan is left out.
     ScanFinder(std::shared_ptr<const ByteSource> file, char line_end, bool salvage)
         : size_(file->size()), line_end_(line_end), salvage_(salvage), input_(std::move(file), 0, size_) {}
 
@@ -135,8 +135,8 @@ class ScanFinder {
             const glm::dvec3 row((*values)[0], (*values)[1], (*values)[2]);
             (i < 3 ? scan.pose.axes[i] : scan.pose.origin) = row;
         }
-        // The scanner is the origin of its own coordinates; where these are the world's already, its position
-        // says where it stood.
+        // The scanner is at the origin of its own coordinates. If these are the world's already, the stated
+        // position says where it stood.
         if (scan.pose.axes != glm::dmat3(1.0) || scan.pose.origin != glm::dvec3(0.0))
             scan.station = scan.pose.origin;
         return scan;
@@ -146,7 +146,7 @@ class ScanFinder {
         scan.begin = input_.position();
         scan.first_line = line_ + 1;
         uint64_t left = scan.rows;
-        // How many values a row has is told by the first that is a point.
+        // The first row that is a point tells how many values a row has.
         for (bool point = false; left > 0 && !point; --left) {
             LUCARNE_ASSIGN(const auto line, input_.line(line_end_));
             if (!line) return truncated(left, scan.rows);
@@ -168,7 +168,7 @@ class ScanFinder {
             if (lines < left) {
                 left -= lines;
                 input_.skip(bytes.size());
-                if (last && left == 1) break;  // the last row of the file lacks its line end
+                if (last && left == 1) break;  // the last row of the file may lack its line end
                 continue;
             }
             const char* at = text;
@@ -202,7 +202,7 @@ class ScanFinder {
     char line_end_;
     bool salvage_, lost_ = false;
     BufferedInput input_;
-    uint64_t line_ = 0;  ///< the last that was read, from 1
+    uint64_t line_ = 0;  ///< the last line that was read, from 1
     std::optional<Scan> cut_off_;
 };
 
@@ -281,7 +281,7 @@ Result<std::unique_ptr<PointSource>> open_ptx(std::shared_ptr<const ByteSource> 
     return std::make_unique<PtxSource>(std::move(file), scans, line_end, options, finder.lost_a_scan());
 }
 
-/// Two counts and three numbers.
+/// Returns whether the text begins with two counts and three numbers.
 bool is_ptx(std::string_view head) {
     head = without_mark(head);
     const char line_end = line_end_of(head);

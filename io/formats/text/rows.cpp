@@ -14,10 +14,10 @@
 namespace lucarne::io::text {
 namespace {
 
-constexpr size_t kPieces = 16, kReadBytes = size_t{256} << 10;  ///< parsed side by side
+constexpr size_t kPieces = 16, kReadBytes = size_t{256} << 10;  ///< pieces are parsed in parallel
 constexpr size_t kLongestLine = size_t{1} << 20;
 
-/// Whether `value` is a whole number of this type, stored at `at`. A signed byte takes 128 to 255 as well:
+/// Stores `value` at `at` if it is a whole number of this type. A signed byte may also be 128 to 255, because
 /// some writers mean unsigned.
 template <class T>
 bool store_whole(double value, std::byte* at) {
@@ -28,7 +28,7 @@ bool store_whole(double value, std::byte* at) {
     return true;
 }
 
-/// Infinite where it is too large.
+/// Returns the nearest float; infinity if the value is too large.
 float nearest_float(double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
     return std::abs(value) > kMost
@@ -57,14 +57,14 @@ bool store_value(ScalarType type, double value, std::byte* at) {
             store(at, value);
             return true;
         default:
-            return false;  // 64-bit integers do not come as doubles
+            return false;  // 64-bit integers are not parsed as doubles
     }
 }
 
 template <class T>
 bool store_exactly(std::string_view word, std::byte* at) {
     constexpr auto kLeast = static_cast<double>(std::numeric_limits<T>::min()),
-                   kEnd = static_cast<double>(std::numeric_limits<T>::max());  // rounded up: one more
+                   kEnd = static_cast<double>(std::numeric_limits<T>::max());  // rounded up by one
     auto value = parse_number<T>(word);
     if (const auto real = value ? std::nullopt : parse_number<double>(word);  // "1.7e18"
         real && *real >= kLeast && *real < kEnd && *real == std::trunc(*real))
@@ -80,7 +80,7 @@ class RowParser {
 
     void parse() {
         const size_t stride = layout_.schema.stride;
-        // More room than the text could fill is never asked for.
+        // Reserves no more records than the text can hold.
         const size_t row_bytes =
             least_cell_bytes(layout_.separator) * std::max<size_t>(1, layout_.fields.size());
         const size_t most = static_cast<size_t>(end_ - at_) / row_bytes + 1;
@@ -135,7 +135,7 @@ class RowParser {
     bool at_separator() const { return *at_ == layout_.separator && layout_.separator != ' '; }
     bool ends_word(char c) const { return is_blank(c) || c == layout_.line_end || c == layout_.separator; }
 
-    /// The word at the cursor, which is moved behind it.
+    /// Returns the word at the cursor and moves the cursor behind it.
     std::string_view word() {
         const char* first = at_;
         at_ = behind_quotes(at_, end_, layout_.line_end);
@@ -161,7 +161,8 @@ class RowParser {
         return parsed.has_value();
     }
 
-    /// One row from the cursor on, behind which it is left. False: the cursor is at what does not fit.
+    /// Parses one row from the cursor and leaves the cursor behind it. Returns false with the cursor at the
+    /// text that does not fit.
     bool parse_row(std::byte* record) {
         bool first = true;
         for (const Field& field : layout_.fields) {
@@ -174,7 +175,7 @@ class RowParser {
             if (!parse_field(field, record)) return false;
             skip_blanks();
         }
-        if (at_separator()) {  // one behind the last value
+        if (at_separator()) {  // a separator after the last value
             ++at_;
             skip_blanks();
         }
@@ -210,7 +211,7 @@ class RowParser {
         return false;
     }
 
-    /// Nothing between two separators: no coordinate, no number, or 0 where a type has no such value.
+    /// Handles an empty cell: a missing coordinate, NaN, or 0 for types without NaN.
     bool missing_value(const Field& field, std::byte* record) {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         if (field.kind == Field::Kind::position) position_[field.to] = kNone;
@@ -227,7 +228,7 @@ class RowParser {
             const auto value = parse_number<float>(text);
             if (!value) return false;
             std::memcpy(&bits, &*value, sizeof bits);
-            // Bits that are no number were lost when they were written as text.
+            // A NaN loses its bits when it is written as text.
             if (!std::isfinite(*value)) bits = kNoColor;
         } else {
             const auto value = parse_number<int64_t>(text);
@@ -257,7 +258,8 @@ class RowParser {
         return true;
     }
 
-    /// A line that is no row: a count, a missed ray without its other values, or an error.
+    /// Handles a line that is no row: a count, a ray that hit nothing and lacks its other values, or an
+    /// error.
     bool odd_row(const char* line) {
         const char* last =
             static_cast<const char*>(std::memchr(line, layout_.line_end, static_cast<size_t>(end_ - line)));
@@ -267,8 +269,8 @@ class RowParser {
         const bool alone = next_word(others).empty();
         if (const auto count = parse_number<uint64_t>(first); layout_.has_counts && alone && count) {
             if (*count > std::numeric_limits<uint64_t>::max() - piece_.promised) {
-                piece_.problem = fmt::format("the count {} cannot be", first);
-                return false;  // also with `salvage`
+                piece_.problem = fmt::format("the count {} is too large", first);
+                return false;  // an error even with `salvage`
             }
             piece_.promised += *count;
             at_ = last + 1;
@@ -290,7 +292,7 @@ class RowParser {
     }
 
     void explain(const char* line, const char* last) {
-        // The field that the row failed at.
+        // Finds the field at which the row failed.
         at_ = line;
         size_t done = 0;
         skip_blanks();
@@ -305,7 +307,7 @@ class RowParser {
             skip_blanks();
         }
         if (failed_ >= last)
-            piece_.problem = fmt::format("it has {} values, {} belong in a row", done, layout_.fields.size());
+            piece_.problem = fmt::format("it has {} values instead of {}", done, layout_.fields.size());
         else if (done >= layout_.fields.size())
             piece_.problem = fmt::format("it has more than the {} values of a row", layout_.fields.size());
         else
@@ -337,7 +339,7 @@ class RowReader final : public PointReader {
         batch.count = 0;
         while (batch.count < wanted) {
             if (next_ == kPieces) {
-                if (batch.count > 0) break;  // so that an error hides no point before it
+                if (batch.count > 0) break;  // an error must not hide the points before it
                 LUCARNE_ASSIGN(const bool more, parse_window());
                 if (!more) break;
             }
@@ -349,7 +351,7 @@ class RowReader final : public PointReader {
             batch.count += count;
             taken_ += count;
             if (taken_ < piece.points) continue;
-            // What is good before a bad row is handed out first.
+            // Returns the good points before a bad row first.
             if (!piece.problem.empty() && batch.count > 0) break;
             LUCARNE_TRY(finish_piece(piece));
         }
@@ -393,7 +395,7 @@ class RowReader final : public PointReader {
         return piece.points + piece.dropped + piece.missed + piece.bad;
     }
 
-    /// Fewer rows than promised are an error. More than a count says do no harm.
+    /// Checks the number of rows. Fewer rows than promised are an error; more than a count states are not.
     Result<void> end_section() {
         const auto& rows = sections_[section_].rows;
         const uint64_t promised = rows.value_or(promised_);
@@ -409,7 +411,7 @@ class RowReader final : public PointReader {
                         fmt::format("ends early: {} of {} points are missing", promised - rows_, promised));
     }
 
-    /// Reads the next lines and parses them, all cores at once. False at the end of the last section.
+    /// Reads the next lines and parses them on all cores. Returns false at the end of the last section.
     Result<bool> parse_window() {
         while (at_ >= sections_[section_].end && carried_ == 0) {
             LUCARNE_TRY(end_section());
@@ -442,7 +444,8 @@ class RowReader final : public PointReader {
         return true;
     }
 
-    /// The file ends within a line. Where rows are missing behind it, nobody knows how it went on.
+    /// Called when the file ends within a line. If rows are missing after it, drops its point, because its
+    /// last number may be cut off.
     void distrust_last() {
         uint64_t rows = rows_, promised = promised_;
         Piece* last = nullptr;
@@ -454,7 +457,8 @@ class RowReader final : public PointReader {
         if (last && last->ends_in_point && rows < sections_[section_].rows.value_or(promised)) --last->points;
     }
 
-    /// Whole lines from the start of text_ on, `lines_bytes_` of them; behind them what is carried over.
+    /// Fills text_ with whole lines, `lines_bytes_` bytes in all; the unfinished rest after them is carried
+    /// over.
     Result<void> fill_window() {
         const Section& section = sections_[section_];
         text_.erase(0, lines_bytes_);
@@ -485,8 +489,8 @@ class RowReader final : public PointReader {
     std::string text_;
     size_t lines_bytes_ = 0, carried_ = 0;
     std::vector<Piece> pieces_;
-    size_t next_;       ///< piece to hand out
-    size_t taken_ = 0;  ///< points of it
+    size_t next_;       ///< the piece to return next
+    size_t taken_ = 0;  ///< number of its points already returned
 };
 
 }  // namespace

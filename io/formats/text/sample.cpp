@@ -13,12 +13,12 @@ constexpr uint64_t kRowsKept = 16384;
 
 class Sampler {
  public:
-    /// Of the rows at least `step` bytes lie between the beginnings of two that are kept.
+    /// The beginnings of two kept rows are at least `step` bytes apart.
     Sampler(const RowLayout& layout, size_t columns, uint64_t step) : layout_(layout), step_(step) {
         sample_.columns = columns;
     }
 
-    /// Whole lines.
+    /// Looks at whole lines.
     void look(std::string_view text) {
         uint64_t next = 0, at = 0;
         while (!text.empty()) {
@@ -36,7 +36,7 @@ class Sampler {
             auto cells = split(line, layout_.separator);
             while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
             const bool open = layout_.separator != ' ' && line.ends_with(layout_.separator);
-            if (open && cells.size() + 1 == sample_.columns) cells.emplace_back();  // the last is empty
+            if (open && cells.size() + 1 == sample_.columns) cells.emplace_back();  // the last cell is empty
             keep(cells);
         }
     }
@@ -47,7 +47,7 @@ class Sampler {
         std::vector<uint64_t> words(columns);
         for (size_t i = 0; i < words_.size(); ++i) words[i % columns] += words_[i];
         for (const uint64_t count : words) sample_.words.push_back(100 * count > rows);
-        // A row with a stray word says nothing of what the others are.
+        // A row with a word in a column of numbers does not show what the other rows are like.
         size_t kept = 0;
         for (size_t row = 0; row < rows; ++row) {
             bool stray = false;
@@ -77,7 +77,7 @@ class Sampler {
 
     const RowLayout& layout_;
     uint64_t step_, rows_ = 0;
-    std::vector<bool> words_;  ///< of each value: it is none, but a word
+    std::vector<bool> words_;  ///< for each value: it is a word and no number
     Sample sample_;
 };
 

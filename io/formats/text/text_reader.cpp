@@ -1,4 +1,4 @@
-// Rows of numbers: XYZ, TXT, CSV, ASC, and PTS, whose rows stand behind their count.
+// Rows of numbers: XYZ, TXT, CSV, ASC, and PTS, whose rows follow a count.
 #include <algorithm>
 #include <array>
 
@@ -25,12 +25,12 @@ constexpr std::string_view kNoRows =
     "is in no format that can be read: it is text without rows of three numbers or more";
 constexpr std::string_view kColumnsRemark = "lucarne columns ";
 
-/// What stands before the rows.
+/// The part of the file before the rows.
 struct Head {
-    uint64_t begin = 0, line = 1;  ///< of the count, else of the first row; lines count from 1
+    uint64_t begin = 0, line = 1;  ///< of the count, otherwise of the first row; lines count from 1
     std::optional<uint64_t> count;
     std::string header, comment;       ///< the last of each
-    std::vector<std::string> remarks;  ///< comments of our own
+    std::vector<std::string> remarks;  ///< Lucarne's own comments
     RowLayout layout;                  ///< separator and line end
     size_t columns = 0;
 };
@@ -175,7 +175,7 @@ class TextSource final : public PointSource {
         for (const bool is_header : {true, false}) {
             const std::string& text = is_header ? head_.header : head_.comment;
             auto words = split(text, head_.layout.separator);
-            // A comment may be cut by blanks where the rows are cut by commas.
+            // Blanks may separate the words of a comment even if commas separate the cells of the rows.
             if (!is_header && words.size() != sample.columns) words = split(text, ' ');
             auto columns = named_columns(words);
             if (columns && words.size() == sample.columns) return std::move(*columns);
@@ -227,7 +227,7 @@ Result<std::unique_ptr<PointSource>> open_text(std::shared_ptr<const ByteSource>
     return source;
 }
 
-/// No control characters but white space.
+/// Returns whether there are no control characters except white space.
 bool is_text(std::string_view head) {
     return std::all_of(head.begin(), head.end(), [](char c) {
         return static_cast<unsigned char>(c) >= ' ' || is_blank(c) || c == '\n';
@@ -240,7 +240,7 @@ const Format& text_format() {
     static constexpr Format kFormat{"XYZ", ".xyz", is_text, open_text, text::create, true};
     return kFormat;
 }
-// The same to read; written with a header.
+// Read in the same way; written with a header.
 const Format& txt_format() {
     static constexpr Format kFormat{"TXT", ".txt", is_text, open_text, text::create, true};
     return kFormat;

@@ -18,19 +18,19 @@
 namespace lucarne::io::text {
 namespace {
 
-constexpr size_t kPieceRows = 4096, kPieceBytes = size_t{1} << 20, kPiecesAtOnce = 64;  ///< at most
-constexpr size_t kLongestNumber = 32;  ///< characters, with its separator
-constexpr size_t kMostStations = 500;  ///< the first row has to be in the first 64 KiB of a file
+constexpr size_t kPieceRows = 4096, kPieceBytes = size_t{1} << 20, kPiecesAtOnce = 64;  ///< upper limits
+constexpr size_t kLongestNumber = 32;  ///< characters, including the separator
+constexpr size_t kMostStations = 500;  ///< the first row must be within the first 64 KiB of a file
 
 struct Output {
     std::string name;
     ScalarType type = ScalarType::f64;
     uint32_t offset = 0;
-    std::optional<Decimal> decimal;               ///< of a scaled coordinate
-    std::optional<std::array<double, 2>> scaled;  ///< scale and offset, where these are no decimal fractions
+    std::optional<Decimal> decimal;               ///< for a scaled coordinate
+    std::optional<std::array<double, 2>> scaled;  ///< scale and offset, if these are no decimal fractions
 };
 
-/// What may stand in a header, and between the commas of our own comment.
+/// Returns a name that may stand in a header, and between the commas of Lucarne's comment.
 std::string word_of(std::string_view name) {
     std::string word(name);
     for (char& c : word)
@@ -70,7 +70,7 @@ std::vector<Output> outputs_of(const Schema& schema) {
     return outputs;
 }
 
-/// The shortest text that reads back as the same value.
+/// Writes the shortest text that reads back as the same value.
 template <class T>
 char* put(const std::byte* at, char* to) {
     return std::to_chars(to, to + kLongestNumber, load<T>(at)).ptr;

@@ -6,9 +6,9 @@
 
 namespace lucarne::io::text {
 
-/// See create_scan: rows of numbers, between commas where the name ends in .csv, else between blanks. What
-/// they are is said by a header line and, for ourselves, by comments with the types, the unit and the
-/// stations; a name ending in .xyz has nothing but the rows.
+/// For create_scan: writes rows of numbers, separated by commas if the name ends in .csv, otherwise by
+/// blanks. A header line names the columns; comments that only Lucarne reads add the types, the unit and the
+/// stations. A file ending in .xyz has only the rows.
 Result<std::unique_ptr<PointWriter>> create(const std::filesystem::path& path, const Schema& schema,
                                             const ScanInfo& info, const WriteOptions& options);
 

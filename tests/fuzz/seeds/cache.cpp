@@ -1,5 +1,5 @@
-// A cache of few points and several levels in the form that fuzz_cache takes. The converter makes caches of
-// one node of so few points.
+// Makes a cache with few points and several levels in the form that fuzz_cache takes. The converter would
+// make only one node of so few points.
 #include <stdexcept>
 #include <string>
 
@@ -19,7 +19,7 @@ SourceHeader header() {
     header.schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
     header.schema.add(std::string(io::names::area), io::ScalarType::u16);
     header.schema.add(std::string(io::names::classification), io::ScalarType::u8);
-    header.min = glm::dvec3(1);  // add_node() widens them
+    header.min = glm::dvec3(1);  // add_node() enlarges them
     header.max = glm::dvec3(0);
     io::ScanInfo scan;
     scan.path = "a.las";
@@ -28,7 +28,7 @@ SourceHeader header() {
     return header;
 }
 
-/// `count` points spread over the node's cube.
+/// Adds a node with `count` points spread over its cube.
 Result<void> add_node(CacheWriter& writer, SourceHeader& whole, NodeKey key, uint8_t children, uint32_t count,
                       uint64_t below) {
     const uint32_t stride = whole.schema.stride;

@@ -1,11 +1,11 @@
-// A payload with every method of octree/codec in the form that fuzz_codec takes.
+// Makes a payload with every method of octree/codec, in the form that fuzz_codec takes.
 #include "io/core/random.h"
 #include "octree/codec/payload.h"
 #include "tests/fuzz/seeds/seeds.h"
 
 void lucarne::fuzz::codec_seeds(const Seeds& seeds) {
     constexpr uint16_t kPoints = 300;
-    io::Schema schema;  // the one of kind 204 in fuzz_codec.cpp
+    io::Schema schema;  // the schema of kind 204 in fuzz_codec.cpp
     schema.position = io::PositionType::i32_scaled;
     schema.stride = 12;
     schema.add("color", io::ScalarType::u16, 3);

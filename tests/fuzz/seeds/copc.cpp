@@ -1,4 +1,5 @@
-// COPC by our own writer: six levels of one octant, so deep that the hierarchy has a second page.
+// Makes COPC with Lucarne's own writer: six levels of one octant, so deep that the hierarchy has a second
+// page.
 #include <stdexcept>
 
 #include "io/formats/copc/writer.h"

@@ -1,4 +1,4 @@
-// Small E57 files without checksums, one of each kind, as fuzz_e57 takes them.
+// Makes small E57 files of each kind without checksums, as fuzz_e57 takes them.
 #include "tests/fuzz/seeds/seeds.h"
 #include "tests/io/formats/e57/e57_builder.h"
 
@@ -45,7 +45,7 @@ BuiltFile spherical() {
     return {{scan}};
 }
 
-/// Every width of integers, so many values that bits cross bytes, in packets of uneven lengths.
+/// Every width of integers, with so many values that they cross byte borders, in packets of uneven lengths.
 BuiltFile widths() {
     BuiltScan scan{kXyzFields, 6, ""};
     std::vector<std::string> streams(3, std::string(48, '\x3f'));
@@ -57,7 +57,7 @@ BuiltFile widths() {
     return {{scan}};
 }
 
-/// Points without a bit, and a pose whose quaternion is 0.
+/// Points that take no bits, and a pose whose quaternion is 0.
 BuiltFile constants() {
     BuiltScan scan{integer_field("cartesianX", 1, 1) + integer_field("cartesianY", 2, 2) +
                        integer_field("cartesianZ", 3, 3),

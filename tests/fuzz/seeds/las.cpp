@@ -1,5 +1,5 @@
-// LAS of every version and point format by hand (tests/io/formats/las/las_builder.h), without and with all
-// that may stand beside the points.
+// Makes LAS of every version and point format by hand (tests/io/formats/las/las_builder.h), with and without
+// everything that may stand beside the points.
 #include <fmt/format.h>
 
 #include "io/formats/las/header.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace io::testing;
 
-/// Three records whose bytes differ.
+/// Returns three records whose bytes differ.
 std::vector<std::string> records_of(size_t length) {
     std::vector<std::string> records(3, std::string(length, '\0'));
     for (size_t i = 0; i < records.size(); ++i)
@@ -20,7 +20,7 @@ std::vector<std::string> records_of(size_t length) {
     return records;
 }
 
-/// Bytes of a record of this point format, wave packets included.
+/// Returns the bytes of a record of this point format, including wave packets.
 size_t format_bytes(uint8_t format) {
     constexpr size_t kBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
     return kBytes[format];
@@ -34,7 +34,7 @@ LasFile file_of(uint8_t minor, uint8_t format) {
     return file;
 }
 
-/// Descriptors, coordinate systems in both ways, stations, records behind the points.
+/// Extra bytes descriptors, both kinds of coordinate systems, stations, records after the points.
 LasFile with_records() {
     LasFile file = file_of(4, 7);
     file.encoding = 1 << 4;

@@ -1,5 +1,5 @@
-// LAZ in layers by our own writer, with chunks of fixed and of any size. Point by point, which we only read:
-// any bytes are a code of some points, so the bytes are noise behind a first point.
+// Makes LAZ in layers with Lucarne's own writer, with chunks of fixed and variable size. Makes LAZ point by
+// point from random bytes after a first point, because any bytes decode to some points.
 #include <span>
 
 #include <fmt/format.h>
@@ -27,7 +27,8 @@ io::las::Header header_of(uint8_t format, uint16_t extra) {
     return header;
 }
 
-/// The table of chunks of these bytes (and points, where they vary), and where it begins before the chunks.
+/// Returns the chunks with their table: the sizes of the chunks (and their points, if variable). The table's
+/// offset stands before the chunks.
 std::string with_table(const std::vector<std::string>& chunks, const std::vector<uint32_t>& points,
                        uint64_t begin) {
     std::string all;
@@ -54,14 +55,14 @@ std::string with_table(const std::vector<std::string>& chunks, const std::vector
 
 constexpr uint16_t kPointWise = 1, kPointWiseChunked = 2;
 
-/// Noise that is the code of `count` points and ends with the last of them, as a chunk has to.
+/// Returns random bytes that decode to `count` points and end with the last of them, as a chunk must.
 std::string noise_chunk(const laz::Compression& compression, uint32_t record_length, uint32_t count,
                         Random& random) {
     std::string noise(record_length + 80 * size_t{count}, '\0');
     for (char& byte : noise) byte = static_cast<char>(random.next());
     auto decoder = laz::ChunkDecoder::create("a seed", compression, count, std::as_bytes(std::span(noise)));
     std::vector<std::byte> records(size_t{count} * record_length);
-    if (!decoder || !decoder->decode(count, records.data())) return {};  // add_scan then says so
+    if (!decoder || !decoder->decode(count, records.data())) return {};  // add_scan reports it then
     return noise.substr(0, decoder->consumed());
 }
 
@@ -93,7 +94,7 @@ std::string point_wise(uint8_t format, uint16_t extra, uint16_t compressor, bool
                         : with_table(chunks, variable ? points : std::vector<uint32_t>(), front.size()));
 }
 
-/// By our writer: records that change now and then.
+/// Made with Lucarne's own writer: records that change now and then.
 std::string layered(const Seeds& seeds, uint8_t format, bool extra, size_t points) {
     const io::las::Header header = header_of(format, 0);
     Schema schema = las::make_schema(header);

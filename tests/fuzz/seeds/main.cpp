@@ -1,5 +1,5 @@
-// fuzz_seeds FOLDER: FOLDER/<target>/ full of small valid files, made by our own writers and by hand. Scenes
-// and camera paths are those of data/.
+// fuzz_seeds FOLDER: fills FOLDER/<target>/ with small valid files, made by Lucarne's own writers and by
+// hand. Scenes and camera paths are those of data/.
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -52,7 +52,7 @@ namespace {
 
 void make_all(const std::filesystem::path& folder) {
     const std::filesystem::path data = LUCARNE_SOURCE_DIR "/data";
-    // Without `recursive` nothing of a folder is copied.
+    // Without `recursive` nothing inside a folder is copied.
     const auto copies =
         std::filesystem::copy_options::overwrite_existing | std::filesystem::copy_options::recursive;
     std::filesystem::create_directories(folder);

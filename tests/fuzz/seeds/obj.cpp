@@ -1,4 +1,4 @@
-// OBJ: polygons with all that may stand at a corner, and materials in the file itself.
+// Makes OBJ: polygons with everything that may stand at a corner, and materials in the file itself.
 #include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::fuzz {

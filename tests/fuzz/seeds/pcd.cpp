@@ -1,4 +1,4 @@
-// PCD in its three encodings: floats with colour and normals, doubles, an organised cloud with holes.
+// Makes PCD in its three encodings: floats with colour and normals, doubles, an organised cloud with holes.
 #include <array>
 #include <cmath>
 #include <string>
@@ -11,7 +11,7 @@
 namespace lucarne::fuzz {
 namespace {
 
-/// The same points in one encoding each, field by field in columns.
+/// The same points for all encodings, as columns of fields.
 struct Cloud {
     std::string header;  ///< up to WIDTH
     int width = 1, height = 1;
@@ -52,7 +52,7 @@ Cloud doubles() {
     return cloud;
 }
 
-/// LZF: bytes as they are, and after the first eight one copy of four of them where it fits.
+/// Compresses with LZF: literal bytes, and after the first eight a copy of four bytes where it fits.
 std::string compressed(const std::string& bytes) {
     std::string packed;
     for (size_t at = 0; at < bytes.size();) {

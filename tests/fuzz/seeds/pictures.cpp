@@ -1,4 +1,4 @@
-// EXR and PNG by our own writers; Radiance, flat and in runs, and JPEG by hand.
+// Makes EXR and PNG with Lucarne's own writers; Radiance (flat and in runs) and JPEG by hand.
 #include <stdexcept>
 
 #include <glm/vec4.hpp>
@@ -24,14 +24,14 @@ std::string runs_of(char value, int width) {
     return {static_cast<char>(128 + width), value};
 }
 
-/// A marker of JPEG with what belongs to it.
+/// Returns a JPEG marker with its segment.
 std::string segment(char marker, const std::string& content) {
     const size_t length = content.size() + 2;
     return std::string("\xff", 1) + marker + static_cast<char>(length >> 8) + static_cast<char>(length) +
            content;
 }
 
-/// 16x8 grey pixels; one code each: a block's mean does not change, and it has nothing else.
+/// Returns 16x8 grey pixels. Each block takes one code: its mean does not change, and it has nothing else.
 std::string grey_jpeg() {
     const std::string one_code = '\1' + std::string(15, '\0') + '\0';
     return "\xff\xd8" + segment('\xdb', '\0' + std::string(64, '\1')) +

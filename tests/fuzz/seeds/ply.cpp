@@ -1,4 +1,4 @@
-// PLY in its three encodings, with what may stand before, in and behind the vertices.
+// Makes PLY in its three encodings, with everything that may stand before, in and after the vertices.
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -6,16 +6,16 @@
 
 namespace lucarne::fuzz {
 
-/// Where the seeds of one target go.
+/// Writes the seeds of one target.
 class Seeds {
  public:
     explicit Seeds(std::filesystem::path folder);
 
-    /// A seed of any kind.
+    /// Adds a seed of any kind.
     void add(std::string_view name, std::string_view bytes) const;
-    /// A scan file, which must open and give points to its end: a seed that is refused seeds nothing.
+    /// Adds a scan file. It must open and give points to its end, because a seed that is refused is useless.
     void add_scan(std::string_view name, std::string_view bytes) const;
-    /// Reads what a writer of ours left at `path` as a seed.
+    /// Returns the file that a writer left at `path`, as a seed.
     static std::string taken(const std::filesystem::path& path);
     const std::filesystem::path& folder() const { return folder_; }
 
@@ -23,7 +23,7 @@ class Seeds {
     std::filesystem::path folder_;
 };
 
-// One of these a format, each in its own file: small valid files of every variant.
+// One function for each format, each in its own file: small valid files of every variant.
 void cache_seeds(const Seeds& seeds);
 void codec_seeds(const Seeds& seeds);
 void copc_seeds(const Seeds& seeds);

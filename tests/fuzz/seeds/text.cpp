@@ -1,4 +1,4 @@
-// XYZ, CSV, PTS and PTX.
+// Makes XYZ, CSV, PTS and PTX.
 #include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::fuzz {
@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* kTransform = "1 0 0 0\n0 1 0 0\n0 0 1 0\n";
 
-/// One scan of two columns and two rows, its points as they are given.
+/// Returns one scan of two columns and two rows with the given points.
 std::string ptx(const std::string& place, const std::string& points) {
     return "2\n2\n" + place + "\n1 0 0\n0 1 0\n0 0 1\n" + kTransform + place + " 1\n" + points;
 }

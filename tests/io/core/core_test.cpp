@@ -1,4 +1,4 @@
-// io/core: files appear whole or not at all, and what a user typed is understood or refused.
+// io/core: files appear whole or not at all, and user input is understood or refused.
 #include <atomic>
 #include <csignal>
 #include <map>
@@ -119,7 +119,7 @@ TEST(OutputFile, PlacesThatCannotBeWrittenAreRefusedBeforeTheWork) {
         EXPECT_THAT(checked.error().line(), HasSubstr(reason));
         EXPECT_FALSE(OutputFile::create(folder / name, name == "pipe")) << name;
     }
-    if (geteuid() != 0) {  // nothing is unwritable for root
+    if (geteuid() != 0) {  // root can write everywhere
         std::filesystem::permissions(folder / "sub",
                                      std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
         EXPECT_FALSE(check_output(folder / "sub/a", false));
@@ -140,7 +140,7 @@ TEST(OutputFile, AKilledProcessLeavesNothing) {
     EXPECT_EQ(entries(folder.path()), 0u);
 }
 
-/// Limits the size of files while it lives: a write beyond fails as on a full disk.
+/// Limits the size of files while it lives: a write beyond it fails as on a full disk.
 class FileSizeLimit {
  public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -225,7 +225,7 @@ TEST(InputFile, AReadPastTheEndSaysHowMuchWasThere) {
     EXPECT_THAT(read.error().line(), HasSubstr("8 bytes wanted at 5, 5 there"));
     EXPECT_EQ(file->read_some(5, bytes).value_or(99), 5u);
     EXPECT_EQ(file->read_some(50, bytes).value_or(99), 0u);
-    EXPECT_FALSE(file->read_at(~uint64_t{0}, bytes));  // beyond what an offset can be
+    EXPECT_FALSE(file->read_at(~uint64_t{0}, bytes));  // beyond the largest offset
 }
 
 TEST(ScratchFile, HoldsWhatWasWrittenAndHasNoName) {

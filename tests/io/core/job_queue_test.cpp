@@ -1,4 +1,4 @@
-// Background jobs that throw: whoever asked for them is told, and the thread goes on.
+// Background jobs that throw: the requester is told, and the thread continues.
 #include "io/core/job_queue.h"
 
 #include <future>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What the requester of `work` is told.
+/// Returns what the requester of `work` is told.
 template <class Work>
 Result<int> told(JobQueue& jobs, Work work) {
     std::promise<Result<int>> promise;

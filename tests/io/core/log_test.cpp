@@ -1,4 +1,4 @@
-// Warnings: once in an operation, again in the next.
+// Warnings: printed once in an operation, and again in the next.
 #include "io/core/log.h"
 
 #include <thread>
@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// How often `act` says `line`.
+/// Counts how often `act` prints `line`.
 template <class Act>
 int times_said(const std::string& line, const Act& act) {
     ::testing::internal::CaptureStderr();

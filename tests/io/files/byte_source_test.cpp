@@ -1,4 +1,4 @@
-// Bytes by offset: files and memory give the same answers, and so do the readers of scans.
+// Bytes by offset: files and memory give the same results, also to the readers of scans.
 #include "io/files/byte_source.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ std::vector<std::byte> bytes_of(std::string_view text) {
     return {bytes.begin(), bytes.end()};
 }
 
-/// The same text as a file, as memory of its own and as memory of others.
+/// The same text as a file, as memory that the source owns and as memory that it does not own.
 class ByteSources : public ::testing::Test {
  protected:
     ByteSources() {

@@ -53,11 +53,11 @@ TEST(HandlePool, ManyFilesAreReadThroughAFewHandlesByManyThreads) {
     EXPECT_EQ(pool->open(), 0u) << "a file that goes leaves no handle";
 }
 
-/// Holds threads up until so many have come, or patience ends.
+/// Holds threads until so many have arrived, or until a timeout.
 class MeetingPoint {
  public:
     explicit MeetingPoint(int threads) : missing_(threads) {}
-    /// Whether all came.
+    /// Returns whether all arrived.
     bool meet() {
         std::unique_lock lock(mutex_);
         --missing_;

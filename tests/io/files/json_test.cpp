@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The one line that a user sees for what `read` makes of a text.
+/// Returns the line that a user sees when `read` reads a text.
 template <class Read>
 std::string complaint(std::string_view text, const Read& read) {
     const auto document = parse_json(text, "file.json");

@@ -1,4 +1,4 @@
-// Folders and files under names that can be guessed: only the user's own are opened.
+// Folders and files with guessable names: only the user's own are opened.
 #include "io/files/private_file.h"
 
 #include <array>

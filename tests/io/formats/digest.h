@@ -7,7 +7,7 @@
 
 namespace lucarne::io::testing {
 
-/// The 64 bits of a number: integers sign-extended, floats as doubles.
+/// Returns the 64 bits of a number: integers sign-extended, floats as doubles.
 inline uint64_t bits_of(ScalarType type, const std::byte* at) {
     switch (type) {
         case ScalarType::u64:
@@ -25,7 +25,7 @@ inline uint64_t bits_of(ScalarType type, const std::byte* at) {
     }
 }
 
-/// Sum of the bits and sum weighted by place, modulo 2^64: what tests/oracles/digest.py makes.
+/// Returns the sum of the bits and the sum weighted by position, modulo 2^64, like tests/oracles/digest.py.
 inline nlohmann::json digest(const Records& records, size_t stride, size_t offset, ScalarType type) {
     uint64_t sum = 0, placed = 0;
     for (size_t i = 0; i < records.count; ++i) {

@@ -1,4 +1,4 @@
-// What a file of several scans' points says of its coordinate system, types and stations.
+// The coordinate system, types and stations of a file with the points of several scans.
 #include "io/formats/merged_info.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ std::string system(int epsg) {
 
 class MergedInfo : public ::testing::Test {
  protected:
-    /// A LAS file of one point, in a system or none.
+    /// Returns a LAS file of one point, with or without a coordinate system.
     ScanInfo las(const std::string& name, int epsg) const {
         testing::LasFile file;
         file.minor = 4;
@@ -29,7 +29,7 @@ class MergedInfo : public ::testing::Test {
         if (epsg) file.add_vlr("LASF_Projection", 2112, system(epsg));
         return read(name, file.bytes());
     }
-    /// A LAS file with an extra that is scaled; by 0: not. By less: there is none.
+    /// Returns a LAS file with a scaled extra. A scale of 0 means not scaled; a negative one means no extra.
     ScanInfo scaled(const std::string& name, double scale, uint8_t type = 4) const {
         testing::LasFile file;
         file.records = {testing::record0(1, 2, 3)};
@@ -47,7 +47,7 @@ class MergedInfo : public ::testing::Test {
         schema.add("Amplitude", ScalarType::i16);
         return schema;
     }
-    /// By what a file is scaled that is written with what is merged; 0: by nothing.
+    /// Returns the scale in a file that is written with the merged information; 0 if there is none.
     double scale_of(std::span<const ScanInfo> scans) const {
         const Schema schema = amplitude();
         const auto writer = create_scan(folder_ / "s.las", schema, merged_info(scans), {.overwrite = true});
@@ -58,7 +58,7 @@ class MergedInfo : public ::testing::Test {
         return (load<uint8_t>(&entry[3]) & 8) ? load<double>(&entry[112]) : 0.0;
     }
     ScanInfo text(const std::string& name) const { return read(name, "1 2 3\n4 5 6\n"); }
-    /// What a file says that is written with what is merged.
+    /// Writes a file with the merged information and returns what it says.
     ScanInfo written(std::span<const ScanInfo> scans, const std::string& name) const {
         Schema schema;
         schema.position = PositionType::i32_scaled;
@@ -96,16 +96,16 @@ TEST_F(MergedInfo, SystemsThatDifferLeaveNoneAndAreNamedWithTheirFiles) {
     EXPECT_NE(merged_info(scans).notes.system_note, "");
     const ScanInfo merged = written(scans, "m.las");
     EXPECT_EQ(merged.epsg, 0u);
-    EXPECT_DOUBLE_EQ(merged.metres_per_unit, 0.3048);  // the unit they agree in
+    EXPECT_DOUBLE_EQ(merged.metres_per_unit, 0.3048);  // the unit on which they agree
 }
 
 TEST_F(MergedInfo, AScanThatSaysNothingTakesTheSystemOfTheOthersWithANote) {
     for (const bool first : {false, true}) {
         std::array scans = {las("a.las", 2903), text("b.xyz")};
-        scans[1].metres_per_unit = 0.3048;  // as --unit ft
+        scans[1].metres_per_unit = 0.3048;  // as with --unit ft
         if (first) std::swap(scans[0], scans[1]);
         EXPECT_EQ(different_systems(scans), "");
-        EXPECT_THAT(merged_info(scans).notes.system_note, HasSubstr("b.xyz says no coordinate system"));
+        EXPECT_THAT(merged_info(scans).notes.system_note, HasSubstr("b.xyz has no coordinate system"));
         for (const char* name : {"m.las", "m.laz"}) EXPECT_EQ(written(scans, name).epsg, 2903u) << first;
     }
 }

@@ -1,5 +1,5 @@
-// The notes of a scan as the JSON text that caches hold: the texts here stand in caches that were written
-// before.
+// The notes of a scan as the JSON text that caches hold. The texts here are from caches that were written
+// earlier.
 #include "io/formats/notes_json.h"
 
 #include <cmath>
@@ -52,7 +52,7 @@ TEST(NotesJson, TheTextsOfOlderCachesComeBackByteByByte) {
     for (const std::string& text : kTexts) {
         const FormatNotes notes = notes_of_text(text);
         EXPECT_EQ(notes_text(notes), text);
-        // NaN equals nothing, itself included.
+        // NaN is not equal to itself.
         if (text.find("null") == text.npos) {
             EXPECT_TRUE(notes_of_text(notes_text(notes)) == notes) << text;
         }
@@ -75,7 +75,7 @@ TEST(NotesJson, NumbersKeepTheirValues) {
 TEST(NotesJson, WhatIsNoObjectHoldsNothing) {
     for (const char* text : {"", "[", "[]", "7", "null", "\"las\"", "{", "{\"format\":\"las\""})
         EXPECT_TRUE(notes_of_text(text) == FormatNotes{}) << text;
-    // Nesting costs no stack.
+    // Deep nesting must not use up the stack.
     const std::string deep = "{\"scans\":" + std::string(1'000'000, '[');
     EXPECT_TRUE(notes_of_text(deep) == FormatNotes{});
     const std::string closed = deep + std::string(1'000'000, ']') + "}";

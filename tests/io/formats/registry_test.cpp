@@ -1,4 +1,4 @@
-// A file's format is told by its content, whatever stands before it; where that says nothing, by its name.
+// A file's content tells its format, whatever stands before it; if it does not, the name does.
 #include <gmock/gmock.h>
 
 #include "io/formats/common/format.h"
@@ -100,7 +100,7 @@ TEST(UniqueName, HasTheFirstNumberThatIsFree) {
     EXPECT_EQ(unique_name(schema, "a"), "a_3");
     EXPECT_EQ(unique_name(schema, "b"), "b");
     EXPECT_EQ(unique_name(schema, "a_2"), "a_2_2");
-    // Thousands of one name.
+    // Thousands of equal names.
     Schema many;
     for (int i = 0; i < 3000; ++i) many.add(unique_name(many, std::string(64, 'n')), ScalarType::u8);
     EXPECT_EQ(many.attributes.back().name, std::string(64, 'n') + "_3000");

@@ -1,4 +1,4 @@
-// What is read, written and read again is the same: bit for bit where the format is the same.
+// A file that is read, written and read again stays the same: bit for bit if the format is the same.
 #include <map>
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ void expect_same_scan(const PointSource& a, const PointSource& b, const std::str
     EXPECT_TRUE(ra->bytes == rb->bytes) << name << ": the records differ";
 }
 
-/// The points of a LAS file as they stand in it.
+/// Returns the points of a LAS file as the bytes in it.
 std::string las_points(const std::string& file, size_t count) {
     const auto* bytes = reinterpret_cast<const std::byte*>(file.data());
     return file.substr(load<uint32_t>(bytes + 96), count * load<uint16_t>(bytes + 105));
@@ -118,7 +118,7 @@ TEST(RoundTrip, LasToPlyAndBackKeepsEveryInteger) {
                     << path;
             for (const Attribute& a : source->schema().attributes) {
                 const Attribute* b = copy->schema().find(a.name);
-                if (!b) continue;  // several components or 64 bits: tested apart
+                if (!b) continue;  // several components or 64 bits: tested separately
                 ASSERT_EQ(std::memcmp(old_record + a.offset, new_record + b->offset, a.bytes()), 0)
                     << path << ' ' << a.name;
             }

@@ -1,5 +1,5 @@
-// Truncated and damaged files: without `salvage` they are rejected with the number of points that could be
-// saved, with it these points come, and the rest is counted.
+// Truncated and damaged files. Without `salvage` they are rejected, and the error says how many points could
+// be saved. With it these points are returned, and the rest is counted.
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -32,7 +32,7 @@ uint64_t lost_points(const Losses& losses) {
     return points;
 }
 
-/// What one pass with `salvage` gives; nothing where the file is rejected all the same.
+/// The result of a pass with `salvage`; nothing if the file is rejected even then.
 struct Saved {
     Records records;
     uint64_t lost = 0;
@@ -54,14 +54,14 @@ std::optional<Saved> salvage(const std::filesystem::path& path) {
     return Saved{std::move(*records), lost_points(contents->losses), (*source)->schema().stride};
 }
 
-/// Opened and read to its end as usual.
+/// Opens a file and reads it to its end without `salvage`.
 Result<Records> read_as_usual(const std::filesystem::path& path) {
     LUCARNE_ASSIGN(const auto source, open_scan(path, {"", true, {0, 0, true}}));
     return read_all(*source);
 }
 
-/// Cuts a sound file at many places. `expected(cut)`: how many records can be saved of the first `cut` bytes;
-/// empty: any number from there on, but no fewer than of a shorter piece.
+/// Cuts a sound file at many places. `expected(cut)` returns how many records can be saved of the first `cut`
+/// bytes. If it returns nothing, any number is accepted that is not smaller than for a shorter piece.
 using Expected = std::function<std::optional<uint64_t>(size_t cut)>;
 void cut_everywhere(const std::string& name, const std::string& bytes, const Expected& expected) {
     const testing::TemporaryFolder folder;
@@ -85,7 +85,7 @@ void cut_everywhere(const std::string& name, const std::string& bytes, const Exp
         ASSERT_GE(seen, before) << name << " cut to " << cut;
         before = seen;
         if (saved) {
-            // Text that lacks but the end of its last number looks whole.
+            // Text that lacks only the end of its last number looks complete.
             ASSERT_TRUE(usual || std::equal(saved->records.bytes.begin(), saved->records.bytes.end(),
                                             whole->records.bytes.begin()))
                 << name << " cut to " << cut;
@@ -150,7 +150,7 @@ TEST_F(SharedSalvage, OfBinaryPlyAndPcdEveryWholeRecord) {
                    [=](size_t cut) { return cut < pcd_begin ? 0 : (cut - pcd_begin) / pcd_length; });
 }
 
-/// Rows end with the line: those whose line end is there. The last may lack it.
+/// Rows that end before the cut, with their line end. Only the last row may lack it.
 Expected rows_behind(const std::string& bytes, size_t begin, uint64_t promised) {
     return [&bytes, begin, promised](size_t cut) -> std::optional<uint64_t> {
         if (cut <= begin) return 0;
@@ -173,12 +173,12 @@ TEST_F(SharedSalvage, OfTextEveryWholeRow) {
 }
 
 TEST_F(SharedSalvage, OfCompressedPcdPointsAsFarAsItsLastFieldGoes) {
-    // All x stand before all y and these before all z: only what is cut off the z leaves points.
+    // All x come before all y, and these before all z, so only a cut within z leaves points.
     for (const char* name : {"room_scan1.pcd", "region_growing_rgb_tutorial.pcd"})
         cut_everywhere(name, shared_bytes(std::string("pcd/") + name), [](size_t) { return std::nullopt; });
 }
 
-/// Where the chunks of a whole LAZ file are.
+/// Returns where the chunks of a sound LAZ file are.
 std::vector<laz::ChunkPlace> chunks_of(const std::filesystem::path& path) {
     const auto file = InputFile::open(path);
     const auto header = las::read_header(*file);
@@ -203,7 +203,7 @@ TEST_F(SharedSalvage, OfPointWiseLazEveryPointBeforeTheCut) {
     const auto chunks = chunks_of(path);
     const std::string bytes = testing::read_bytes(path);
     cut_everywhere("autzen.laz", bytes, [](size_t) { return std::nullopt; });
-    // Half a chunk gives about half of its points: none is lost for those behind it.
+    // Half a chunk gives about half of its points, and those of later chunks are not affected.
     const testing::TemporaryFolder folder;
     const auto cut = chunks[1].offset + chunks[1].bytes / 2;
     testing::write_bytes(folder / "half.laz", std::string_view(bytes).substr(0, cut));
@@ -272,7 +272,7 @@ TEST_F(SharedSalvage, OfE57EveryScanAsFarAsItsPagesAreWhole) {
             testing::write_bytes(path, damaged);
             const auto usual = read_as_usual(path);
             const auto saved = salvage(path);
-            if (!saved || usual) continue;  // the description itself, or an image
+            if (!saved || usual) continue;  // the description itself is damaged, or an image
             EXPECT_GE(saved->records.count, before) << name;
             EXPECT_EQ(saved->records.count + saved->lost, whole->records.count + whole->lost) << name;
             EXPECT_TRUE(std::equal(saved->records.bytes.begin(), saved->records.bytes.end(),
@@ -288,7 +288,7 @@ TEST_F(SharedSalvage, OfE57EveryScanAsFarAsItsPagesAreWhole) {
     }
 }
 
-/// An E57 file whose description stands before its points, as some writers have it.
+/// Returns an E57 file whose description comes before its points, as some writers place it.
 std::string description_first(uint64_t points) {
     testing::BuiltScan scan{testing::kXyzFields, points, {}, {}, {}, {}, {}};
     for (uint64_t i = 0; i < points; i += 100) {

@@ -4,7 +4,7 @@
 
 namespace lucarne::io::testing {
 
-/// What tests of small files share: a file in memory, opened and read whole.
+/// Shared by tests of small files: a file in memory, opened and read completely.
 class TextScan : public ::testing::Test {
  protected:
     Result<void> try_read(std::string_view bytes, const ReadOptions& options) {
@@ -19,7 +19,7 @@ class TextScan : public ::testing::Test {
         const auto done = try_read(bytes, options);
         EXPECT_TRUE(done) << done.error().line() << '\n' << bytes.substr(0, 300);
     }
-    /// Of opening or reading; empty where both work.
+    /// Returns the error of opening or reading; empty if both succeed.
     Error error_of(std::string_view bytes, const ReadOptions& options = {"", true}) {
         const auto done = try_read(bytes, options);
         return done ? Error{} : done.error();

@@ -1,4 +1,4 @@
-// Every LAS and PLY file of the shared data, the good and the deliberately bad.
+// Every LAS and PLY file of the shared data, valid ones and deliberately bad ones.
 #include <map>
 #include <sstream>
 
@@ -93,7 +93,7 @@ TEST_F(SharedScans, BadFilesAreRejectedWithTheReasonOrReadAsDocumented) {
     EXPECT_THAT(error_of("bad/pdal_badheader.txt").line(),
                 ::testing::HasSubstr("'X,Y,X' does not name the 3 columns"));
     EXPECT_THAT(error_of("bad/pdal_missingheader.pcd").line(), ::testing::HasSubstr("its PCD header "));
-    // Too few records, a time that is no number and no points at all harm no point.
+    // Too few records, a time that is no number, and no points at all do not affect the points.
     const std::map<std::string, size_t> readable = {
         {"bad/pdal_bad_vlr_count.las", 10}, {"bad/pdal_gps-time-nan.las", 1}, {"bad/pdal_no-points.las", 0}};
     for (const auto& [file, points] : readable) {
@@ -109,7 +109,7 @@ TEST_F(SharedScans, DamagedE57FilesAreRejectedAndEmptyOnesAreEmpty) {
     EXPECT_THAT(error_of("bad/e57_bad-crc.e57").line(), ::testing::HasSubstr("the page at byte 0 is wrong"));
     EXPECT_THAT(error_of("bad/e57_corrupt_crc.e57").line(),
                 ::testing::HasSubstr("the page at byte 33792 is wrong"));
-    // Their one scan has no record; in the first its section was never written.
+    // Their only scan has no points; in the first file its section was never written.
     for (const char* file : {"bad/e57_InvalidCVHeader.e57", "bad/e57_empty_pc.e57"}) {
         const auto source = open_scan(folder_ / file);
         ASSERT_TRUE(source) << source.error().line();

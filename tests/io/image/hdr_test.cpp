@@ -1,4 +1,4 @@
-// Radiance pictures: their two codings, and hostile ones.
+// Radiance pictures: their two codings, and hostile files.
 #include <string>
 #include <vector>
 

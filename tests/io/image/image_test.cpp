@@ -1,4 +1,4 @@
-// Pictures come back as they were written, and hostile ones do no harm.
+// Pictures read back as they were written, and hostile ones do no harm.
 #include "io/image/image.h"
 
 #include <array>
@@ -106,7 +106,7 @@ TEST(Pictures, APictureWhoseSizeIsALieIsNotWritten) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-/// Big-endian, as PNG has it.
+/// Big-endian, as in PNG.
 void put_u32(std::string& bytes, size_t at, uint32_t value) {
     for (size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24 - 8 * i));
 }
@@ -117,7 +117,7 @@ TEST(Pictures, HugeSizesInAHeaderAreRejectedBeforeAllocation) {
     ASSERT_TRUE(write_exr(folder / "a.exr", noise(4, 4), false));
     std::string png = read_bytes(folder / "a.png");
     put_u32(png, 16, 900'000);
-    put_u32(png, 20, 900'000);  // the checksum is wrong then: either way it is a clean error
+    put_u32(png, 20, 900'000);  // the checksum is wrong then as well; both must give a clean error
     write_bytes(folder / "b.png", png);
     EXPECT_EQ(read_png(folder / "b.png").error().kind, ErrorKind::input_rejected);
 
@@ -136,7 +136,7 @@ std::string refusal_of_exr(const std::string& bytes) {
     return read ? "read" : read.error().line();
 }
 
-/// A picture of 4x4 pixels, and where the size of an attribute of `name` and `type` stands in it.
+/// A picture of 4x4 pixels, and the place of the size of an attribute of `name` and `type` in it.
 class ExrHeader : public ::testing::Test {
  protected:
     void SetUp() override {
@@ -147,7 +147,7 @@ class ExrHeader : public ::testing::Test {
     size_t value_of(const std::string& name, const std::string& type) const {
         return bytes_.find(name + '\0' + type + '\0') + name.size() + type.size() + 2 + 4;
     }
-    /// In front of all others.
+    /// Inserts an attribute before all others.
     void insert(const std::string& name, const std::string& type, const std::string& value) {
         const auto size = static_cast<uint32_t>(value.size());
         bytes_.insert(
@@ -173,7 +173,8 @@ TEST_F(ExrHeader, AnAttributeLargerThanTheFileIsRefusedBeforeItIsMadeRoomFor) {
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("header is cut off"));
 }
 
-/// The library reads a list of channels to its own end, and what follows as the next attribute (fuzz_exr).
+/// The library reads a list of channels to its own end, and takes what follows as the next attribute
+/// (fuzz_exr).
 TEST_F(ExrHeader, AnAttributeThatDoesNotEndWhereItSaysIsRefused) {
     const std::string whole = bytes_;
     insert("more", "chlist", std::string("A\0", 2) + std::string(16, '\1') + "B");
@@ -183,9 +184,10 @@ TEST_F(ExrHeader, AnAttributeThatDoesNotEndWhereItSaysIsRefused) {
     EXPECT_THAT(refusal_of_exr(bytes_), ::testing::HasSubstr("contradicts itself"));
 }
 
-/// Such a pixel (0, 0) lies outside of all memory, and so must not be pointed at (fuzz_exr).
+/// Pixel (0, 0) of such a window would lie outside of all memory, so no pointer to it may be formed
+/// (fuzz_exr).
 TEST_F(ExrHeader, AWindowFarFromTheOriginIsReadAsAnyOther) {
-    size_t chunk = 8;  // the only one, right behind the table that says where it is
+    size_t chunk = 8;  // the only chunk, right after the table that says where it is
     while (chunk < bytes_.size() && std::memcmp(&bytes_[chunk - 8], &chunk, 8) != 0) ++chunk;
     for (const std::array<int32_t, 2> corner :
          {std::array{-1'000'000'000, 1'000'000'000}, {909'522'486, -7}}) {
@@ -236,7 +238,7 @@ TEST(Exr, MoreLinesThanAreReadAtOnceComeBackBitForBit) {
     EXPECT_TRUE(back->pixels == image.pixels);
 }
 
-/// As PNG has it (ISO 15948, annex D).
+/// The checksum of PNG (ISO 15948, annex D).
 uint32_t png_checksum(std::string_view bytes) {
     uint32_t sum = ~0u;
     for (const char byte : bytes) {
@@ -259,7 +261,7 @@ TEST(Png, MorePixelsThanItsBytesCanHoldAreRefusedBeforeTheyAreMadeRoomFor) {
     EXPECT_THAT(read.error().line(), ::testing::HasSubstr("shorter than its 8000x8000 pixels"));
 }
 
-/// A slope in red and one in green, as JPEG of this colour subsampling.
+/// Returns one slope in red and one in green as JPEG with this colour subsampling.
 std::string slopes_jpeg(int width, int height, TJSAMP sampling) {
     std::vector<unsigned char> rgb;
     for (int y = 0; y < height; ++y)
@@ -278,7 +280,7 @@ std::string slopes_jpeg(int width, int height, TJSAMP sampling) {
 }
 
 TEST(Jpeg, ColoursComeBackWhateverTheirSubsampling) {
-    constexpr int kWidth = 61, kHeight = 43;  // no whole blocks
+    constexpr int kWidth = 61, kHeight = 43;  // no multiple of the block size
     for (const TJSAMP sampling : {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_GRAY}) {
         const MemoryFile file;
         file.set(slopes_jpeg(kWidth, kHeight, sampling));
@@ -290,7 +292,7 @@ TEST(Jpeg, ColoursComeBackWhateverTheirSubsampling) {
             for (int x = 0; x < kWidth; ++x) {
                 const uint8_t* pixel = &read->bytes[3 * (static_cast<size_t>(y) * kWidth + x)];
                 const double red = 255 * x / kWidth, green = 255 * y / kHeight;
-                if (sampling == TJSAMP_GRAY) {  // JFIF's luminance, the same in all three
+                if (sampling == TJSAMP_GRAY) {  // JFIF's luminance, the same in all three channels
                     EXPECT_NEAR(pixel[0], .299 * red + .587 * green + .114 * 60, 4);
                     EXPECT_TRUE(pixel[1] == pixel[0] && pixel[2] == pixel[0]);
                 } else {

@@ -79,12 +79,12 @@ TEST(SixDof, TheMappingIsStillAtRestAndFullAtFullTravel) {
     EXPECT_NEAR(mapped.push.x, 2 * 0.45 / 0.95, 1e-12);
     EXPECT_EQ(mapped.push.y, 0);
     EXPECT_TRUE(mapping.apply({}).at_rest());
-    // Continuous at the dead zone's edge.
+    // It is continuous at the edge of the dead zone.
     state.push.x = 0.05 + 1e-9;
     EXPECT_LT(SixDofMapping{}.apply(state).push.x, 1e-8);
 }
 
-/// Runs a test of this program, one of those that are left out otherwise, under umockdev.
+/// Runs one of this program's tests, which is skipped otherwise, under umockdev.
 int run_replayed(const std::string& name, const std::vector<test::Answer>& answers) {
     const auto folder =
         std::filesystem::temp_directory_path() / fmt::format("lucarne_controller_{}", getpid());
@@ -107,7 +107,7 @@ int run_replayed(const std::string& name, const std::vector<test::Answer>& answe
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// What a controller says, one after the other.
+/// Collects what a controller reports.
 class Heard {
  public:
     void add(const SixDofState& state, const ControllerStatus& status) {

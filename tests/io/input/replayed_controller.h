@@ -1,4 +1,4 @@
-// A 3Dconnexion device that umockdev plays: its description, and what it sent, as usbmon saw it.
+// A 3Dconnexion device that umockdev plays: its description, and what it sent, in usbmon's format.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace lucarne::io::test {
 
 inline constexpr const char* kControllerPath = "/sys/devices/pci0000:00/0000:00:14.0/usb1/1-9";
 
-/// A device's answer to a request for input: a report, or the error that ends it all (-19: unplugged).
+/// A device's answer to a request for input: a report, or the error that ends the replay (-19: unplugged).
 struct Answer {
     std::vector<uint8_t> report;
     int32_t status = 0;
@@ -81,14 +81,14 @@ inline void write_capture(const std::filesystem::path& file, const std::vector<A
     std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// The words to put before a program's, so that it sees the device.
+/// Returns the words to put before a program's command line, so that it sees the device.
 inline std::vector<std::string> under_umockdev(const std::filesystem::path& folder,
                                                const std::vector<Answer>& answers) {
     const auto description = folder / "controller.umockdev", capture = folder / "controller.pcap";
     write_description(description);
     write_capture(capture, answers);
     return {"env",
-            "ASAN_OPTIONS=verify_asan_link_order=0",  // umockdev's library stands before the sanitizers'
+            "ASAN_OPTIONS=verify_asan_link_order=0",  // umockdev's library is loaded before the sanitizers'
             "umockdev-run",
             "--device",
             description.string(),

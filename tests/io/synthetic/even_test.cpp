@@ -42,8 +42,8 @@ std::vector<dvec3> positions(const SyntheticOptions& options) {
     return points;
 }
 
-/// The value that a chi-square variable of many degrees of freedom exceeds with probability .001 (Wilson and
-/// Hilferty 1931).
+/// Returns the value that a chi-square variable of many degrees of freedom exceeds with probability .001
+/// (Wilson and Hilferty 1931).
 double chi_square_limit(double degrees) {
     return degrees * std::pow(1 - 2 / (9 * degrees) + 3.09 * std::sqrt(2 / (9 * degrees)), 3);
 }
@@ -83,19 +83,19 @@ TEST(SyntheticEven, PointsAndNormalsAreThoseOfTheSurface) {
             const dvec3 point = position_of(source->schema(), bytes.data() + at);
             const auto nearest = geometry->closest(point, .1);
             ASSERT_TRUE(nearest) << scene.name;
-            // Half a step of 0.1 mm in each axis, and the rounding of 30 m in float.
+            // Half a step of 0.1 mm in each axis, plus the rounding of 30 m in float.
             EXPECT_LT(nearest->distance, 1e-4) << scene.name;
             const std::byte* stored = bytes.data() + at + normal->offset;
             const dvec3 n(load<float>(stored), load<float>(stored + 4), load<float>(stored + 8));
             EXPECT_NEAR(glm::length(n), 1, 1e-5);
             other_normal += dot(n, nearest->normal) < .98 ? 1 : 0;
         }
-        // Next to an edge the nearest surface may be the neighbour.
+        // Next to an edge the nearest surface may be the neighbouring one.
         EXPECT_LT(other_normal, 200u) << scene.name;
     }
 }
 
-/// The points of the furnace's floor, relative to its corner: a square of 2 m.
+/// Returns the points of the furnace's floor, relative to its corner: a square of 2 m.
 std::vector<glm::dvec2> floor_of_furnace(uint64_t points) {
     std::vector<glm::dvec2> floor;
     for (const dvec3& p : positions(even("furnace", points)))
@@ -116,13 +116,13 @@ TEST(SyntheticEven, EqualAreasHoldEqualNumbers) {
     const double expected = static_cast<double>(points.size()) / static_cast<double>(counts.size());
     double chi_square = 0;
     for (const double count : counts) chi_square += (count - expected) * (count - expected) / expected;
-    // Random points would give about 255; even ones far less.
+    // Random points would give about 255; even ones give far less.
     EXPECT_LT(chi_square, .3 * static_cast<double>(counts.size()));
 }
 
 TEST(SyntheticEven, DensityIsUniformOverEveryScene) {
-    // Slabs of equal width along each axis, against the area of the mesh's quads in them. p = .001 for random
-    // points.
+    // Counts points in slabs of equal width along each axis, and compares with the area of the mesh's quads
+    // in them. p = .001 for random points.
     for (const auto& scene : synthetic_scenes()) {
         const auto geometry = SceneGeometry::create(scene.name).value();
         const auto points = positions(even(scene.name, 100'000));
@@ -130,7 +130,7 @@ TEST(SyntheticEven, DensityIsUniformOverEveryScene) {
         for (int axis = 0; axis < 3; ++axis) {
             constexpr size_t kSlabs = 24;
             const double low = geometry->min()[axis], width = geometry->max()[axis] - low;
-            // Off by a little, so that no wall lies in the border of two slabs.
+            // Slightly offset, so that no wall lies on the border of two slabs.
             const auto slab = [&](double x) {
                 return std::min(kSlabs - 1,
                                 static_cast<size_t>(std::max(0.0, (x - low) / width * kSlabs * .99 + .0037)));
@@ -139,7 +139,7 @@ TEST(SyntheticEven, DensityIsUniformOverEveryScene) {
             for (size_t quad = 0; quad < mesh.quads(); ++quad) {
                 const std::array<dvec3, 4> c = {mesh.corners[4 * quad], mesh.corners[4 * quad + 1],
                                                 mesh.corners[4 * quad + 2], mesh.corners[4 * quad + 3]};
-                // Large quads are spread over the slabs they cross, in pieces much smaller than a slab.
+                // Large quads are distributed over the slabs they cross, in pieces much smaller than a slab.
                 const auto steps = [&](int a, int b) {
                     return 1 + static_cast<int>(100 * glm::length(c[a] - c[b]) / width);
                 };

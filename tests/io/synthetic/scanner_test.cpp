@@ -101,7 +101,8 @@ TEST(SyntheticScan, EachPointLiesOnTheBeamOfItsStationWithinTheNoise) {
             const double range = glm::length(point.position - from);
             const auto hit = geometry->cast(from, (point.position - from) / range);
             const double error = hit ? range - hit->distance : 1;
-            // Rounding to 0.1 mm turns the beam: on slanted surfaces and at edges the range changes more.
+            // Rounding to 0.1 mm changes the beam's direction: on slanted surfaces and at edges the range
+            // changes more.
             if (std::abs(error) > 6 * options.noise)
                 far += 1;
             else
@@ -124,7 +125,8 @@ TEST(SyntheticScan, MixedPixelsExistAndOnlyAtEdges) {
         ++points;
         if (geometry->closest(point.position, .005)) continue;
         ++mixed;
-        // Around a mixed pixel's beam, within its width, lie surfaces at clearly different ranges.
+        // Around the beam of a mixed pixel, within its width, there must be surfaces at clearly different
+        // ranges.
         const dvec3 from = stations[point.station - 1].position;
         const double range = glm::length(point.position - from);
         const dvec3 beam = (point.position - from) / range;
@@ -149,7 +151,7 @@ TEST(SyntheticScan, MixedPixelsExistAndOnlyAtEdges) {
 }
 
 TEST(SyntheticScan, DensityFallsWithTheDistance) {
-    // From the middle of the furnace's side walls to their corners the range grows and the slant with it.
+    // From the middle of the furnace's side walls to their corners the range grows, and so does the slant.
     auto options = scan("furnace", 300'000);
     options.stations = 1;
     double near = 0, far = 0;
@@ -159,7 +161,7 @@ TEST(SyntheticScan, DensityFallsWithTheDistance) {
         near += y < .4 && z < .4 ? 1 : 0;
         far += y > .6 && z > .6 ? 1 : 0;
     }
-    EXPECT_GT(near, 2 * far);  // of the same area
+    EXPECT_GT(near, 2 * far);  // for the same area
     EXPECT_GT(far, 0);
 }
 
@@ -173,7 +175,7 @@ TEST(SyntheticScan, ColourAndIntensityFollowFromTheAlbedo) {
     }
     EXPECT_GT(red, 1000);
     EXPECT_GT(green, 1000);
-    // The sRGB code of linear .5, both ways round.
+    // The sRGB code of linear .5, in both directions.
     for (const auto& point : read_points(scan("furnace", 1000))) EXPECT_EQ(point.color, dvec3(188));
 }
 

@@ -29,7 +29,7 @@ TEST(SyntheticScenes, SealedRoomsAreWatertight) {
         Random random(11);
         size_t escaped = 0;
         for (int i = 0; i < 500'000; ++i) escaped += geometry->cast(inside, random_direction(random)) ? 0 : 1;
-        // And rays that start anywhere on the surface.
+        // Rays that start anywhere on the surface as well.
         for (int i = 0; i < 200'000; ++i) {
             const auto from = geometry->cast(inside, random_direction(random));
             ASSERT_TRUE(from);
@@ -42,7 +42,7 @@ TEST(SyntheticScenes, SealedRoomsAreWatertight) {
 }
 
 TEST(SyntheticScenes, TheAirIsOnTheSideOfTheNormal) {
-    // From a station in the air, whatever is seen shows its front.
+    // From a station in the air, every visible surface shows its front.
     for (const auto& scene : synthetic_scenes()) {
         const auto geometry = geometry_of(scene.name);
         size_t seen = 0, behind = 0;
@@ -80,7 +80,7 @@ TEST(SyntheticScenes, AreasAreThoseOfTheBodies) {
 }
 
 TEST(SyntheticScenes, TheStatueIsAClosedBody) {
-    // Any straight line that misses the plinth enters it as often as it leaves.
+    // Any straight line that misses the plinth enters the statue as often as it leaves it.
     const auto statue = geometry_of("statue");
     Random random(3);
     size_t through = 0;
@@ -113,7 +113,7 @@ TEST(SyntheticScenes, OneDoorIsOpenAndTheOtherClosed) {
         }
     EXPECT_EQ(open, tried);
     EXPECT_EQ(closed, tried);
-    // No ray from the first room reaches the second other than by the open door.
+    // No ray from the first room reaches the second other than through the open door.
     Random random(9);
     for (int i = 0; i < 300'000; ++i) {
         const dvec3 from(1.0, 4.2, 1.5), direction = random_direction(random);
@@ -141,7 +141,7 @@ TEST(SyntheticScenes, WindowsOfTheNaveAreOpenAndItsWallsAreNot) {
     EXPECT_FALSE(geometry->cast({0, 20, 10.7}, {0, 1, 0})) << "the rose's hub";
     EXPECT_TRUE(geometry->cast({0, 20, 10.7 + .68}, {0, 1, 0})) << "the stone around it";
     EXPECT_TRUE(geometry->cast({0, 10, 1}, {0, -1, 0})) << "the portal is shut";
-    // Only openings let rays out: all that escape a station pass through the height of windows.
+    // Only openings let rays out: all rays that escape from a station pass through the height of windows.
     Random random(7);
     size_t escaped = 0;
     for (int i = 0; i < 300'000; ++i) {
@@ -163,7 +163,7 @@ TEST(SyntheticScenes, TheNearestPlaceAgreesWithTheRays) {
         const auto nearest = geometry->closest(from);
         ASSERT_TRUE(nearest);
         EXPECT_NEAR(glm::length(nearest->position - from), nearest->distance, 1e-9);
-        // Nothing that a ray finds is nearer, and a ray to the nearest place finds it.
+        // Nothing that a ray finds is nearer, and a ray towards the nearest place finds it.
         const auto any = geometry->cast(from, random_direction(random));
         if (any) {
             EXPECT_GE(any->distance, nearest->distance - 1e-5);

@@ -15,11 +15,11 @@ auto cut_off(const std::string& file) {
 
 struct Layers {
     std::vector<Layer<Decoder>> layers;
-    const std::byte* end = nullptr;  ///< of the chunk
+    const std::byte* end = nullptr;  ///< end of the chunk
 };
 
-/// The layers behind the first point: how many points the chunk has, the layers' sizes, the layers. The first
-/// layer tells of every point and is always there.
+/// Reads what follows the first point: the number of points, the sizes of the layers, the layers. The first
+/// layer describes every point and is always present.
 Result<Layers> read_layers(const std::string& file, const Compression& compression, uint64_t points,
                            std::span<const std::byte> bytes) {
     const size_t count = Layered<Decoder>::layer_count(compression);
@@ -43,7 +43,8 @@ Result<Layers> read_layers(const std::string& file, const Compression& compressi
 }  // namespace
 
 uint64_t model_bytes(const Compression& compression) {
-    // A model of a byte's values: how often each was seen, where each begins, and a table to find it.
+    // A model of a byte's values: the count of each, where the interval of each begins, and a table for the
+    // search.
     constexpr uint64_t kOfByte = 1536, kOfFields = uint64_t{64} << 10;
     return (kOfFields + kOfByte * record_bytes(compression)) * (compression.layered ? kChannels : 1);
 }
@@ -66,7 +67,7 @@ struct ChunkDecoder::State {
     std::string file;
     uint32_t record_bytes = 0;
     const std::byte* begin = nullptr;
-    std::span<const std::byte> first;  ///< the first point as it is; empty once it is given out
+    std::span<const std::byte> first;  ///< the uncompressed first point; empty once it is returned
     std::optional<PointWise<Decoder>> point_wise;
     std::optional<Layered<Decoder>> layered;
     const std::byte* layers_end = nullptr;

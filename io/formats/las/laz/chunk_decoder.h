@@ -6,22 +6,24 @@
 
 namespace lucarne::io::laz {
 
-/// The points of one chunk, any number at a time, as records of a LAS file. Thread-safe against other chunks.
+/// Decodes the points of one chunk to records of a LAS file, any number at a time. Different chunks can be
+/// decoded by different threads.
 class ChunkDecoder {
  public:
-    /// `bytes` is the whole chunk, kept by the caller. Errors: a chunk that is cut off or contradicts itself.
+    /// `bytes` is the whole chunk; the caller must keep it. Errors: a chunk that is cut off or contradicts
+    /// itself.
     static Result<ChunkDecoder> create(const std::string& file, const Compression& compression,
                                        uint64_t points, std::span<const std::byte> bytes);
     ChunkDecoder(ChunkDecoder&&) noexcept;
     ChunkDecoder& operator=(ChunkDecoder&&) noexcept;
     ~ChunkDecoder();
 
-    /// The next `count` records, one after the other. Errors: bytes that end before the points do.
+    /// Decodes the next `count` records, one after the other. Errors: the bytes end before the points do.
     Result<void> decode(uint64_t count, std::byte* records);
-    /// After the last point: how many of the bytes were the chunk.
+    /// Call after the last point. Returns how many of the bytes belong to the chunk.
     uint64_t consumed() const;
-    /// After the last point: whether its code ended just where the chunk does. Where it does not, something
-    /// in between was read wrongly.
+    /// Call after the last point. Returns whether the code ends exactly where the chunk does. If not,
+    /// something in between was decoded wrongly.
     bool ends_well() const;
 
  private:
@@ -30,10 +32,10 @@ class ChunkDecoder {
     std::unique_ptr<State> state_;
 };
 
-/// About the memory of a chunk's models while it is decoded, at most.
+/// Returns an upper estimate of the memory for a chunk's models while it is decoded.
 uint64_t model_bytes(const Compression& compression);
 
-/// What a layered chunk says of itself, in its first layered_head_bytes.
+/// What a layered chunk says about itself in its first layered_head_bytes.
 struct LayeredSize {
     uint64_t points = 0, bytes = 0;
 };

@@ -8,7 +8,7 @@ namespace {
 
 using Records = std::span<const std::byte>;
 
-/// All but the first, which stands before the code as it is.
+/// Encodes all records but the first, which stands uncompressed before the code.
 template <class Coding>
 void code_rest(Coding& coding, Records records, size_t record_bytes) {
     std::vector<std::byte> record(record_bytes);
@@ -42,7 +42,7 @@ std::vector<std::byte> encode_layered(const Compression& compression, Records re
     };
     put(count);
     std::vector<std::byte> layers;
-    // The first layer is always there, also in a chunk of one point.
+    // The first layer is always present, even in a chunk of one point.
     layered.layers()[0].changes = true;
     for (auto& layer : layered.layers()) {
         const auto bytes = layer.changes ? layer.coder.finish() : std::vector<std::byte>();

@@ -6,7 +6,7 @@
 
 namespace lucarne::io::laz {
 
-/// One chunk, as it stands in a file.
+/// Encodes records as one chunk of a file.
 std::vector<std::byte> encode_chunk(const Compression& compression, std::span<const std::byte> records);
 
 }  // namespace lucarne::io::laz

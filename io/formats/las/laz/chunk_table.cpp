@@ -13,23 +13,23 @@
 namespace lucarne::io::laz {
 namespace {
 
-constexpr uint64_t kOffsetBytes = 8;  ///< where the table begins: a number before the first chunk
+constexpr uint64_t kOffsetBytes = 8;  ///< a number before the first chunk: where the table begins
 constexpr uint64_t kTableHeader = 8;
-/// A chunk is held in memory while it is decoded.
+/// A larger chunk is rejected, because a chunk is held in memory while it is decoded.
 constexpr uint64_t kMostChunkBytes = uint64_t{1} << 30;
-/// Of a record as it is, to its longest code: a symbol of a byte takes 15 bits at most, and what is not worth
-/// a model goes plainly.
+/// Ratio of a record's longest code to the record: the symbol of a byte takes at most 15 bits, and values
+/// without a model are stored plainly.
 constexpr uint64_t kLongestCode = 4;
 
-/// Reads at most what is there.
+/// Reads `bytes` bytes, or fewer at the end of the file.
 Result<std::vector<std::byte>> read_up_to(const ByteSource& file, uint64_t offset, uint64_t bytes) {
     std::vector<std::byte> data(std::min(bytes, file.size() - std::min(offset, file.size())));
     LUCARNE_TRY(file.read_at(offset, data));
     return data;
 }
 
-/// 0 where no table can be: the number before the points, or the last of the file where a writer could not go
-/// back.
+/// Returns where the table begins; 0 if there can be none. The offset stands before the points, or at the end
+/// of the file if the writer could not go back.
 Result<uint64_t> table_offset(const ByteSource& file, uint64_t points_offset) {
     const uint64_t first = points_offset + kOffsetBytes;
     if (file.size() < first + kTableHeader) return 0;
@@ -42,7 +42,7 @@ Result<uint64_t> table_offset(const ByteSource& file, uint64_t points_offset) {
     return 0;
 }
 
-/// Empty where the table is none of this file.
+/// Reads the table. Empty if it does not belong to this file.
 Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::Header& header,
                                             const Compression& compression, uint64_t table) {
     std::array<std::byte, kTableHeader> head{};
@@ -51,7 +51,7 @@ Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::H
     const uint64_t first = header.points_offset + kOffsetBytes;
     if (load<uint32_t>(&head[0]) != 0 || count > (table - first) / header.record_length)
         return std::vector<ChunkPlace>();
-    // Two numbers a chunk, each of six bytes in its longest code.
+    // Each chunk takes two numbers, whose longest code is six bytes.
     LUCARNE_ASSIGN(const auto bytes, read_up_to(file, table + kTableHeader, 12 * count + 16));
     Decoder decoder(bytes);
     IntegerModel model(32, 2);
@@ -74,7 +74,7 @@ Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::H
     return chunks;
 }
 
-/// Goes from chunk to chunk without a table: layered ones say how long they are, others are decoded.
+/// Walks from chunk to chunk without a table. Layered chunks state their size; others must be decoded.
 class Walk {
  public:
     Walk(const ByteSource& file, const las::Header& header, const Compression& compression)
@@ -86,9 +86,9 @@ class Walk {
 
     Result<std::vector<ChunkPlace>> go(bool salvage) {
         if (compression_.chunk_points == kVariableChunks && !compression_.layered)
-            return rejected(name_, "has chunks of any size and no chunk table that says which");
+            return rejected(name_, "has chunks of variable size, but no chunk table");
         if (compression_.chunked)
-            log::warn("{}: has no chunk table; its points are looked through first", name_);
+            log::warn("{}: has no chunk table; its chunks are searched for first", name_);
         std::vector<ChunkPlace> chunks;
         uint64_t offset = header_.points_offset + (compression_.chunked ? kOffsetBytes : 0);
         for (uint64_t done = 0; done < header_.points;) {
@@ -99,7 +99,7 @@ class Walk {
             const bool sound = measured.has_value();
             if (!sound && (!salvage || measured.error().kind != ErrorKind::input_rejected))
                 return tl::unexpected(std::move(measured).error());
-            // What comes before the cut can be read where points follow each other.
+            // In a point-wise chunk, the points before the cut can be read.
             if (sound || (!compression_.layered && chunk.bytes > 0)) chunks.push_back(chunk);
             if (!sound) break;
             done += chunk.points;
@@ -109,7 +109,7 @@ class Walk {
     }
 
  private:
-    /// Finds the chunk's bytes; where it is not sound, those up to the end of the file.
+    /// Finds the chunk's size. If the chunk is damaged, sets it to the bytes up to the end of the file.
     Result<void> measure(ChunkPlace& chunk) const {
         if (compression_.layered) return measure_layers(chunk);
         const uint64_t left = file_.size() - std::min(chunk.offset, file_.size());
@@ -118,7 +118,7 @@ class Walk {
         if (chunk.bytes > kMostChunkBytes)
             return rejected(name_,
                             fmt::format("has a chunk of {} points, too large to be read", chunk.points));
-        // Usual chunks shrink to less than half: the longest that could be is not read for each.
+        // Most chunks shrink to less than half, so the longest possible chunk is read only if needed.
         for (uint64_t some = chunk.points * header_.record_length / 2 + 4096;; some *= 4) {
             const uint64_t bytes = std::min(some, chunk.bytes);
             auto used = decode_all(chunk, bytes);
@@ -128,8 +128,8 @@ class Walk {
         }
     }
 
-    /// How many of so many bytes the chunk takes. Bytes that are none of a chunk decode to something, too: to
-    /// places far outside the scan, by which it is rejected.
+    /// Decodes the chunk and returns how many of the bytes it takes. Bytes of something else decode as well,
+    /// but to places far outside the scan, for which they are rejected.
     Result<uint64_t> decode_all(const ChunkPlace& chunk, uint64_t most_bytes) const {
         LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, chunk.offset, most_bytes));
         LUCARNE_ASSIGN(auto decoder, ChunkDecoder::create(name_, compression_, chunk.points, bytes));
@@ -149,7 +149,7 @@ class Walk {
         LUCARNE_ASSIGN(const auto size, layered_size(name_, compression_, head));
         const bool variable = compression_.chunk_points == kVariableChunks;
         if (size.points == 0 || size.points > chunk.points || (!variable && size.points != chunk.points))
-            return rejected(name_, "has a chunk whose number of points cannot be");
+            return rejected(name_, "has a chunk with an impossible number of points");
         if (size.bytes > file_.size() - chunk.offset)
             return rejected(name_, "has compressed points that are cut off or damaged");
         chunk.points = size.points;

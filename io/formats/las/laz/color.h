@@ -9,8 +9,8 @@ namespace lucarne::io::laz {
 
 using Color = std::array<uint16_t, 3>;
 
-/// A colour after another: which of its six bytes changed, and by how much; green and blue are expected to
-/// change as red did. (LASzip items RGB12 version 2 and RGB14.)
+/// Codes a colour relative to the previous one: which of its six bytes changed, and by how much. Green and
+/// blue are predicted to change like red. (LASzip items RGB12 version 2 and RGB14.)
 class ColorModel {
  public:
     template <class Coder>
@@ -57,7 +57,7 @@ class ColorModel {
                                        SymbolModel(256), SymbolModel(256), SymbolModel(256)};
 };
 
-/// The near infrared of RGBNIR14.
+/// Codes the near infrared of RGBNIR14.
 class NirModel {
  public:
     template <class Coder>

@@ -7,9 +7,9 @@
 
 namespace lucarne::io::laz {
 
-/// Arithmetic decoding of a piece of memory (sources: models.h). Never reads beyond it: from there on come
-/// zeros, and `failed` says so. Value stays below length, whatever the bytes are, so that every index
-/// follows.
+/// Arithmetic decoder for a piece of memory (sources: models.h). It never reads beyond the end: it continues
+/// with zeros and sets `failed`. Whatever the bytes are, value_ stays below length_, so every index that
+/// follows from it is valid.
 class Decoder {
  public:
     static constexpr bool kEncodes = false;
@@ -20,7 +20,7 @@ class Decoder {
         if (value_ == length_) failed_ = true, --value_;
     }
 
-    /// The next symbol. (What the encoder takes as its symbol has no meaning here.)
+    /// Decodes the next symbol. The second argument exists only because the encoder has one; it is ignored.
     uint32_t symbol(SymbolModel& model, uint32_t = 0) {
         const uint32_t unit = length_ >> kLengthShift;
         const uint32_t symbol = model.find(value_ / unit);
@@ -40,7 +40,7 @@ class Decoder {
         model.count(bit);
         return bit;
     }
-    /// Up to 32 bits as they are, the lowest first.
+    /// Decodes up to 32 bits without a model, lowest bits first.
     uint32_t bits(uint32_t count, uint32_t = 0) {
         if (count > kMostBitsAtOnce) {
             const uint32_t low = bits(16);
@@ -55,9 +55,9 @@ class Decoder {
         return found & ((1u << count) - 1);
     }
     bool failed() const { return failed_; }
-    void fail() { failed_ = true; }  ///< what was decoded cannot be
+    void fail() { failed_ = true; }  ///< marks the decoded data as invalid
     bool at_end() const { return next_ == end_; }
-    /// How far it has read. After the last symbol that is the whole code.
+    /// Returns how far the decoder has read. After the last symbol that is the end of the code.
     const std::byte* position() const { return next_; }
 
  private:

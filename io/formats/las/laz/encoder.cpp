@@ -2,8 +2,8 @@
 
 namespace lucarne::io::laz {
 
-/// Adds one to the number that the bytes are. There is a byte that takes it: the number is below one as a
-/// fraction.
+/// Adds one to the number that the bytes form. Some byte can take the carry, because the number, as a
+/// fraction, is below one.
 void Encoder::carry() {
     auto at = bytes_.rbegin();
     for (; at != bytes_.rend() && *at == std::byte{255}; ++at) *at = std::byte{0};
@@ -11,11 +11,11 @@ void Encoder::carry() {
 }
 
 std::vector<std::byte> Encoder::finish() {
-    // Any number inside the last interval; the longer the interval, the fewer bytes tell it.
+    // Chooses a number inside the last interval. The longer the interval, the fewer bytes it takes.
     const bool long_interval = length_ > 2 * kLeastLength;
     const uint32_t into = long_interval ? kLeastLength : kLeastLength / 2;
     narrow(into, into + (long_interval ? kLeastLength / 2 : kLeastLength >> 9));
-    // A decoder looks four bytes ahead.
+    // A decoder reads four bytes ahead.
     bytes_.resize(bytes_.size() + (long_interval ? 3 : 2));
     return std::move(bytes_);
 }

@@ -7,7 +7,7 @@
 
 namespace lucarne::io::laz {
 
-/// The inverse of Decoder, with the same calls: each returns what it was given.
+/// The inverse of Decoder, with the same functions. Each returns the value that it was given.
 class Encoder {
  public:
     static constexpr bool kEncodes = true;
@@ -38,7 +38,7 @@ class Encoder {
         narrow(value * unit, value * unit + unit);
         return value;
     }
-    /// Writes what is left. Nothing can be encoded afterwards.
+    /// Writes the rest and returns the code. Nothing can be encoded afterwards.
     std::vector<std::byte> finish();
 
  private:

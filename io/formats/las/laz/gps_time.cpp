@@ -6,7 +6,7 @@
 namespace lucarne::io::laz {
 namespace {
 
-// Contexts of the difference from what is expected.
+// Contexts of the difference from the predicted time.
 enum : uint32_t {
     kFirstStep,
     kOneStep,
@@ -21,15 +21,15 @@ enum : uint32_t {
 
 constexpr uint32_t kFew = 10;
 
-int32_t times(int32_t step, int32_t count) {  // wraps, as the format does
+int32_t times(int32_t step, int32_t count) {  // wraps, as in the format
     return static_cast<int32_t>(static_cast<uint32_t>(step) * static_cast<uint32_t>(count));
 }
 
 }  // namespace
 
 uint64_t GpsTimeModel::decode(Decoder& decoder) {
-    for (size_t i = 0; i <= trains_.size(); ++i) {  // an encoder goes to another train once
-        uint32_t skipped = 0;                       // trains
+    for (size_t i = 0; i <= trains_.size(); ++i) {  // an encoder changes to another train at most once
+        uint32_t skipped = 0;                       // number of trains
         if (trains_[current_].step == 0) {
             const uint32_t symbol = decoder.symbol(first_) + 1 - unchanged_;
             if (symbol == 1)
@@ -85,7 +85,7 @@ void GpsTimeModel::encode(Encoder& encoder, uint64_t time) {
 }
 
 uint32_t GpsTimeModel::steps_symbol(int32_t by, int32_t step) {
-    // In single precision, as LASzip computes it, so that its bytes come out.
+    // In single precision like LASzip, so that the bytes are the same.
     const float steps = static_cast<float>(by) / static_cast<float>(step);
     const float count =
         std::trunc(std::clamp(steps + (steps < 0 ? -0.5f : 0.5f), -float{kMostBackward}, float{kMostSteps}));

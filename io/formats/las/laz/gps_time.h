@@ -9,16 +9,18 @@
 
 namespace lucarne::io::laz {
 
-/// Times as 64-bit integers, of up to four pulse trains at once: a time is expected a whole number of the
-/// train's steps after its last one. (LASzip items GPSTIME11 version 2 and the time of POINT14.)
+/// Codes times as 64-bit integers, for up to four pulse trains at once. A time is predicted to come a whole
+/// number of the train's steps after its last time. (LASzip items GPSTIME11 version 2 and the time of
+/// POINT14.)
 class GpsTimeModel {
  public:
-    /// GPSTIME11 says of every point whether its time changed; POINT14 asks only where it did.
+    /// With GPSTIME11 every point says whether its time changed. POINT14 codes a time only where it changed.
     explicit GpsTimeModel(bool tells_unchanged)
         : unchanged_(tells_unchanged ? 1 : 0), first_(5 + unchanged_), steps_(kFull + 4 + unchanged_) {}
 
     void start(uint64_t time) { trains_[0].time = time; }
-    /// The next time; what the decoder takes has no meaning. POINT14 encodes only times that change.
+    /// Codes the next time. The decoder ignores its second argument. POINT14 may only encode times that
+    /// change.
     uint64_t code(Decoder& decoder, uint64_t = 0) { return decode(decoder); }
     uint64_t code(Encoder& encoder, uint64_t time) {
         encode(encoder, time);
@@ -26,11 +28,11 @@ class GpsTimeModel {
     }
 
  private:
-    /// Symbols of the number of steps: 0 something else, 1 to 500 that many, 501 to 510 as many backward,
-    /// then (GPSTIME11 only) unchanged, then a new train, then the next, the second next and the third next
-    /// train.
+    /// The symbols for the number of steps: 0 means anything else, 1 to 500 that many, 501 to 510 as many
+    /// backward. Then follow (GPSTIME11 only) unchanged, a new train, and the next, second next and third
+    /// next train.
     static constexpr uint32_t kMostSteps = 500, kMostBackward = 10, kFull = kMostSteps + kMostBackward + 1;
-    static constexpr uint32_t kPatience = 3;  ///< so many exceptions until a train's step is taken anew
+    static constexpr uint32_t kPatience = 3;  ///< after so many exceptions a train takes a new step
 
     struct Train {
         uint64_t time = 0;
@@ -43,9 +45,9 @@ class GpsTimeModel {
         Train& train = trains_[current_];
         train.time += static_cast<uint64_t>(int64_t{by});
     }
-    /// From the time of a train to another, where that fits 32 bits.
+    /// Returns the difference of two times, if it fits 32 bits.
     static std::optional<int32_t> step_between(uint64_t from, uint64_t to);
-    /// The train that a time goes on from best: how many after the current one, 4 for a new one.
+    /// Returns the train that a time continues best: how many after the current one, 4 for a new one.
     uint32_t trains_ahead(uint64_t time) const;
     template <class Coder>
     void new_train(Coder& coder, uint64_t time);
@@ -53,7 +55,7 @@ class GpsTimeModel {
     void first_step(Coder& coder, int32_t by);
     template <class Coder>
     void steps(Coder& coder, uint32_t count, int32_t by);
-    /// The symbol of the number of steps that is nearest to `by`.
+    /// Returns the symbol for the number of steps that is nearest to `by`.
     static uint32_t steps_symbol(int32_t by, int32_t step);
 
     uint32_t unchanged_;

@@ -4,22 +4,24 @@
 
 namespace lucarne::io::laz {
 
-/// Of a number of bits: every second one has a context of its own, up to a most.
+/// Maps a number of bits to a context: two neighbouring numbers share one, and all from `most` on share the
+/// last.
 inline uint32_t even_up_to(uint32_t k, uint32_t most) {
     return k < most ? k & ~1u : most;
 }
 
-/// Codes integers by how far they are from what was expected: the number k of bits of that, then its upper
-/// eight bits by a model for each k, and the rest plainly. (Isenburg 2013, "integer compressor".)
+/// Codes integers as differences from a prediction: first k, the number of bits of the difference, then its
+/// upper eight bits with a model for each k, then the rest without a model. (Isenburg 2013, "integer
+/// compressor".)
 class IntegerModel {
  public:
-    /// `bits` 8, 16 or 32 wide; `contexts` ways to expect k.
+    /// `bits` is the width: 8, 16 or 32. `contexts` is the number of contexts for k.
     explicit IntegerModel(uint32_t bits, uint32_t contexts = 1)
         : bits_(bits), k_models_(contexts, SymbolModel(bits + 1)) {
         for (uint32_t k = 1; k <= bits; ++k) high_models_.emplace_back(1u << (k < kHighBits ? k : kHighBits));
     }
 
-    /// The value; where it is decoded, `value` has no meaning. Values of less than 32 bits are not negative.
+    /// Codes a value and returns it. A decoder ignores `value`. Values of less than 32 bits are not negative.
     template <class Coder>
     int32_t code(Coder& coder, int32_t expected, int32_t value, uint32_t context = 0) {
         const int64_t range = int64_t{1} << bits_;
@@ -34,7 +36,7 @@ class IntegerModel {
         if (bits_ == 32) return static_cast<int32_t>(static_cast<uint32_t>(result));
         return static_cast<int32_t>(result < 0 ? result + range : result >= range ? result - range : result);
     }
-    /// Of the last value coded: how many bits its difference took.
+    /// Returns how many bits the difference of the last value took.
     uint32_t k() const { return k_; }
 
  private:
@@ -46,7 +48,7 @@ class IntegerModel {
         return k;
     }
 
-    /// k bits tell apart what lies in [-(2^k - 1), -2^(k-1)] and [2^(k-1) + 1, 2^k]; 0 and 1 have k = 0.
+    /// k bits cover [-(2^k - 1), -2^(k-1)] and [2^(k-1) + 1, 2^k]; k = 0 covers 0 and 1.
     template <class Coder>
     int64_t difference(Coder& coder, int64_t off, uint32_t context) {
         k_ = coder.symbol(k_models_[context], Coder::kEncodes ? bits_of(off) : 0);

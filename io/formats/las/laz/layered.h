@@ -9,9 +9,10 @@
 
 namespace lucarne::io::laz {
 
-/// Models and last values of an item for each scanner channel. Two slips of LASzip's are part of version 3,
-/// and mended in 4: an item takes the models of channel 0 for every point whose channel is not another than
-/// the point's before, and coming back to a channel it goes on from the values of the models before.
+/// Models and last values of an item for each scanner channel. Two mistakes of LASzip are part of version 3
+/// and are corrected in version 4. First, an item uses the models of channel 0 for every point whose channel
+/// is the same as the previous point's. Second, when a known channel returns, the item continues from the
+/// last values of the previous models.
 template <class Models, class Last>
 class Channels {
  public:
@@ -24,8 +25,8 @@ class Channels {
         Models models;
         Last last;
     };
-    /// The models for a point and the last values to go on from. `changed`: its channel is not that of the
-    /// point before.
+    /// Returns the models for a point and the last values to continue from. `changed` says that the point's
+    /// channel differs from the previous point's.
     std::pair<Models&, Last&> at(uint32_t channel, bool changed) {
         if (slips_ && !changed) channel = 0;
         Channel& before = *channels_[current_];
@@ -53,11 +54,11 @@ struct ColorNir {
 };
 static_assert(sizeof(ColorNir) == 8);
 
-/// Point formats 6 to 8: each attribute in layers of its own.
+/// Point formats 6 to 8: each attribute has layers of its own.
 template <class Coder>
 class Layered {
  public:
-    /// `first` is the first point, which stands before the layers as it is.
+    /// `first` is the first point, which stands uncompressed before the layers.
     Layered(const Compression& compression, std::vector<Layer<Coder>> layers, const std::byte* first)
         : layers_(std::move(layers)),
           point_(first, std::span(layers_).template first<Point14Coder<Coder>::kLayers>()) {
@@ -99,7 +100,7 @@ class Layered {
         return count;
     }
 
-    /// The next record, read or written.
+    /// Reads or writes the next record.
     void code(std::byte* to) {
         point_.code(to);
         to += Point14Coder<Coder>::kBytes;
@@ -135,7 +136,8 @@ class Layered {
         }
     }
 
-    /// The layer, where it is coded: always into an encoder, which notes whether anything changes.
+    /// Returns the layer if it is coded, otherwise null. An encoder codes every layer and notes whether
+    /// anything changes.
     Layer<Coder>* used(size_t index, bool changes) {
         Layer<Coder>& layer = layers_[index];
         if constexpr (Coder::kEncodes) layer.changes |= changes;

@@ -5,8 +5,8 @@
 
 namespace lucarne::io::laz {
 
-/// About the median of the last values. Not of the last five: which of the outer ones a new value drives out
-/// goes by turns, and that is part of the format.
+/// Keeps an approximate median of the last values. It is not the median of the last five: new values drive
+/// out the largest and the smallest in turns, and that is part of the format.
 class Median5 {
  public:
     int32_t get() const { return sorted_[2]; }

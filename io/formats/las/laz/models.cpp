@@ -6,7 +6,7 @@ namespace lucarne::io::laz {
 namespace {
 
 constexpr uint32_t kMostCounts = 1u << kLengthShift, kMostBits = 1u << kBitLengthShift;
-/// Up to here a search of the whole range costs less than keeping a table.
+/// Up to this number of symbols, searching the whole range costs less than keeping a table.
 constexpr uint32_t kFewSymbols = 16;
 
 }  // namespace

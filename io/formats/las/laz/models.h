@@ -9,17 +9,17 @@
 namespace lucarne::io::laz {
 
 inline constexpr uint32_t kLengthShift = 15;     ///< bits of a symbol's probability
-inline constexpr uint32_t kBitLengthShift = 13;  ///< of a bit's
+inline constexpr uint32_t kBitLengthShift = 13;  ///< bits of a bit's probability
 
-/// How often each of up to 2048 symbols came, and from that its interval.
+/// Counts how often each of up to 2048 symbols occurred, and derives the symbol's interval from that.
 class SymbolModel {
  public:
     explicit SymbolModel(uint32_t symbols);
 
     uint32_t last_symbol() const { return symbols_ - 1; }
-    /// Where a symbol's interval begins, of 2^15; that of the last ends at the top.
+    /// Returns where a symbol's interval begins, of 2^15. The last symbol's interval ends at the top.
     uint32_t begin(uint32_t symbol) const { return begins_[symbol]; }
-    /// The symbol whose interval holds `value`; what lies beyond the top counts as the last one's.
+    /// Returns the symbol whose interval holds `value`. A value beyond the top gives the last symbol.
     uint32_t find(uint32_t value) const {
         uint32_t low = 0, high = symbols_;
         if (!first_.empty()) {
@@ -43,7 +43,7 @@ class SymbolModel {
 
     uint32_t symbols_, total_ = 0, cycle_, until_update_ = 0, part_shift_ = 0;
     std::vector<uint16_t> begins_, counts_;
-    /// The symbol at the start of each part of the range: where the search starts.
+    /// The symbol at the start of each part of the range, where the search begins.
     std::vector<uint16_t> first_;
 };
 

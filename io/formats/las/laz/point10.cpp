@@ -5,8 +5,8 @@
 namespace lucarne::io::laz {
 namespace {
 
-/// A context for each pair of number of returns and return number that a sound file has; the others share
-/// (part of the format).
+/// Each valid pair of number of returns and return number has a context of its own; the invalid pairs share
+/// contexts (part of the format).
 constexpr uint8_t kReturnContext[8][8] = {
     {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},    {13, 1, 2, 4, 7, 11, 11, 10},
     {12, 3, 4, 5, 8, 12, 12, 11},    {11, 6, 7, 8, 9, 13, 13, 12},   {10, 10, 11, 12, 13, 14, 14, 13},

@@ -10,7 +10,7 @@
 
 namespace lucarne::io::laz {
 
-/// Models that most files need few of: made when they are first asked for.
+/// Models of which most files need only a few. Each is created when it is first used.
 template <size_t kCount>
 class SparseModels {
  public:
@@ -32,7 +32,7 @@ class Point10Coder {
     static constexpr size_t kBytes = 20;
 
     void start(const std::byte* first);
-    /// The next record, read or written.
+    /// Reads or writes the next record.
     void code(Coder& coder, std::byte* record);
 
  private:
@@ -43,7 +43,7 @@ class Point10Coder {
         uint16_t point_source;
     };
     static_assert(sizeof(Point) == kBytes);
-    /// Which fields are not those of the last point.
+    /// Returns which fields differ from the last point's.
     uint32_t changes(const Point& next) const;
     void code_changed(Coder& coder, const Point& next, uint32_t changed);
     void code_place(Coder& coder, const Point& next, uint32_t context);

@@ -19,7 +19,8 @@ enum LayerIndex {
     kTime
 };
 
-// What changed: two bits for the return number (same, one more, one less, other), then one each.
+// The bits of "what changed": two for the return number (same, one more, one less, other), then one for each
+// of the others.
 enum : uint32_t {
     kNumber = 3,
     kCount = 4,
@@ -29,7 +30,7 @@ enum : uint32_t {
     kChannelChanges = 64
 };
 
-/// Contexts of the steps in x and y by number of returns and return number (part of the format).
+/// Contexts of the steps in x and y, by number of returns and return number (part of the format).
 constexpr uint8_t kReturnContext[16][16] = {
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5}, {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
     {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3}, {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
@@ -41,7 +42,7 @@ constexpr uint8_t kReturnContext[16][16] = {
     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5}, {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5},
 };
 
-/// 1: the first return, 2: the last, 3: both.
+/// Returns 1 for the first return, 2 for the last, 3 for both, 0 for others.
 uint32_t first_or_last(uint32_t number, uint32_t count) {
     return (number == 1 ? 1u : 0u) + (number >= count ? 2u : 0u);
 }

@@ -11,7 +11,8 @@ namespace lucarne::io::laz {
 
 inline constexpr size_t kChannels = 4;
 
-/// A part of the points coded on its own; one that is left out says that nothing changes in the chunk.
+/// A part of the points that is coded separately. If a layer is left out, nothing in it changes within the
+/// chunk.
 template <class Coder>
 struct Layer {
     Coder coder;
@@ -19,7 +20,8 @@ struct Layer {
 };
 
 /// The 30 bytes that point formats 6 to 8 share, in nine layers, with models for each scanner channel (LASzip
-/// item POINT14, versions 3 and 4). One and the same for both ways: a decoder gives what an encoder is given.
+/// item POINT14, versions 3 and 4). The same code encodes and decodes: a decoder returns what an encoder was
+/// given.
 template <class Coder>
 class Point14Coder {
  public:
@@ -27,17 +29,17 @@ class Point14Coder {
     static constexpr size_t kLayers = 9;
 
     Point14Coder(const std::byte* first, std::span<Layer<Coder>, kLayers> layers);
-    /// The next record, read or written.
+    /// Reads or writes the next record.
     void code(std::byte* record);
-    uint32_t channel() const { return current_; }       ///< of the point coded last
-    bool channel_changed() const { return switched_; }  ///< with the point coded last
+    uint32_t channel() const { return current_; }       ///< of the last coded point
+    bool channel_changed() const { return switched_; }  ///< at the last coded point
 
  private:
 #pragma pack(push, 1)
     struct Point {
         int32_t x, y, z;
         uint16_t intensity;
-        uint8_t returns;  ///< number, then count << 4
+        uint8_t returns;  ///< return number, then number of returns << 4
         uint8_t flags;    ///< class flags, then channel << 4, direction << 6, edge << 7
         uint8_t classification, user_data;
         int16_t scan_angle;
@@ -73,7 +75,8 @@ class Point14Coder {
     void code_place(Channel& channel, const Point& next, bool time_changes);
     void code_class_and_flags(Channel& channel, const Point& next, uint32_t place);
     void code_rest(Channel& channel, const Point& next, uint32_t changed, bool time_changes);
-    /// The layer, where it is coded: always into an encoder, which notes whether anything changes.
+    /// Returns the layer if it is coded, otherwise null. An encoder codes every layer and notes whether
+    /// anything changes.
     Layer<Coder>* layer(size_t index, bool changes);
 
     std::span<Layer<Coder>, kLayers> layers_;

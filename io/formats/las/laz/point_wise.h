@@ -10,11 +10,11 @@
 
 namespace lucarne::io::laz {
 
-/// Point formats 0 to 3: all items of a point in one stream, one after the other.
+/// Point formats 0 to 3: the items of all points in one stream, point after point.
 template <class Coder>
 class PointWise {
  public:
-    /// `first` is the first point, which stands before the stream as it is.
+    /// `first` is the first point, which stands uncompressed before the stream.
     PointWise(const Compression& compression, Coder coder, const std::byte* first)
         : coder_(std::move(coder)) {
         for (const ItemLayout& item : compression.items) {
@@ -37,7 +37,7 @@ class PointWise {
         }
     }
 
-    /// The next record, read or written.
+    /// Reads or writes the next record.
     void code(std::byte* record) {
         point_.code(coder_, record);
         record += Point10Coder<Coder>::kBytes;

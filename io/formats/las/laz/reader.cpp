@@ -13,9 +13,9 @@ namespace lucarne::io::laz {
 namespace {
 
 constexpr uint64_t kMostReadyBytes = kLargestBatch / 2;
-constexpr uint64_t kPiecePoints = 1024;  ///< decoded before they are unpacked, while they are in the cache
+constexpr uint64_t kPiecePoints = 1024;  ///< decoded at a time, and unpacked while they are in the cache
 
-/// A chunk's bytes, and how far it has been decoded.
+/// A chunk's bytes, and how far they have been decoded.
 struct OpenChunk {
     std::vector<std::byte> bytes;
     std::optional<ChunkDecoder> decoder;
@@ -37,7 +37,7 @@ bool ends_with_file(const Points& points, size_t index) {
     return points.chunks[index].offset + points.chunks[index].bytes >= points.file->size();
 }
 
-/// The next `count` points of an open chunk, in records of the schema.
+/// Decodes the next `count` points of an open chunk to records of the schema.
 Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk, uint64_t count,
                     std::byte* to) {
     const uint32_t bytes = points.header.record_length;
@@ -55,9 +55,9 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
     return {};
 }
 
-/// How many points of a damaged chunk can be trusted: where the file ends within one whose points follow each
-/// other, those before that; else none. A table behind the last point, where the header promises more, is
-/// none.
+/// Returns how many points of a damaged chunk can be trusted. If the file ends within a point-wise chunk,
+/// these are the points before the end; otherwise none. A chunk table behind the last point does not count as
+/// points, even if the header promises more.
 Result<uint64_t> sound_points(const Points& points, size_t index) {
     const ChunkPlace& place = points.chunks[index];
     if (points.compression.layered || !ends_with_file(points, index)) return 0u;
@@ -119,7 +119,8 @@ class Reader final : public PointReader {
         return {};
     }
 
-    /// It is handed out while it is decoded, so it is decoded once before to see whether it is sound.
+    /// Decodes a large chunk once to see whether it is sound, because its points are returned while it is
+    /// decoded.
     Result<uint64_t> sound_of_large(size_t index) const {
         auto chunk = open_chunk(points_, index);
         Result<void> done = chunk ? Result<void>() : tl::unexpected(chunk.error());
@@ -172,7 +173,7 @@ class Reader final : public PointReader {
         return error.result();
     }
 
-    /// All points of a chunk, or with `salvage` those that are sound.
+    /// Decodes all points of a chunk, or with `salvage` the sound ones. Returns their number.
     Result<uint64_t> take_chunk(size_t index, std::byte* to) const {
         const uint64_t points = points_.chunks[index].points;
         auto done = take_points(index, points, to);
@@ -188,7 +189,7 @@ class Reader final : public PointReader {
         return unpack(points_, schema_, chunk, count, to);
     }
 
-    /// `kept` of the points that begin at `begins` stay.
+    /// Moves together the `kept` points of each chunk, which begin at `begins`.
     void close_gaps(size_t first, const std::vector<uint64_t>& begins, const std::vector<uint64_t>& kept) {
         size_t end = 0;
         for (size_t i = 0; i < begins.size(); ++i) {
@@ -200,7 +201,8 @@ class Reader final : public PointReader {
         ready_.resize(end);
     }
 
-    /// Chunks whose models are held at once: those of wide records take many times the room of the records.
+    /// Returns how many chunks may be held at once. The models of a chunk with wide records take many times
+    /// the memory of the records.
     size_t most_chunks() const {
         constexpr uint64_t kModels = uint64_t{256} << 20;
         const uint64_t each = model_bytes(points_.compression);
@@ -209,8 +211,8 @@ class Reader final : public PointReader {
 
     const Points& points_;
     const Schema& schema_;
-    size_t side_by_side_;  ///< threads that may decode: one chunk is held for one, several for each of many
-    size_t next_ = 0;      ///< chunk
+    size_t side_by_side_;  ///< threads that may decode; one thread holds one chunk, several hold several each
+    size_t next_ = 0;      ///< the next chunk
     OpenChunk large_;
     std::vector<std::byte> ready_;
     size_t taken_ = 0;

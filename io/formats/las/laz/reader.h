@@ -6,23 +6,24 @@
 
 namespace lucarne::io::laz {
 
-/// A LAZ file's points: what is needed to decode any of its chunks.
+/// The points of a LAZ file: everything that is needed to decode any of its chunks.
 struct Points {
     std::shared_ptr<const ByteSource> file;
     las::Header header;
     Compression compression;
     std::vector<ChunkPlace> chunks;
-    bool salvage = false;  ///< a chunk that is damaged is a loss and no error
+    bool salvage = false;  ///< a damaged chunk is a loss and not an error
 };
 
-/// The first `count` points of chunk number `index`, or all it has, as records of a LAS file.
+/// Decodes the first `count` points of chunk number `index`, or all if it has fewer, to records of a LAS
+/// file.
 Result<std::vector<std::byte>> decode_chunk(const Points& points, size_t index, uint64_t count);
 
-/// All points of chunk number `index`, in the records of las::make_schema.
+/// Decodes all points of chunk number `index` to records of las::make_schema.
 Result<std::vector<std::byte>> read_chunk(const Points& points, size_t index, const Schema& schema);
 
-/// One pass over the points, in the records of las::make_schema; several chunks are decoded side by side.
-/// Both outlive the reader.
+/// Starts a pass over the points, as records of las::make_schema. Several chunks are decoded in parallel.
+/// `points` and `schema` must outlive the reader.
 std::unique_ptr<PointReader> open_points(const Points& points, const Schema& schema);
 
 }  // namespace lucarne::io::laz

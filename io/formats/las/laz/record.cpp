@@ -60,7 +60,7 @@ Result<Compression> read_compression(const std::string& file, const las::Header&
         return rejected(file,
                         fmt::format("has compressed point format {} (wave packets), which is not read",
                                     las::with_waves(header.point_format)),
-                        "decompress it to LAS, whose wave packets are passed over");
+                        "decompress it to LAS, whose wave packets are skipped");
     const uint16_t version = compression.items[0].version;
     const bool extended = las::extended_format(header.point_format);
     if (!extended && version < 2)

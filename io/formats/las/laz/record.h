@@ -4,7 +4,7 @@
 
 #include "io/formats/las/header.h"
 
-// The record by which a LAZ file says how its points are compressed ("laszip encoded", 22204).
+// The record in which a LAZ file says how its points are compressed ("laszip encoded", 22204).
 namespace lucarne::io::laz {
 
 inline constexpr std::string_view kUser = "laszip encoded";
@@ -24,7 +24,7 @@ enum class Item : uint16_t {
     bytes14 = 14
 };
 
-/// Part of a point record.
+/// A part of a point record.
 struct ItemLayout {
     Item item = Item::bytes;
     uint16_t bytes = 0;
@@ -33,21 +33,21 @@ struct ItemLayout {
 };
 
 struct Compression {
-    bool chunked = true;             ///< else all points are one chunk, without a table
-    bool layered = false;            ///< point formats 6 to 8
-    uint32_t chunk_points = 50'000;  ///< kVariableChunks: the chunk table tells
+    bool chunked = true;             ///< false: all points are one chunk, without a table
+    bool layered = false;            ///< for point formats 6 to 8
+    uint32_t chunk_points = 50'000;  ///< kVariableChunks: the chunk table states them
     std::vector<ItemLayout> items;
 };
 
-/// The items of the header's point format and extra bytes.
+/// Returns the items of the header's point format and extra bytes.
 std::vector<ItemLayout> items_of(const las::Header& header, uint16_t version);
 
-/// Of all items together.
+/// Returns the bytes of all items together.
 uint32_t record_bytes(const Compression& compression);
 
-/// What the record says, checked against the point format and the length of the records. Errors: no such
-/// record, another coder, a compressor or an item that is not read (its name is in the reason), items that
-/// are not the point format's.
+/// Reads the record and checks it against the point format and the record length. Errors: no such record, an
+/// unknown coder, a compressor or an item that cannot be read (the message names it), items that do not
+/// belong to the point format.
 Result<Compression> read_compression(const std::string& file, const las::Header& header);
 
 }  // namespace lucarne::io::laz

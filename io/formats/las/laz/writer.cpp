@@ -12,7 +12,7 @@ namespace lucarne::io::laz {
 namespace {
 
 constexpr uint16_t kPointWiseItems = 2, kLayeredItems = 3;
-constexpr uint8_t kMajor = 3, kMinor = 4;  ///< of the LASzip that first wrote such files as these
+constexpr uint8_t kMajor = 3, kMinor = 4;  ///< of the LASzip that first wrote such files
 
 template <class T>
 void put(std::vector<std::byte>& bytes, T value) {
@@ -20,7 +20,7 @@ void put(std::vector<std::byte>& bytes, T value) {
     store(&bytes[bytes.size() - sizeof value], value);
 }
 
-/// Chunks that are encoded at a time.
+/// Returns how many chunks are encoded in parallel.
 size_t side_by_side() {
     return std::max(1u, std::thread::hardware_concurrency());
 }
@@ -44,7 +44,7 @@ las::Vlr compression_record(const Compression& compression) {
     put<uint16_t>(data, 0);  // revision
     put<uint32_t>(data, 0);  // options
     put(data, compression.chunk_points);
-    put<int64_t>(data, -1);  // no special records: how many, where
+    put<int64_t>(data, -1);  // no special records: their number, their offset
     put<int64_t>(data, -1);
     put(data, static_cast<uint16_t>(compression.items.size()));
     for (const ItemLayout& item : compression.items) {

@@ -5,25 +5,25 @@
 
 namespace lucarne::io::laz {
 
-inline constexpr uint32_t kUsualChunk = 50'000;  ///< points; LASzip's own
-/// How a file is compressed: point formats 0 to 3 point by point (item version 2, which LASzip 2 reads as
-/// well), 6 to 8 in layers (item version 3).
+inline constexpr uint32_t kUsualChunk = 50'000;  ///< points; the same as LASzip's
+/// Returns how new files are compressed: point formats 0 to 3 point by point (item version 2, which LASzip 2
+/// reads as well), 6 to 8 in layers (item version 3).
 Compression usual_compression(const las::Header& header, uint32_t chunk_points = kUsualChunk);
-/// The record that says so.
+/// Returns the record that describes the compression.
 las::Vlr compression_record(const Compression& compression);
 
-/// The points of a LAZ file, written behind what the file holds when it is made: the place of the chunk
-/// table, chunks, encoded side by side, and the table.
+/// Writes the points of a LAZ file after the current content of the file: the offset of the chunk table, the
+/// chunks, which are encoded in parallel, and the table.
 class PointsWriter {
  public:
     PointsWriter(OutputFile& file, Compression compression, uint16_t record_bytes);
 
     Result<void> begin();
     Result<void> write(std::span<const std::byte> records);
-    /// What was written since the last chunk is one: where the compression has kVariableChunks.
+    /// Ends a chunk. Only with kVariableChunks.
     Result<void> end_chunk();
     Result<void> finish();
-    /// All of them, once it is finished.
+    /// Returns all chunks, once the writer is finished.
     const std::vector<ChunkPlace>& chunks() const { return chunks_; }
 
  private:
@@ -35,7 +35,7 @@ class PointsWriter {
     uint16_t record_bytes_;
     uint64_t begin_ = 0;
     std::vector<std::byte> waiting_;
-    std::vector<size_t> ends_;  ///< of the chunks in what waits
+    std::vector<size_t> ends_;  ///< ends of the chunks within waiting_
     std::vector<ChunkPlace> chunks_;
 };
 

@@ -1,4 +1,4 @@
-// Decimal numbers are the nearest double and the nearest float, on the fast way as on the slow one.
+// Decimal numbers become the nearest double and the nearest float, both on the fast path and on the slow one.
 #include <cstdlib>
 #include <string>
 
@@ -11,7 +11,7 @@
 namespace lucarne::io {
 namespace {
 
-/// As the C library reads it, which rounds correctly.
+/// Compares with the C library, which rounds correctly.
 void expect_nearest(const std::string& text) {
     const auto wide = parse_number<double>(text);
     const auto narrow = parse_number<float>(text);
@@ -34,7 +34,7 @@ TEST(Numbers, AreTheNearestDoubleAndTheNearestFloat) {
 }
 
 TEST(Numbers, HalfwayBetweenTwoFloatsAreNotRoundedTwice) {
-    // The doubles nearest to these lie halfway between two floats; the numbers do not.
+    // The doubles nearest to these numbers lie halfway between two floats, but the numbers do not.
     for (const char* text :
          {"1.0000000596046448", "1.0000000596046447", "1.00000017881393433", "16777217.000000001",
           "16777216.999999999", "-1.0000000596046448", "0.500000029802322399"})

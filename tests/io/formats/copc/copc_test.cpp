@@ -1,4 +1,5 @@
-// What a COPC file may not say: every lie of its info record and its pages. Files are made by our own writer.
+// COPC files with false values: every lie in the info record and the pages. The files are made by Lucarne's
+// own writer.
 #include <random>
 
 #include <gmock/gmock.h>
@@ -13,7 +14,7 @@ using ::testing::HasSubstr;
 
 constexpr size_t kInfoAt = 375 + 54, kPageOffsetAt = kInfoAt + 40;
 
-/// A root, two children and a grandchild on five levels' way to a second page.
+/// A file with a chain of six nodes, one per level, so deep that the hierarchy has a second page.
 class Copc : public ::testing::Test {
  protected:
     void SetUp() override {
@@ -47,7 +48,7 @@ class Copc : public ::testing::Test {
     T get(size_t at) const {
         return load<T>(reinterpret_cast<const std::byte*>(&bytes_[at]));
     }
-    /// The file with one number changed.
+    /// Returns the file with one number changed.
     template <class T>
     std::string with(size_t at, T value) const {
         std::string changed = bytes_;

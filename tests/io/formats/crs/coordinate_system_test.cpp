@@ -1,4 +1,4 @@
-// What a coordinate system is called, and its unit, from well-known text and GeoTIFF keys.
+// The name and unit of a coordinate system, from well-known text and GeoTIFF keys.
 #include "io/files/file.h"
 #include "io/formats/crs/registry.h"
 #include "io/formats/las/crs.h"
@@ -27,7 +27,7 @@ TEST(CoordinateSystem, OfACompoundWithoutACodeHasThatOfItsHorizontalPart) {
                                  R"(,VERT_CS["NAVD88 height",AUTHORITY["EPSG","5703"]]])";
     EXPECT_EQ(wkt_system(compound).name, "NAD83 / UTM zone 17N + NAVD88");
     EXPECT_EQ(wkt_system(compound).epsg, 26917u);
-    // But one that only lacks its own is not its base.
+    // But a system that only lacks its own code does not take that of its base.
     EXPECT_EQ(wkt_system(R"(PROJCS["mine",GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]]])").epsg, 0u);
 }
 
@@ -51,7 +51,7 @@ TEST(CoordinateSystem, OfAnyBytesIsNoHarm) {
         wkt_units(text);
     }
     EXPECT_EQ(wkt_system(std::string(100000, '[')).name, "");
-    std::string brackets;  // of a size that nothing but time in proportion gets through
+    std::string brackets;  // so many that only an algorithm of linear time can read them
     for (int i = 0; i < 4'000'000; ++i) brackets += "UNIT[]";
     EXPECT_FALSE(wkt_units("PROJCS[" + brackets).horizontal);
     EXPECT_EQ(wkt_system("PROJCS[" + brackets).name, "");
@@ -84,7 +84,7 @@ TEST(CoordinateSystem, OfGeoTiffKeysIsTheirCodeAndCitation) {
     EXPECT_EQ((*scan)->info().metres_per_unit, 0.3048);
 }
 
-/// What the header with these keys counts in.
+/// Returns the units of a header with these keys.
 las::Units units_of_keys(const std::vector<std::array<uint16_t, 4>>& keys) {
     testing::LasFile las;
     las.records = {testing::record0(1, 2, 3)};
@@ -102,7 +102,7 @@ TEST(CoordinateSystem, OfKeysWithoutAUnitCountsInThatOfItsCode) {
         EXPECT_DOUBLE_EQ(units.metres(), metres) << code;
         EXPECT_EQ(units.unknown, "") << code;
     }
-    // The key goes before the registry, which knows more units than the usual ones: yards, links.
+    // The key takes precedence over the registry, which knows more units than the usual ones: yards, links.
     EXPECT_EQ(units_of_keys({{3072, 0, 1, 32633}, {3076, 0, 1, 9002}}).metres(), 0.3048);
     EXPECT_EQ(units_of_keys({{3072, 0, 1, 32767}, {3076, 0, 1, 9002}}).metres(), 0.3048);
     EXPECT_DOUBLE_EQ(units_of_keys({{3072, 0, 1, 32767}, {3076, 0, 1, 9096}}).metres(), 0.9144);

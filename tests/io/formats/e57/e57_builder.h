@@ -10,10 +10,10 @@
 #include "io/formats/e57/crc32c.h"
 #include "io/formats/e57/pages.h"
 
-// E57 files made by hand, so that every bit of them can be wrong.
+// Builds E57 files by hand, so that every bit of them can be made wrong.
 namespace lucarne::io::testing {
 
-/// Cuts logical bytes into pages and appends their checksums; the last is filled up with zeros.
+/// Cuts logical bytes into pages and appends their checksums. The last page is filled up with zeros.
 inline std::string with_checksums(std::string_view logical) {
     std::string file;
     for (size_t at = 0; at < logical.size(); at += e57::kPageContent) {
@@ -35,11 +35,11 @@ void put(std::string& text, T value) {
     text.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// The values of one field on end, lowest bit first.
+/// The values of one field, bit after bit, lowest bit first.
 struct BitStream {
     unsigned bits = 64;
     std::string bytes = {};
-    size_t used = 0;  ///< bits
+    size_t used = 0;  ///< number of bits used
     void add(uint64_t value) {
         for (unsigned bit = 0; bit < bits; ++bit, ++used) {
             if (used % 8 == 0) bytes += '\0';
@@ -58,7 +58,7 @@ struct BitStream {
     }
 };
 
-/// A data packet, padded to four bytes.
+/// Returns a data packet, padded to four bytes.
 inline std::string data_packet(const std::vector<std::string>& streams) {
     std::string packet("\1\0\0\0", 4);
     put(packet, static_cast<uint16_t>(streams.size()));
@@ -70,7 +70,7 @@ inline std::string data_packet(const std::vector<std::string>& streams) {
     return packet;
 }
 
-/// A packet of `type` without points.
+/// Returns a packet of `type` without points.
 inline std::string other_packet(char type, size_t bytes) {
     std::string packet(bytes, '\x5a');
     packet[0] = type;
@@ -83,19 +83,19 @@ struct BuiltScan {
     std::string prototype;  ///< XML of the fields
     uint64_t records = 0;
     std::string packets;
-    std::string more = {};  ///< XML besides: pose, limits
-    // Lies:
+    std::string more = {};  ///< further XML: pose, limits
+    // False values:
     std::string record_count = {}, file_offset = {};  ///< as text
-    std::function<void(std::string&)> spoil = {};     ///< changes the section with its header of 32 bytes
+    std::function<void(std::string&)> spoil = {};     ///< changes the section with its header (32 bytes)
 };
 
 struct BuiltFile {
     std::vector<BuiltScan> scans;
     std::string images = {};
-    std::string header_xml = {};  ///< in front of the root
-    std::string xml = {};         ///< instead of all XML
+    std::string header_xml = {};  ///< before the root element
+    std::string xml = {};         ///< replaces all XML
 
-    /// The bytes without checksums.
+    /// Returns the bytes without checksums.
     std::string logical() const {
         std::string file(e57::kHeaderBytes, '\0'), data3d;
         for (const BuiltScan& scan : scans) {
@@ -146,7 +146,7 @@ inline std::string scaled_field(const std::string& name, int64_t minimum, int64_
         minimum, maximum, scale, offset);
 }
 
-/// Three double coordinates and `more` streams in one packet.
+/// Returns three double coordinates and `more` streams in one packet.
 inline std::string xyz_packet(const std::vector<std::array<double, 3>>& points,
                               const std::vector<std::string>& more = {}) {
     std::vector<std::string> streams;

@@ -1,4 +1,4 @@
-// Every packing of E57 is read, and no lie of a file hurts.
+// Every packing of E57 is read, and false values in a file do no harm.
 #include <cmath>
 #include <limits>
 
@@ -32,7 +32,7 @@ class E57 : public ::testing::Test {
         return testing::read_all(*source_, batch);
     }
     Result<testing::Records> read(const BuiltFile& file) { return read(file.bytes()); }
-    /// Refused on opening, before any point is read.
+    /// Expects that the file is refused on opening, before any point is read.
     void expect_refused(const std::string& bytes, const std::string& reason) {
         file_.set(bytes);
         const auto source = open_scan(file_.path());
@@ -43,7 +43,7 @@ class E57 : public ::testing::Test {
     void expect_refused(const BuiltFile& file, const std::string& reason) {
         expect_refused(file.bytes(), reason);
     }
-    /// Opened, and found wrong while it is read.
+    /// Expects that the file opens and fails while it is read.
     void expect_unreadable(const BuiltFile& file, const std::string& reason) {
         const auto records = read(file);
         ASSERT_FALSE(records) << reason;
@@ -100,7 +100,7 @@ TEST_F(E57, IntegersOfEveryWidthAreUnpackedAcrossPackets) {
             expected.push_back(static_cast<int64_t>(static_cast<uint64_t>(minimum) + raw));
             points.push_back({static_cast<double>(i), 0, 0});
         }
-        // The coordinates in three packets, the integers in three others that cut values anywhere.
+        // The coordinates are in three packets, the integers in three others that cut values anywhere.
         BuiltScan scan;
         const auto maximum = static_cast<int64_t>(static_cast<uint64_t>(minimum) + mask);
         scan.prototype = kXyzFields + integer_field("v", minimum, maximum);
@@ -253,7 +253,7 @@ std::string limits(double most) {
 TEST_F(E57, ColoursAreKeptAsTheyAreUnlessTheirWhiteIsOdd) {
     struct Case {
         int64_t most;
-        double limit;  // 0: none
+        double limit;  // 0 means none
         ScalarType type;
         uint32_t bits;
         double half;
@@ -381,14 +381,14 @@ TEST_F(E57, CountsAndOffsetsThatLieAreRefusedBeforeReading) {
         expect_refused(scan_with([&](BuiltScan& s) { s.file_offset = offset; }), "inside its header");
     expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "1020"; }), "inside a checksum");
     expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "18446744073709551614"; }), "beyond its end");
-    expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "60"; }), "is none");
+    expect_refused(scan_with([](BuiltScan& s) { s.file_offset = "60"; }), "is not one");
     expect_refused(scan_with([](BuiltScan& s) { s.spoil = [](std::string& b) { b[15] = '\x7f'; }; }),
                    "reaches beyond its end");
     expect_refused(scan_with([](BuiltScan& s) { s.spoil = [](std::string& b) { b[8] = 16; }; }),
                    "reaches beyond its end");
     expect_refused(scan_with([](BuiltScan& s) { s.spoil = [](std::string& b) { b[16] = 48; }; }),
                    "has its packets elsewhere");
-    // Constant columns take no bits at all: 2^40 of them would be read for hours.
+    // Constant columns take no bits at all: reading 2^40 of them would take hours.
     BuiltScan constant{integer_field("cartesianX", 1, 1) + integer_field("cartesianY", 2, 2) +
                            integer_field("cartesianZ", 3, 3),
                        5, data_packet({"", "", ""})};
@@ -409,7 +409,7 @@ TEST_F(E57, ManyScansOfConstantsHoldNoMorePointsThanOne) {
     const auto r = read(file);
     ASSERT_TRUE(r) << r.error().line();
     EXPECT_EQ(r->count, 65536u);
-    // Of a larger file as many points as it has bytes.
+    // A larger file may have as many such points as it has bytes.
     file.scans[1].records = 65000;
     std::string bytes(size_t{1} << 14, '\0');
     file.scans.push_back({integer_field("cartesianX", 0, 255) + integer_field("cartesianY", 0, 255) +
@@ -417,7 +417,7 @@ TEST_F(E57, ManyScansOfConstantsHoldNoMorePointsThanOne) {
                           16 * bytes.size(), ""});
     for (int packet = 0; packet < 16; ++packet) file.scans[2].packets += data_packet({bytes, bytes, bytes});
     EXPECT_TRUE(read(file));
-    // Salvaging leaves out the scans that are too many.
+    // Salvaging leaves out the scans beyond the limit.
     file.scans.pop_back();
     file_.set(file.bytes());
     const auto saved = open_scan(file_.path(), {.salvage = true});

@@ -1,4 +1,5 @@
-// Our E57 reader against libE57Format: see tests/oracles/e57_oracle.py, which wrote e57_expected.json.
+// Compares Lucarne's E57 reader with libE57Format: see tests/oracles/e57_oracle.py, which wrote
+// e57_expected.json.
 #include <cmath>
 
 #include "tests/io/formats/digest.h"
@@ -6,7 +7,7 @@
 namespace lucarne::io {
 namespace {
 
-/// sum x_i and sum (i + 1) x_i.
+/// Returns sum x_i and sum (i + 1) x_i.
 template <class At>
 std::array<double, 2> sums(size_t count, const At& at) {
     long double sum = 0, weighted = 0;
@@ -32,7 +33,7 @@ void expect_component(const PointSource& source, const testing::Records& records
         return scalar_at(a->type, record + a->offset + component * scalar_bytes(a->type));
     };
     if (truth.contains("digest")) {
-        // Coordinates as doubles, whatever they are stored as.
+        // Coordinates as doubles, in whatever type they are stored.
         testing::Records column{std::vector<std::byte>(records.count * sizeof(double)), records.count, 0};
         for (size_t i = 0; position && i < records.count; ++i)
             store(&column.bytes[i * sizeof(double)], value(i));
@@ -43,7 +44,7 @@ void expect_component(const PointSource& source, const testing::Records& records
             << what;
         return;
     }
-    // Scaled integers may be kept as floats, whose digits are fewer.
+    // Scaled integers may be kept as floats, which have fewer digits.
     const double digits = !position && a->type == ScalarType::f32 ? 1e-7 : 1e-14;
     const auto ours = sums(records.count, value);
     const auto& theirs = truth["sums"];
@@ -82,7 +83,7 @@ class E57Oracle : public ::testing::Test {
 };
 
 TEST_F(E57Oracle, TurnedAndMovedScansAreWhatLibE57FormatReads) {
-    const std::string name = "e57_posed.e57";  // to the oracle
+    const std::string name = "e57_posed.e57";  // the oracle's name for it
     expect_file(std::filesystem::path(LUCARNE_SOURCE_DIR) / "tests/io/formats/e57/posed.e57",
                 expected().at(name));
 }

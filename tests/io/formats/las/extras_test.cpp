@@ -1,4 +1,4 @@
-// Extra bytes of LAS: what they are called, and how many are told apart.
+// Extra bytes of LAS: their names, and how many of them are distinguished.
 #include "io/formats/las/extras.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ class LasExtras : public ::testing::Test {
         ASSERT_TRUE(writer) << writer.error().line();
         ASSERT_TRUE((*writer)->write(records) && (*writer)->finish());
     }
-    /// The names in a file's record, as other tools read them.
+    /// Returns the names in a file's record, as other tools read them.
     std::vector<std::string> names_in(const std::string& name) const {
         const auto file = InputFile::open(folder_ / name);
         const auto header = las::read_header(*file);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-// LAS files by hand, after the specification and not after our own writer: fields at their offsets.
+// Builds LAS files by hand from the specification, independent of Lucarne's writer: fields at their offsets.
 namespace lucarne::io::testing {
 
 template <class T>
@@ -23,14 +23,14 @@ inline void append_text(std::string& bytes, std::string text, size_t width) {
     bytes += text;
 }
 
-/// Every field can be made to lie.
+/// A LAS file in which every field can be made false.
 struct LasFile {
     uint8_t major = 1, minor = 2, format = 0;
     uint16_t encoding = 0, record_length = 0;
     double scale[3] = {0.01, 0.01, 0.01}, offset[3] = {0, 0, 0};
-    std::pair<double, double> box{0, 0};  ///< least and largest of each axis
+    std::pair<double, double> box{0, 0};  ///< smallest and largest value of each axis
     std::vector<std::string> vlrs, evlrs, records;
-    // What the header says, where that is not the truth.
+    // Values that the header states instead of the true ones.
     int64_t said_points = -1, said_old_points = -1, said_vlrs = -1, said_points_offset = -1,
             said_header_size = -1, said_evlrs = -1, said_evlr_offset = -1;
 
@@ -89,7 +89,7 @@ struct LasFile {
     }
 };
 
-/// A record of point format 0 (20 bytes) with the two bytes of bit fields given.
+/// Returns a record of point format 0 (20 bytes) with the given two bytes of bit fields.
 inline std::string record0(int32_t x, int32_t y, int32_t z, uint16_t intensity = 0, uint8_t flags = 0,
                            uint8_t classes = 0, int8_t angle = 0, uint8_t user = 0, uint16_t source = 0) {
     std::string r;
@@ -105,7 +105,7 @@ inline std::string record0(int32_t x, int32_t y, int32_t z, uint16_t intensity =
     return r;
 }
 
-/// A record of point format 6 (30 bytes).
+/// Returns a record of point format 6 (30 bytes).
 inline std::string record6(int32_t x, int32_t y, int32_t z, uint16_t intensity, uint8_t returns,
                            uint8_t flags, uint8_t classes, uint8_t user, int16_t angle, uint16_t source,
                            double time) {
@@ -139,7 +139,7 @@ std::string raw(T value) {
     return bytes;
 }
 
-/// An entry of the extra bytes record.
+/// Returns an entry of the extra bytes record.
 inline std::string extra_descriptor(uint8_t type, const std::string& name, uint8_t options = 0) {
     std::string d(192, '\0');
     d[2] = static_cast<char>(type);

@@ -1,5 +1,5 @@
-// LAZ where the shared files do not reach: the coder itself, tables that are missing, every truncation and
-// many lies.
+// LAZ beyond what the shared files cover: the coder itself, missing tables, truncation at every byte and many
+// false values.
 #include <random>
 
 #include <gmock/gmock.h>
@@ -112,8 +112,8 @@ TEST(LazCoder, NeverReadsBeyondItsBytesAndSaysSo) {
     }
 }
 
-/// A scan whose values change now and then, as scans' do, over four scanner channels and five trains of
-/// pulses.
+/// A scan whose values change now and then, as in real scans, over four scanner channels and five pulse
+/// trains.
 class RestlessSource final : public PointSource {
  public:
     RestlessSource(uint8_t format, uint64_t points, unsigned seed) : extended_(las::extended_format(format)) {
@@ -131,7 +131,7 @@ class RestlessSource final : public PointSource {
         std::vector<std::byte> last(schema_.stride);
         std::array<double, 5> times = {1e5, 3e8, -7, 0, 1e-300};
         for (size_t i = 0; i < points; ++i) {
-            for (size_t b = 0; b < 12; ++b)  // places: a few low bits, sometimes any
+            for (size_t b = 0; b < 12; ++b)  // coordinates: a few low bits, sometimes any bits
                 if (b % 4 == 0 || random() % 64 == 0) last[b] = static_cast<std::byte>(random());
             for (const Attribute& a : schema_.attributes) {
                 if (random() % 3) continue;
@@ -217,7 +217,7 @@ TEST(LazWriter, AScanWithoutPointsIsAFileWithoutPoints) {
     EXPECT_EQ(read_all(**opened)->count, 0u);
 }
 
-/// tests/io/formats/las/channels*.laz, by LASzip (tests/oracles/laz_channels.py): point formats 6 to 8.
+/// tests/io/formats/las/channels*.laz, made by LASzip (tests/oracles/laz_channels.py): point formats 6 to 8.
 class LazChannels : public ::testing::TestWithParam<int> {
  protected:
     static constexpr uint64_t kPoints = 240;
@@ -268,7 +268,7 @@ TEST_P(LazChannels, EveryValueIsThatOfItsPoint) {
 INSTANTIATE_TEST_SUITE_P(Formats, LazChannels, ::testing::Values(6, 7, 8),
                          [](const auto& format) { return "Of" + std::to_string(format.param); });
 
-/// The compressed points of a file of one chunk.
+/// Returns the compressed points of a file with one chunk.
 std::string chunk_of(const std::string& path) {
     const std::string bytes = testing::read_bytes(path);
     const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
@@ -276,7 +276,7 @@ std::string chunk_of(const std::string& path) {
     return bytes.substr(points + 8, load<uint64_t>(b + points) - points - 8);
 }
 
-/// Files by LASzip: point formats 0 to 3 (tests/oracles/laz_items.py) and 6 to 8 (laz_channels.py).
+/// Files made by LASzip: point formats 0 to 3 (tests/oracles/laz_items.py) and 6 to 8 (laz_channels.py).
 class LaszipFile : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(LaszipFile, WrittenAgainItHasTheSameBytesAndPointFormat) {
@@ -305,7 +305,7 @@ class LazFile : public ::testing::TestWithParam<const char*> {
         if (folder.empty()) GTEST_SKIP() << "the shared data is not here";
         bytes_ = testing::read_bytes(folder / "las" / GetParam());
     }
-    /// What reading these bytes gives: the records, or why not.
+    /// Reads these bytes. Returns the records, or the error.
     Result<testing::Records> read(const std::string& bytes) const {
         testing::write_bytes(folder_ / "changed.laz", bytes);
         auto source = open_scan(folder_ / "changed.laz");
@@ -325,7 +325,7 @@ TEST_P(LazFile, ReadsTheSameWhereTheChunkTableIsMissingOrZero) {
         std::string bytes = bytes_;
         bytes.replace(points_offset(), 8, 8, fill);
         const auto again = read(bytes);
-        ASSERT_TRUE(again) << again.error().line();  // layered chunks of any size say how long they are
+        ASSERT_TRUE(again) << again.error().line();  // layered chunks of variable size state their size
         EXPECT_EQ(again->bytes, whole->bytes);
     }
 }
@@ -347,7 +347,7 @@ TEST_P(LazFile, MorePointsThanItsBytesCanHoldAreRejectedUnread) {
 TEST_P(LazFile, TruncatedAnywhereItIsRejected) {
     for (size_t size = 0; size < bytes_.size(); size += 1 + bytes_.size() / 97) {
         const auto cut = read(bytes_.substr(0, size));
-        if (cut) continue;  // where only records behind the points are gone
+        if (cut) continue;  // only records after the points are missing
         EXPECT_EQ(cut.error().kind, ErrorKind::input_rejected) << size << ": " << cut.error().line();
     }
     EXPECT_FALSE(read(bytes_.substr(0, points_offset() + 300)));

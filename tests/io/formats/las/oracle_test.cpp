@@ -1,4 +1,4 @@
-// Our LAS reader against laspy: see tests/oracles/las_oracle.py, which wrote las_expected.json.
+// Compares Lucarne's LAS reader with laspy: see tests/oracles/las_oracle.py, which wrote las_expected.json.
 #include "tests/io/formats/digest.h"
 
 namespace lucarne::io {

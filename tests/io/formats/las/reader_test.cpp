@@ -1,4 +1,4 @@
-// What a LAS file says is what we read, and what it cannot mean is rejected.
+// The LAS reader returns what a file says, and rejects what makes no sense.
 #include <cmath>
 #include <limits>
 #include <map>
@@ -25,7 +25,7 @@ class Las : public ::testing::Test {
         return source ? std::move(*source) : nullptr;
     }
     Result<std::unique_ptr<PointSource>> open_bytes(const std::string& bytes) {
-        file_.set(bytes);  // its name has no extension: content counts
+        file_.set(bytes);  // without an extension in its name, only the content tells the format
         return open_scan(file_.path());
     }
     void expect_rejected(const LasFile& file, const std::string& reason) {
@@ -37,7 +37,7 @@ class Las : public ::testing::Test {
     const MemoryFile file_;
 };
 
-/// A value of the first record.
+/// Returns a value of a record, by default the first.
 double value(const PointSource& source, std::string_view name, size_t component = 0, size_t record = 0) {
     const Attribute* a = source.schema().find(name);
     const auto all = read_all(source);
@@ -52,7 +52,7 @@ double value(const PointSource& source, std::string_view name, size_t component 
 
 TEST_F(Las, EveryBitOfAnOldRecordIsUnpacked) {
     LasFile file;
-    // Return 5 of 6, backwards, at the edge; class 19, synthetic and withheld.
+    // Return 5 of 6, backward scan, edge of flight line; class 19, synthetic and withheld.
     file.records.push_back(
         record0(100, -200, 300, 40000, 5 | 6 << 3 | 1 << 6 | 1 << 7, 19 | 1 << 5 | 1 << 7, -90, 77, 4711));
     file.scale[1] = 0.5;
@@ -76,7 +76,7 @@ TEST_F(Las, EveryBitOfANewRecordIsUnpacked) {
     LasFile file;
     file.minor = 4;
     file.format = 8;
-    // Return 11 of 15; flags 9, channel 2, backwards, at the edge.
+    // Return 11 of 15; flags 9, channel 2, backward scan, edge of flight line.
     file.records.push_back(
         record6(1, 2, 3, 65535, 11 | 15 << 4, 9 | 2 << 4 | 1 << 6 | 1 << 7, 200, 8, -30000, 65535, 1.5e9) +
         rgb(1000, 2000, 3000) + raw<uint16_t>(4000));
@@ -145,7 +145,7 @@ TEST_F(Las, ExtraBytesBecomeTypedAttributesByName) {
     EXPECT_EQ(value(*source, "direction", 2), 3);
     EXPECT_EQ(source->schema().find("blob")->components, 3u);
     EXPECT_EQ(value(*source, "blob", 1), 'b');
-    EXPECT_EQ(value(*source, "intensity"), 500);  // the field of the format
+    EXPECT_EQ(value(*source, "intensity"), 500);  // the field of the point format
     EXPECT_EQ(value(*source, "intensity_2"), 7);  // the extra byte of the same name
     EXPECT_EQ(source->schema().find("extra_bytes")->components, 2u);
     EXPECT_EQ(value(*source, "extra_bytes", 1), 'z');
@@ -175,7 +175,7 @@ TEST_F(Las, PointsFarOutsideTheStatedBoxAreTold) {
             .outside(reinterpret_cast<const std::byte*>(records.data()), 2, 12)
             .has_value();
     };
-    // 0 to 20 units, and as far again on each side, are the integers -60 to 60.
+    // 0 to 20 units, and the same length again on each side, are the integers -60 to 60.
     EXPECT_FALSE(outside(header(0, 20), -60, 60));
     EXPECT_TRUE(outside(header(0, 20), -61, 0));
     EXPECT_TRUE(outside(header(0, 20), 0, 61));
@@ -189,7 +189,7 @@ TEST_F(Las, PointsFarOutsideTheStatedBoxAreTold) {
 }
 
 TEST_F(Las, ExtraBytesThatDoNotFitTheRecordStayBytes) {
-    for (const uint8_t type : {uint8_t{10}, uint8_t{0}, uint8_t{77}}) {  // too wide, of no size, unknown
+    for (const uint8_t type : {uint8_t{10}, uint8_t{0}, uint8_t{77}}) {  // too wide, without a size, unknown
         LasFile file;
         file.add_vlr("LASF_Spec", 4, extra_descriptor(type, "lie") + "half a descriptor");
         file.records = {record0(1, 2, 3) + "xyz"};
@@ -374,7 +374,7 @@ TEST_F(Las, RecordsThatAreNotThereHarmNoPoint) {
     file.said_evlr_offset = std::numeric_limits<int64_t>::max();
     EXPECT_EQ(read_all(*open(file))->count, 1u);
     file.add_vlr("LASF_Projection", 2112, "wkt");
-    put<uint16_t>(file.vlrs[0], 20, 60000);  // longer than what is there
+    put<uint16_t>(file.vlrs[0], 20, 60000);  // longer than the file
     EXPECT_EQ(read_all(*open(file))->count, 1u);
 }
 
@@ -392,8 +392,9 @@ TEST_F(Las, WarningsAreOfTheFileTheyAreAbout) {
     EXPECT_THAT(said(), HasSubstr("compatibility mode"));
     file.vlrs.clear();
     file.scale[1] = -0.01;
-    EXPECT_THAT(said(),
-                HasSubstr("its scale for y is negative (-0.01): the scan is mirrored, if nobody meant it"));
+    EXPECT_THAT(
+        said(),
+        HasSubstr("its scale for y is negative (-0.01): the scan is mirrored unless this is intended"));
     const auto mirrored = open(file);
     EXPECT_EQ(position_of(mirrored->schema(), read_all(*mirrored)->bytes.data()).y, -0.02);
     file.scale[1] = 0.01;
@@ -479,7 +480,7 @@ TEST_F(Las, ChangedBytesNeverCrashAndReadTheSameTwice) {
     for (int round = 0; round < 4000; ++round) {
         std::string bytes = good;
         for (uint64_t change = random.next() % 4 + 1; change-- > 0;) {
-            // Mostly the header and the records before the points, where the lies are.
+            // Mostly in the header and the records before the points, where false values matter.
             const size_t at = random.next() % (random.next() % 4 ? 900 : bytes.size());
             const uint64_t special[] = {0, 0xff, 0x7f, 0x80, 1, random.next()};
             bytes[at] = static_cast<char>(special[random.next() % 6]);
@@ -493,7 +494,7 @@ TEST_F(Las, ChangedBytesNeverCrashAndReadTheSameTwice) {
         if (!first) continue;
         ASSERT_TRUE(first->bytes == second->bytes) << round;
     }
-    EXPECT_GT(opened, 100u);  // else the loop tests nothing behind the header
+    EXPECT_GT(opened, 100u);  // otherwise the loop tests nothing beyond the header
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Writers: what no field holds is still not lost, what cannot be held is an error, and no half file is left.
+// Writers: values without a field are kept, values that cannot be stored are an error, and no partial file is
+// left.
 #include <cmath>
 #include <limits>
 
@@ -14,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT: the builder's small functions
 using ::testing::HasSubstr;
 
-/// Records of a schema, filled by hand.
+/// Records of a schema, filled in by hand.
 class Points {
  public:
     explicit Points(PositionType position) {
@@ -118,7 +119,7 @@ TEST_F(Writers, TheLasHeaderSaysTheTruthAboutThePoints) {
     const double expected[] = {13, 8, 8, -12, 0.5, -2};  // largest and smallest x, y, z
     for (size_t i = 0; i < 6; ++i) EXPECT_EQ(load<double>(b + 179 + 8 * i), expected[i]) << i;
     EXPECT_EQ(load<uint16_t>(b + 94), 375);
-    EXPECT_EQ(load<uint32_t>(b + 107), 0u);  // the old count: 0 with point formats 6 and up
+    EXPECT_EQ(load<uint32_t>(b + 107), 0u);  // the old count is 0 for point formats 6 and up
     EXPECT_EQ(load<uint64_t>(b + 247), 3u);
     EXPECT_EQ(load<uint64_t>(b + 255), 2u);
     EXPECT_EQ(load<uint64_t>(b + 263), 1u);
@@ -140,7 +141,7 @@ TEST_F(Writers, WhatALasFieldCannotHoldGoesToExtraBytes) {
     points.set("stamp", uint64_t{0xfedcba9876543210});
     const auto source = written("a.las", points);
     EXPECT_EQ(value(*source, "intensity"), 0.75);
-    EXPECT_EQ(value(*source, "las_intensity"), 1);  // rounded for others
+    EXPECT_EQ(value(*source, "las_intensity"), 1);  // rounded, for other programs
     EXPECT_EQ(value(*source, "curvature"), 0.1);
     EXPECT_EQ(value(*source, "normal", 2), 2.5);
     EXPECT_EQ(value(*source, "code", 4), 4);
@@ -148,7 +149,7 @@ TEST_F(Writers, WhatALasFieldCannotHoldGoesToExtraBytes) {
     EXPECT_EQ(load<uint64_t>(&all->bytes[source->schema().find("stamp")->offset]), 0xfedcba9876543210u);
 }
 
-/// The names that a LAS file's extra bytes have in the file.
+/// Returns the names of extra bytes as they are in a LAS file.
 std::vector<std::string> names_in_file(const std::string& bytes) {
     std::vector<std::string> names;
     const auto* b = reinterpret_cast<const std::byte*>(bytes.data());
@@ -184,10 +185,10 @@ TEST_F(Writers, NoExtraOfALasFileIsCalledLikeAFieldAndAllComeBackUnderTheirNames
         EXPECT_EQ(value(*source, "intensity"), 0.75);
         EXPECT_EQ(value(*source, "las_intensity"), 32768);  // the middle of its limits
         EXPECT_EQ(value(*source, "return_number"), 200);
-        EXPECT_EQ(value(*source, "las_return_number"), 15);  // the largest of 4 bits
+        EXPECT_EQ(value(*source, "las_return_number"), 15);  // the largest value of 4 bits
         EXPECT_EQ(value(*source, "las_gps_time"), -5);
         EXPECT_EQ(value(*source, "red"), 3);
-        const auto all = read_all(*source);  // and so they stay
+        const auto all = read_all(*source);  // all values read back unchanged
         const auto again =
             create_scan(folder_ / (std::string("b") + name), source->schema(), source->info(), {});
         ASSERT_TRUE(again && (*again)->write(all->bytes) && (*again)->finish());
@@ -198,7 +199,7 @@ TEST_F(Writers, NoExtraOfALasFileIsCalledLikeAFieldAndAllComeBackUnderTheirNames
 TEST_F(Writers, AnIntensityWithoutLimitsIsSpreadFromWhatItIsUnlessItFits) {
     struct Case {
         float low, high;
-        double expected;  ///< of the high one
+        double expected;  ///< expected for the highest intensity
     };
     for (const Case& c : {Case{0.25f, 0.5f, 65535}, Case{-2048, 2047, 65535}, Case{0, 300, 300}}) {
         Points points(PositionType::i32_scaled);
@@ -216,7 +217,8 @@ TEST_F(Writers, AnIntensityWithoutLimitsIsSpreadFromWhatItIsUnlessItFits) {
     }
 }
 
-/// The scan written with infrared beside its attributes, which older point formats have no field for; opened.
+/// Writes the scan with an additional infrared attribute, for which older point formats have no field, and
+/// opens it.
 std::unique_ptr<PointSource> with_infrared(const PointSource& scan, const std::filesystem::path& path) {
     Schema schema = scan.schema();
     schema.add(std::string(names::nir), ScalarType::u16);
@@ -245,7 +247,7 @@ TEST_F(Writers, ScanAnglesInWholeDegreesFillTheFieldOfNewerFormatsAndStay) {
 }
 
 TEST_F(Writers, ScanAnglesOfOlderAndNewerFormatsFillOneField) {
-    Points points(PositionType::f64);  // as where two scans were put together
+    Points points(PositionType::f64);  // as when two scans were merged
     points.schema.add(std::string(names::scan_angle_rank), ScalarType::i8);
     points.schema.add(std::string(names::scan_angle), ScalarType::i16);
     points.add();
@@ -308,7 +310,7 @@ TEST_F(Writers, GeoTiffKeysOfUtmInAUnitOfTheirOwnStayKeys) {
 TEST_F(Writers, ExtraBytesWhoseNamesWereTakenKeepTheirScales) {
     testing::LasFile las;
     const auto scaled = [](const char* name, double scale) {
-        std::string entry = extra_descriptor(3, name, 8);  // u16, whose scale counts
+        std::string entry = extra_descriptor(3, name, 8);  // u16, with a valid scale
         put(entry, 112, scale);
         return entry;
     };
@@ -352,7 +354,7 @@ TEST_F(Writers, ColoursOfAnyTypeAreSpreadOver16BitsInLas) {
         EXPECT_EQ(value(*source, names::color, 0), 65535);
         EXPECT_EQ(value(*source, names::color, 1), 0);
     }
-    Points small(PositionType::i32_scaled);  // 8 bits in 16 stay what they were
+    Points small(PositionType::i32_scaled);  // 8 bits stored in 16 stay unchanged
     small.schema.add(std::string(names::color), ScalarType::u16, 3);
     small.add();
     small.set(names::color, uint16_t{255});

@@ -1,5 +1,5 @@
-// Truncated and damaged meshes: without `salvage` they are rejected with what could be saved; with it the
-// faces that are whole are sampled, or where there is none the vertices are the points, and the rest is
+// Truncated and damaged meshes. Without `salvage` they are rejected, and the error says what could be saved.
+// With it the complete faces are sampled, or if there are none the vertices are the points, and the rest is
 // counted.
 #include <algorithm>
 
@@ -20,7 +20,7 @@ using ::testing::Not;
 const ReadOptions kUsual{"", true, {0, 500, false}};
 const ReadOptions kSalvage{"", true, {0, 500, false}, true};
 
-/// A strip of 6 by 1 squares as 12 triangles on 14 vertices, with the place where each entry ends.
+/// A strip of 6 by 1 squares: 12 triangles on 14 vertices, with the place where each entry ends.
 struct Strip {
     std::string bytes;
     std::vector<size_t> vertex_ends, face_ends;
@@ -75,7 +75,7 @@ class MeshSalvage : public testing::TextScan {
     }
     bool is_mesh() const { return source_->info().format.ends_with("mesh"); }
     uint64_t triangles() const { return source_->info().notes.mesh->triangles; }
-    /// The line of a file that is rejected as usual.
+    /// Returns the error line of a file that is rejected without `salvage`.
     std::string refusal(std::string_view bytes) {
         return with_salvage_advice(error_of(bytes, kUsual), file_.path(), kUsual).line();
     }
@@ -85,7 +85,7 @@ TEST_F(MeshSalvage, OfATruncatedPlyEveryWholeFaceOrElseEveryWholeVertex) {
     for (const std::string encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
         const Strip whole = strip(encoding);
         const size_t body = whole.bytes.find("end_header\n") + 11;
-        // Text that lacks but the end of its last number looks whole.
+        // Text that lacks only the end of its last number looks complete.
         const size_t last = whole.bytes.size() - (encoding == "ascii" ? 2 : 0);
         for (size_t cut = body; cut < last; ++cut) {
             const auto bytes = whole.bytes.substr(0, cut);
@@ -131,7 +131,7 @@ TEST_F(MeshSalvage, OfADamagedPlyTheFacesWhoseNumbersAndVerticesMakeSense) {
     const Strip whole = strip("ascii");
     std::string bytes = whole.bytes;
     bytes[whole.face_ends[2]] = 'x';     // the fourth face
-    bytes[whole.vertex_ends[12]] = 'y';  // the last vertex, which the last face alone needs
+    bytes[whole.vertex_ends[12]] = 'y';  // the last vertex, which only the last face needs
     EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("vertex 14 has 'y"), HasSubstr("10 whole triangles")));
     read(bytes, kSalvage);
     EXPECT_EQ(triangles(), kFaceCount - 2);
@@ -163,7 +163,7 @@ TEST_F(MeshSalvage, AnObjWhoseLastLineIsHalfAStatementIsCutOff) {
     for (const char* half : {"f", "f 2", "f 2 4", "f 2/1 4/1 3/", "f 2//1 4//1 3", "f 2/1/1 4/1/1 3/1",
                              "f 2 4 3/", "f 2 4 -", "v 0 1", "v 0 1 -", "vn 0", "vt", "f 2 \\\n 4"}) {
         const std::string bytes = kObj + half;
-        if (std::string_view(half) == "f 2 4 3/") {  // a slash that names nothing says nothing
+        if (std::string_view(half) == "f 2 4 3/") {  // a slash without a number after it means nothing
             read(bytes, kUsual);
             EXPECT_EQ(triangles(), 2u);
             continue;
@@ -203,7 +203,7 @@ TEST_F(MeshSalvage, LinesOfAnObjThatMakeNoSenseKeepTheirNumber) {
 }
 
 TEST_F(MeshSalvage, OfAPolygonThatLostACornerNothingIsLeft) {
-    // What is left of its outline would be another: here a triangle over what was outside.
+    // The rest of its outline would be a different polygon: here a triangle over what was outside.
     const std::string before = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv ", after = " 1 0\nv 0 4 0\nf 1 2 3 4 5\n";
     for (const char* lost : {"nan", "1e40"}) {
         read(before + lost + after, kUsual);

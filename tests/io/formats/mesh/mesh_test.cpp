@@ -1,5 +1,5 @@
-// Meshes become points: evenly by area, blue, with the colours and normals of their surface; what makes no
-// sense is rejected.
+// Meshes become points: evenly by area, as blue noise, with the colours and normals of their surface. Meshes
+// that make no sense are rejected.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -29,13 +29,13 @@ const ReadOptions kVertices{"", true, {0, 0, true}};
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-/// Distances in units of the spacing, of points that lie near each other on a grid.
+/// Distances between nearby points, found with a grid.
 class Neighbours {
  public:
     Neighbours(const std::vector<glm::dvec3>& points, double cell) : points_(points), cell_(cell) {
         for (size_t i = 0; i < points.size(); ++i) cells_[key(points[i])].push_back(i);
     }
-    /// To the nearest point but `self`, where it is nearer than two cells.
+    /// Returns the distance to the nearest point other than `self`, if it is less than two cells.
     double nearest(const glm::dvec3& from, size_t self) const {
         double least = 2 * cell_;
         for (int k = 0; k < 125; ++k) {
@@ -71,7 +71,7 @@ class MeshScan : public testing::TextScan {
     }
     const MeshNotes& notes() const { return *source_->info().notes.mesh; }
 
-    /// A folder with an OBJ or PLY file and what it names.
+    /// Reads an OBJ or PLY file from a folder that also holds the files it names.
     void read_folder(const std::string& name, const ReadOptions& options) {
         const auto source = open_scan(folder_ / name, options);
         ASSERT_TRUE(source) << source.error().line();
@@ -83,7 +83,7 @@ class MeshScan : public testing::TextScan {
     void put(const std::string& name, const std::string& text) const {
         testing::write_bytes(folder_ / name, text);
     }
-    /// Upper half red, lower half blue; its left quarter green from top to bottom.
+    /// Upper half red, lower half blue; the left quarter green from top to bottom.
     void put_picture(const std::string& name) const {
         Image8 image{64, 64, {}};
         for (int y = 0; y < 64; ++y)
@@ -95,7 +95,7 @@ class MeshScan : public testing::TextScan {
             }
         ASSERT_TRUE(write_png(folder_ / name, image, true));
     }
-    /// A unit square whose coordinates span the picture of put_picture: u along x, v along y.
+    /// Expects a unit square whose texture coordinates span the picture of put_picture: u along x, v along y.
     void expect_picture_upright() const {
         size_t seen = 0;
         for (size_t i = 0; i < points(); ++i) {
@@ -114,7 +114,7 @@ class MeshScan : public testing::TextScan {
     const testing::TemporaryFolder folder_;
 };
 
-/// A sphere of radius 1 as `rings` rings of quads, turning left seen from outside.
+/// Returns a sphere of radius 1 as `rings` rings of quads, which turn left seen from outside.
 std::string sphere(int rings, bool normals) {
     std::string text;
     for (int j = 0; j <= rings; ++j)
@@ -172,17 +172,16 @@ TEST_F(MeshScan, SamplesAreSpreadByAreaWhateverTheTrianglesSize) {
     const double mean = static_cast<double>(points()) / 400;
     double chi = 0;
     for (const double n : bins) chi += (n - mean) * (n - mean) / mean;
-    // 400 +- 28 were samples thrown at random; blue noise is far more even.
+    // Random samples would give 400 +- 28; blue noise is far more even.
     EXPECT_LT(chi, 200);
 }
 
 TEST_F(MeshScan, ASliverIsSampledAlongItsLength) {
-    // As wide as a hundredth of the spacing, slanting through blocks that are empty but for it.
+    // A hundredth of the spacing wide, slanting through blocks that contain nothing else.
     read("v 0 0 0\nv 1 1 1\nv 1 1 1.00001\nf 1 2 3\n", every(1e-3));
     std::vector<glm::dvec3> at;
     for (size_t i = 0; i < points(); ++i) at.push_back(position(i));
-    // What area it has is that of 7 samples; they stand anywhere along it, each at its distance from the
-    // others.
+    // Its area is that of 7 samples. They may lie anywhere along it, at the usual distance from each other.
     EXPECT_GT(at.size(), 7u);
     EXPECT_LT(at.size(), 8 * 8u);
     for (size_t i = 0; i < at.size(); ++i) {
@@ -192,14 +191,14 @@ TEST_F(MeshScan, ASliverIsSampledAlongItsLength) {
 }
 
 TEST_F(MeshScan, RoundingLosesNoPartOfAThinSliver) {
-    // Too thin for its plane to be known well; the samples still lie all along it.
+    // Too thin to know its plane well; the samples still lie all along it.
     read("v 0 0 0\nv .7 .9 1\nv .7000000001 .9 1.0000000001\nf 1 2 3\n", every(2e-6));
     ASSERT_GT(points(), 50u);
     std::vector<double> at;
     for (size_t i = 0; i < points(); ++i) at.push_back(position(i).z);
     std::ranges::sort(at);
     for (size_t i = 1; i < at.size(); ++i) ASSERT_LT(at[i] - at[i - 1], 0.12) << at[i];
-    EXPECT_LT(at.front(), 0.2);  // it begins with its tip, which has no area
+    EXPECT_LT(at.front(), 0.2);  // it begins at its tip, which has no area
     EXPECT_GT(at.back(), 0.95);
 }
 
@@ -235,10 +234,10 @@ TEST_F(MeshScan, NormalsAreTheFacesOrInterpolated) {
 }
 
 TEST_F(MeshScan, NormalsAndCoordinatesThatNoFaceNamesAreNotThoseOfOtherVertices) {
-    // One for four vertices: fuzz_obj read behind its end.
+    // One normal for four vertices: fuzz_obj once read beyond its end.
     read("vn 1 0 0\n" + kSquare, every(0.05));
     for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
-    // As many as vertices, though, are theirs.
+    // As many normals as vertices belong to the vertices.
     read("vn 1 0 0\nvn 1 0 0\nvn 1 0 0\nvn 1 0 0\n" + kSquare, every(0.05));
     for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(1, 0, 0));
 
@@ -262,7 +261,7 @@ TEST_F(MeshScan, TexturesStandUpright) {
 TEST_F(MeshScan, TexturesRepeatAndAreScaledAsTheMaterialSays) {
     put_picture("p.png");
     put("m.mtl", "newmtl painted\nmap_Kd -s 0.5 0.5 1 -o 0.25 3.5 0 p.png\n");
-    // 0.5 * vt + (0.25, 3.5) spans the picture from (2, -4): everything repeats.
+    // 0.5 * vt + (0.25, 3.5) spans the picture from (2, -4): the texture repeats everywhere.
     put("a.obj",
         "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 3.5 -15\nvt 5.5 -15\nvt 5.5 -13\nvt 3.5 -13\n"
         "usemtl painted\nf -4/-4 -3/-3 -2/-2 -1/-1\n");
@@ -307,7 +306,7 @@ TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
     for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(1, 2, 255));
     read("v 0 0 0 0.2 0.4 1\nv 1 0 0 0.2 0.4 1\nv 0 1 0 0.2 0.4 1\nf 1 2 3\n", every(0.05));
     for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(51, 102, 255));
-    // Rounding takes a white of 1 a little further, and a black of 0 below.
+    // Rounding may take a white of 1 slightly above 1, and a black of 0 slightly below 0.
     read("v 0 0 0 0.2 0.4 1.00001\nv 1 0 0 0.2 0.4 1\nv 0 1 0 0.2 0.4 1\nf 1 2 3\n", every(0.05));
     for (size_t i = 0; i < points(); ++i) ASSERT_EQ(triple(i, "color"), glm::dvec3(51, 102, 255));
     read(
@@ -327,7 +326,7 @@ TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
 }
 
 TEST_F(MeshScan, PolygonsAreCutAlongTheirOutline) {
-    // An L of area 3, either way round, and lifted onto a slope.
+    // An L of area 3, in both orientations, lifted onto a slope.
     for (const bool backwards : {false, true}) {
         std::string text = "v 0 0 0\nv 2 0 2\nv 2 1 2\nv 1 1 1\nv 1 2 1\nv 0 2 0\n";
         text += backwards ? "f 6 5 4 3 2 1\n" : "f 1 2 3 4 5 6\n";
@@ -388,7 +387,7 @@ TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
         EXPECT_LE(position(i).x + position(i).y, 1.0001);
     }
     EXPECT_EQ(notes().missing_corners, 0u);
-    // Indices from the end count from where the face stands, and its material is that of its place.
+    // Negative indices count from the place of the face, and its material is the current one there.
     put("m.mtl", "newmtl first\nKd 1 0 0\nnewmtl second\nKd 0 0 1\n");
     put("a.obj", "mtllib m.mtl\nusemtl first\nv 0 0 0\nf -1 2 3\nusemtl second\nv 1 0 0\nv 0 1 0\n");
     read_folder("a.obj", every(0.05));
@@ -397,7 +396,7 @@ TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
 }
 
 TEST_F(MeshScan, ATinyMeshFarAwayStaysWhereItIs) {
-    // Coordinates take more steps than 32 bits can count: their own are coarser than the mesh.
+    // The coordinates would take more steps than 32 bits can count: they are coarser than the mesh itself.
     read("v 4000000 0 0\nv 4000000.0000000010 0 0\nv 4000000 0.0000000005 0\nf 1 2 3\n", about(100));
     ASSERT_GT(points(), 0u);
     for (size_t i = 0; i < points(); ++i) EXPECT_NEAR(position(i).x, 4e6, 2e-9);
@@ -425,7 +424,8 @@ TEST_F(MeshScan, TheNumberOfSamplesCanBeAskedForUpToACap) {
     EXPECT_NEAR(static_cast<double>(points()), 10'000, 500);
     EXPECT_EQ(error_of(kSquare, every(1e-5)).kind, ErrorKind::arguments);
     EXPECT_EQ(error_of(kSquare, about(2'000'000'000)).kind, ErrorKind::arguments);
-    // By default a thousandth of the diagonal; and never more than 20 million, however large the area.
+    // The default is a thousandth of the diagonal, but never more than 20 million samples, however large the
+    // area.
     source_ = std::move(open_scan(file_.path(), {"", true}).value());
     EXPECT_NEAR(notes().samples->spacing_m, std::sqrt(2.0) / 1000, 1e-9);
     std::string sheets;
@@ -437,7 +437,7 @@ TEST_F(MeshScan, TheNumberOfSamplesCanBeAskedForUpToACap) {
 }
 
 TEST_F(MeshScan, FoldedSheetsUponSheetsAskForBoundedMemory) {
-    // Four hundred squares within a hair: all samples of a place fall into the same few cells.
+    // Four hundred squares very close to each other: all samples of a place fall into the same few cells.
     std::string text;
     for (int i = 0; i < 400; ++i)
         text += fmt::format("v 0 0 {0}\nv 1 0 {0}\nv 1 1 {0}\nv 0 1 {0}\nf -4 -3 -2 -1\n", i * 1e-9);
@@ -458,7 +458,7 @@ TEST_F(MeshScan, NothingOutsideTheMeshsFolderIsOpened) {
     read_folder("inner/a.obj", every(0.1));
     EXPECT_EQ(notes().textures, 0u);
     EXPECT_EQ(schema().find("color"), nullptr);
-    // A path of the machine where it was written: the file stands beside the mesh now.
+    // A path on the machine where the file was written; the picture is beside the mesh now.
     put_picture("inner/p.png");
     put("inner/m.mtl", "newmtl m\nmap_Kd C:\\work\\textures\\p.png\n");
     read_folder("inner/a.obj", every(0.1));

@@ -16,7 +16,7 @@ namespace {
 using Polygon = std::vector<glm::dvec3>;
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-/// Seen from above; a triangle that is turned over is a failure.
+/// Returns the area seen from above. A triangle that is turned over is a failure.
 double covered_area(const Polygon& polygon, const Triangles& triangles) {
     double area = 0;
     for (const auto& [a, b, c] : triangles) {
@@ -28,7 +28,7 @@ double covered_area(const Polygon& polygon, const Triangles& triangles) {
 }
 
 TEST(Triangulate, EarsCoverPolygonsWithHolesJoinedByABridge) {
-    // A square of 4 with a square hole of 1, the bridge walked twice.
+    // A square of 4 with a square hole of 1; the bridge is walked twice.
     const Polygon polygon = {{0, 0, 7},   {2, 0, 7},    {2, 2, 7},     {0, 2, 7},    {0, 0, 7},
                              {.5, .5, 7}, {.5, 1.5, 7}, {1.5, 1.5, 7}, {1.5, .5, 7}, {.5, .5, 7}};
     Triangles triangles;

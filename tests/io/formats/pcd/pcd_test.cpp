@@ -1,5 +1,4 @@
-// PCD in all encodings gives the same points; what contradicts itself is rejected; what is written is read
-// back.
+// PCD in all encodings gives the same points; contradictory files are rejected; written files are read back.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -32,7 +31,7 @@ void put(std::string& text, T value) {
     text.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// The fields of kFields, point by point.
+/// Returns the fields of kFields, point by point.
 std::vector<std::vector<std::string>> fields_of_points() {
     std::vector<std::vector<std::string>> points;
     for (int i = 0; i < 4; ++i) {
@@ -52,7 +51,7 @@ std::vector<std::vector<std::string>> fields_of_points() {
     return points;
 }
 
-/// LZF that only holds bytes as they are.
+/// Returns LZF with literal bytes only.
 std::string stored(const std::string& bytes) {
     std::string packed;
     for (size_t at = 0; at < bytes.size(); at += 32) {
@@ -141,7 +140,8 @@ TEST_F(Pcd, AllEncodingsGiveTheSamePoints) {
 
 TEST_F(Pcd, RepeatsOfLzfAreFollowed) {
     const std::string fields = header("x y z", "4 4 4", "F F F", "1 1 1", "");
-    // 4 bytes as they are; copies of 8 bytes from 4 back, then of 9 + 27 bytes, which overlap what they make.
+    // 4 literal bytes; then copies of 8 bytes and of 24 bytes from 4 bytes back, which overlap their own
+    // output.
     std::string packed("\x03\0\0\x80\x3f", 5);
     packed += std::string("\xc0\x03", 2);      // 6 + 2 from 4 back
     packed += std::string("\xe0\x0f\x03", 3);  // 7 + 15 + 2 from 4 back
@@ -166,14 +166,14 @@ TEST_F(Pcd, ColoursComeInEveryPacking) {
         EXPECT_EQ(value(0, names::color, 1), 11) << number;
         EXPECT_EQ(value(0, "alpha"), 0xfe) << number;
     }
-    // Text that cannot say its bits says no colour.
+    // A packed colour whose bits were lost in the text means no colour.
     for (const std::string none : {"nan", "-nan", "inf"}) {
         read(header("x y z rgba", "4 4 4 4", "F F F F", "1 1 1 1", "") + grid(1, 1, "ascii") + "1 2 3 " +
              none + "\n");
         for (size_t k = 0; k < 3; ++k) EXPECT_EQ(value(0, names::color, k), 188) << none;
         EXPECT_EQ(value(0, "alpha"), 255) << none;
     }
-    // A packed colour beside another stays a field.
+    // A packed colour beside another colour stays a field.
     read(header("x y z r g b rgb", "4 4 4 1 1 1 4", "F F F U U U U", "1 1 1 1 1 1 1", "") +
          grid(1, 1, "ascii") + "1 2 3 4 5 6 7\n");
     EXPECT_EQ(value(0, names::color, 0), 4);
@@ -181,7 +181,7 @@ TEST_F(Pcd, ColoursComeInEveryPacking) {
 }
 
 TEST_F(Pcd, ThousandsOfValuesWhoseNamesBeginAlikeAreNamedApartAtOnce) {
-    const std::string name(70, 'Z');  // names are cut to 64 characters: all of the values' are the same
+    const std::string name(70, 'Z');  // names are cut to 64 characters, so those of all values are the same
     read(header("x y z " + name, "4 4 4 1", "F F F U", "1 1 1 4000", "") + grid(1, 1, "binary") +
          std::string(4012, '\1'));
     ASSERT_EQ(points(), 1u);
@@ -261,7 +261,7 @@ TEST_F(Pcd, LiesOfCompressedPointsAreRejected) {
                 HasSubstr("is truncated"));
     EXPECT_THAT(error_of(start + compressed("\x20\x05" + packed, by_field().size())).line(),
                 HasSubstr("before their beginning"));
-    // A gigabyte out of nothing.
+    // Promises a gigabyte that is not there.
     EXPECT_THAT(
         error_of(kFields + grid(5000, 5000, "binary_compressed") + compressed(packed, 37u * 25000000u))
             .line(),
@@ -329,7 +329,7 @@ TEST_F(Pcd, WhatIsWrittenIsReadBackWhole) {
     const Schema& back = (*source)->schema();
     for (size_t i = 0; i < kPoints; ++i) {
         const std::byte *was = &batch.bytes[i * schema.stride], *is = &records->bytes[i * back.stride];
-        // Scaled coordinates leave as the decimal fractions that they stand for.
+        // Scaled coordinates are written as the decimal fractions that they stand for.
         for (int axis = 0; axis < 3; ++axis)
             EXPECT_NEAR(position_of(schema, was)[axis], position_of(back, is)[axis], 1e-9);
         for (const Attribute& a : schema.attributes) {

@@ -1,4 +1,4 @@
-// Any PLY that makes sense is read, whatever its order and types; what makes none is rejected.
+// Any meaningful PLY is read, whatever its order and types; others are rejected.
 #include <algorithm>
 #include <clocale>
 #include <cmath>
@@ -23,7 +23,7 @@ class Ply : public ::testing::Test {
         file_.set(bytes);
         return open_scan(file_.path());
     }
-    /// Opens and reads; the error of whichever fails.
+    /// Opens and reads. Returns the error of whichever fails.
     Result<testing::Records> read(const std::string& bytes) {
         LUCARNE_ASSIGN(source_, open(bytes));
         return read_all(*source_, 3);
@@ -55,7 +55,7 @@ std::string header(const std::string& format, const std::string& rest) {
 }
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
 
-/// Binary bodies in either byte order.
+/// Builds binary bodies in either byte order.
 class Body {
  public:
     explicit Body(bool big) : big_(big) {}
@@ -206,7 +206,7 @@ TEST_F(Ply, ColoursOfEveryKindBecomeColor) {
     }
 }
 
-/// Points as text, dark but for the last ones.
+/// Returns points as text, all dark except the last ones.
 std::string dark_points(int count, const std::string& more, const std::string& bright) {
     std::string text;
     for (int i = 0; i < count; ++i)
@@ -305,13 +305,13 @@ TEST_F(Ply, PointsThatAreNotFiniteAreDroppedAndCounted) {
     EXPECT_EQ(r->count, 2u);
     EXPECT_EQ(r->dropped, 4u);
     EXPECT_EQ(position(*r, 1), glm::dvec3(4, 5, 6));
-    EXPECT_TRUE(std::isnan(value(*r, 0, "q")));  // not a coordinate: kept
+    EXPECT_TRUE(std::isnan(value(*r, 0, "q")));  // not a coordinate, so it is kept
 }
 
 TEST_F(Ply, NumbersDoNotDependOnTheLocale) {
     const std::string text = header("ascii", "element vertex 1\n" + kXyz) + "+1.5 2,5 3\n";
     expect_rejected(text, "'2,5' for its property y");
-    std::setlocale(LC_ALL, "de_DE.UTF-8");  // does nothing where it is not installed
+    std::setlocale(LC_ALL, "de_DE.UTF-8");  // has no effect if it is not installed
     const auto r = read(header("ascii", "element vertex 1\n" + kXyz) + "+1.5 2.5 1e-400\n");
     std::setlocale(LC_ALL, "C");
     ASSERT_TRUE(r) << r.error().line();
@@ -413,7 +413,7 @@ TEST_F(Ply, CountsThatLieAreRejected) {
         "negative length");
 }
 
-/// A small file of each encoding, with lists and other elements.
+/// Returns a small file of each encoding, with lists and other elements.
 std::vector<std::string> seeds() {
     const std::string parts =
         "comment lucarne station 1 2 3 4\nelement part 2\nproperty list uchar short l\nelement vertex 3\n" +
@@ -443,7 +443,7 @@ std::vector<std::string> seeds() {
 TEST_F(Ply, AnyTruncationIsRejected) {
     for (const std::string& bytes : seeds()) {
         ASSERT_TRUE(read(bytes));
-        // The last number of a text may be cut without being noticed.
+        // A cut within the last number of a text may go unnoticed.
         for (size_t length = 0; length + 6 < bytes.size(); ++length)
             EXPECT_FALSE(read(bytes.substr(0, length))) << length;
     }

@@ -1,5 +1,5 @@
-// Our PTX, PTS and PCD readers against numpy and pypcd4: see tests/oracles/text_oracle.py, which wrote
-// text_expected.json.
+// Compares Lucarne's PTX, PTS and PCD readers with numpy and pypcd4: see tests/oracles/text_oracle.py, which
+// wrote text_expected.json.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -8,7 +8,7 @@
 namespace lucarne::io {
 namespace {
 
-/// Sum of the bits of the values as doubles and sum weighted by place, modulo 2^64.
+/// The sum of the bits of the values as doubles, and the sum weighted by position, modulo 2^64.
 class Digest {
  public:
     void add(double value) {

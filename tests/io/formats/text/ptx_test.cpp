@@ -1,4 +1,4 @@
-// PTX: scans stand where their poses say, rays that met nothing are dropped and counted.
+// PTX: scans are placed by their poses; rays that hit nothing are dropped and counted.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -107,7 +107,7 @@ TEST_F(Ptx, TruncationAnywhereIsRejected) {
     const std::string text =
         "2\n1\n" + kTurned + "1 2 3 0.5 10 20 30\n-1 0 0 0.25 255 0 1\n1\n1\n" + kIdentity + "7 8 9 1 1 1 1";
     const size_t second = text.find("\n1\n1\n0 0") + 1;
-    const size_t last = text.rfind('\n') + 6;  // behind it a shorter row is a row
+    const size_t last = text.rfind('\n') + 6;  // after this place a shorter row is still a row
     for (size_t length = 1; length < last; ++length) {
         if (length == second || length + 1 == second) continue;
         EXPECT_FALSE(error_of(text.substr(0, length)).why.empty()) << length;

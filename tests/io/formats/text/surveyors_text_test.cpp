@@ -1,5 +1,5 @@
-// Text as surveyors' programs write it: names and codes beside the numbers, quotes, other languages' headers
-// and decimal commas.
+// Text as surveyors' programs write it: names and codes beside the numbers, quotes, headers in other
+// languages and decimal commas.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ TEST_F(SurveyorsText, WordsStandWhereTheyLike) {
     EXPECT_TRUE(schema().attributes.empty());
     ASSERT_EQ(source_->info().losses.size(), 1u);
     EXPECT_EQ(source_->info().losses[0].count, 2u) << "columns";
-    // The same without a header, and as the user says it.
+    // The same without a header, and with columns stated by the user.
     EXPECT_EQ(columns_of("P1,1.5,2.5,3.5,TREE\nP2,4,5,6,WALL\n"), "- x y z -");
     EXPECT_EQ(columns_of("P1 1.5 2.5 3.5\nP2 4 5 6\n"), "- x y z");
     EXPECT_EQ(columns_of("\"Tree 1\" 1.5 2.5 3.5\n\"Tree \"\"2\"\"\" 4 5 6\n"), "- x y z");
@@ -48,7 +48,7 @@ TEST_F(SurveyorsText, NumbersOfPointsAreNoCoordinates) {
     EXPECT_EQ(columns_of("1 4.5 5.25 6.75\n2 4.6 5.35 6.85\n2a 4.7 5.45 6.95\n"), "- x y z")
         << "with a letter";
     EXPECT_EQ(position(2), glm::dvec3(4.7, 5.45, 6.95));
-    // But for those of a grid, whose other coordinates may be whole as well.
+    // Except for those of a grid, whose other coordinates may be whole as well.
     EXPECT_EQ(columns_of("1 4 5.5 0.5\n2 4 5.25 0.75\n"), "x y z intensity");
     EXPECT_EQ(columns_of("1 4.5 5.5 0.5\n1 4.5 5.25 0.75\n"), "x y z intensity");
     read("ID X Y Z\n7 1.5 2.5 3.5\n");
@@ -84,7 +84,7 @@ TEST_F(SurveyorsText, AStrayWordTakesNoColumnWithIt) {
         ASSERT_EQ(points(), 299u);
         EXPECT_EQ(value(298, names::intensity), 4);
     }
-    // Nor does it change what the others are taken for.
+    // It does not change the guess for the other columns either.
     rows.clear();
     for (int i = 0; i < 300; ++i) rows += fmt::format("{}.5 2.5 3.5 1 {} 3\n", i, i == 200 ? "2#" : "2");
     EXPECT_THAT(error_of(rows).line(), HasSubstr("'2# 3' is no value for green (u8)"));
@@ -119,11 +119,11 @@ TEST_F(SurveyorsText, HeadersOfOtherLanguagesNameTheAxes) {
         EXPECT_EQ(position(0), glm::dvec3(1, 2, 3)) << text;
         EXPECT_EQ(value(0, names::intensity), 40) << text;
     }
-    // An x, y or z of that name goes before.
+    // A column named x, y or z takes precedence.
     read("x,y,z,h,n,e\n1,2,3,4,5,6\n");
     EXPECT_EQ(position(0), glm::dvec3(1, 2, 3));
     EXPECT_EQ(value(0, "h"), 4);
-    // Numbers may be names: bands, here.
+    // Numbers may be names: here those of bands.
     read("x,y,z,405,532,1064\n1,2,3,4,5,6\n");
     ASSERT_EQ(points(), 1u);
     EXPECT_EQ(value(0, "532"), 5);
@@ -173,7 +173,7 @@ TEST_F(SurveyorsText, CommasThatMayBeEitherAreRefused) {
     EXPECT_THAT(error.line(), HasSubstr("--columns"));
     read("1,5, 2,5, 3,5\n", {"x,y,z,a,b,c", true});
     EXPECT_EQ(position(0), glm::dvec3(1, 5, 2));
-    read("1,5,2\n3,4,5\n");  // whole numbers between commas are just that
+    read("1,5,2\n3,4,5\n");  // whole numbers between commas are not decimal
     EXPECT_EQ(position(0), glm::dvec3(1, 5, 2));
     EXPECT_THAT(error_of("x;y;z\n451.234,567;5.412.345,678;123,4\n").line(), HasSubstr("without rows"))
         << "points that part thousands";

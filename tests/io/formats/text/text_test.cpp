@@ -1,4 +1,4 @@
-// Rows of numbers are read exactly, whatever separates and names them; what makes no sense is rejected.
+// Rows of numbers are read exactly, whatever separates and names them; malformed ones are rejected.
 #include <charconv>
 #include <clocale>
 #include <cmath>
@@ -43,7 +43,7 @@ TEST_F(Text, LineEndsOfEverySystemAndBlankLinesAndCommentsAreUnderstood) {
 }
 
 TEST_F(Text, EveryDigitOfACoordinateCounts) {
-    // Numbers at the borders of the fast path, beyond it and random ones: as from_chars reads them.
+    // Numbers at the borders of the fast path, beyond it, and random ones must be read like from_chars does.
     std::vector<std::string> numbers = {"9007199254740992",
                                         "9007199254740993",
                                         "0.1",
@@ -126,7 +126,7 @@ TEST_F(Text, TheUserKnowsColumnsBetter) {
     EXPECT_EQ(schema().find(names::color)->type, ScalarType::u16);
     EXPECT_EQ(value(0, names::color, 0), 300);
     EXPECT_EQ(schema().find("weight")->type, ScalarType::f32);
-    // Any name may say what it is then, and headers are passed over.
+    // With stated columns the file may have any name, and headers are skipped.
     read("A nonsensical header\n1 2 3\n", {"x,y,z", true});
     EXPECT_EQ(points(), 1u);
     for (const auto& [columns, reason] :
@@ -158,7 +158,7 @@ TEST_F(Text, ColoursHaveTheTypeAndTheWhiteOfTheirNumbers) {
 }
 
 TEST_F(Text, RowsThatNoSampleHasSeenFitAsWell) {
-    // Looked at are 64 KiB at each of 64 places of these 6.4 MB; row 5000 is behind the first.
+    // The sample covers 64 KiB at each of 64 places of these 6.4 MB; row 5000 lies after the first of them.
     constexpr size_t kRows = 400'000, kUnseen = 5000;
     std::string text;
     for (size_t i = 0; i < kRows; ++i) text += i == kUnseen ? "1 2 3 7.5 0 0 256\n" : "1 2 3 7 0 0 255\n";
@@ -170,7 +170,7 @@ TEST_F(Text, RowsThatNoSampleHasSeenFitAsWell) {
 }
 
 TEST_F(Text, NoWholeNumberIsRounded) {
-    // Nanoseconds since 1970: doubles are 256 apart there.
+    // Nanoseconds since 1970, where doubles are 256 apart.
     const auto times = [&](std::initializer_list<const char*> words, const std::string& more = "") {
         std::string text = "x,y,z,time\n";
         for (const char* word : words) text += fmt::format("1,2,3,{}\n", word);
@@ -186,10 +186,10 @@ TEST_F(Text, NoWholeNumberIsRounded) {
     EXPECT_EQ(times({"1700000000123456789", "\"1700000000123456790\""}), exact);
     EXPECT_EQ(times({"1.7e18", "1700000000000000001"}),
               (std::vector<int64_t>{1700000000000000000, 1700000000000000001}));
-    std::string more;  // than a sample looks at
+    std::string more;  // more than a sample looks at
     while (more.size() < (size_t{5} << 20)) more += "1,2,3,1700000000123456791\n";
     EXPECT_EQ(times({"1700000000123456789", "1700000000123456790"}, more), exact);
-    // What all doubles hold, and what no 64 bits do, stays a double.
+    // Values that doubles hold exactly, and values that do not fit 64 bits, stay doubles.
     for (const char* word : {"9007199254740991", "9300000000000000000", "1e300", "17000000001234567.5e9"}) {
         EXPECT_TRUE(times({word}).empty()) << word;
         EXPECT_EQ(value(0, "time"), std::stod(word));
@@ -207,7 +207,7 @@ TEST_F(Text, PointsWithoutACoordinateAreDroppedAndCounted) {
 }
 
 TEST_F(Text, EmptyCellsTakeNoRoomButOfTheirSeparator) {
-    // More rows than there were if every cell held a digit.
+    // More rows than there would be if every cell held a digit.
     std::string text = "x,y,z,a,b,c,d,e,f,g\n1,2,3,4,5,6,7,8,9,10\n";
     for (int i = 0; i < 5000; ++i) text += "1,2,3,,,,,,,\n";
     read(text);
@@ -216,7 +216,7 @@ TEST_F(Text, EmptyCellsTakeNoRoomButOfTheirSeparator) {
 }
 
 TEST_F(Text, RowsThatDoNotFitAreRejectedWithLineAndReason) {
-    EXPECT_THAT(error_of("1 2 3\n1 2\n").line(), HasSubstr("line 2 on: it has 2 values, 3 belong"));
+    EXPECT_THAT(error_of("1 2 3\n1 2\n").line(), HasSubstr("line 2 on: it has 2 values instead of 3"));
     EXPECT_THAT(error_of("1 2 3\n\n1 2 3 4\n").line(), HasSubstr("line 3 on: it has more than the 3"));
     EXPECT_THAT(error_of("1 2 3\n1 a 3\n").line(), HasSubstr("'a 3' is no value for y"));
     EXPECT_THAT(error_of("x,y,z\n1,2,3\n1;2;3\n").line(), HasSubstr("line 3"));
@@ -247,9 +247,9 @@ TEST_F(Text, CountsOfPtsAreTakenAtTheirWord) {
     EXPECT_EQ(source_->info().declared_points, 2u);
     EXPECT_EQ(value(0, names::intensity), -500);
     EXPECT_EQ(value(1, names::color, 2), 10);
-    read("1\n1 2 3\n2\n4 5 6\n7 8 9\n");  // scans one behind the other
+    read("1\n1 2 3\n2\n4 5 6\n7 8 9\n");  // scans one after the other
     EXPECT_EQ(points(), 3u);
-    read("1\n1 2 3\n4 5 6\n");  // more than it says do no harm
+    read("1\n1 2 3\n4 5 6\n");  // more rows than the count states do no harm
     EXPECT_EQ(points(), 2u);
     EXPECT_THAT(error_of("3\n1 2 3\n4 5 6\n# and comments enough\n").line(),
                 HasSubstr("1 of 3 points are missing"));
@@ -274,7 +274,7 @@ TEST_F(Text, ExtensionsDecideOnlyWhatContentLeavesOpen) {
     }
 }
 
-/// Rows of all lengths, more than several windows of the reader hold.
+/// Returns rows of all lengths, more than several windows of the reader hold.
 std::string many_rows(int rows) {
     std::string text;
     Random random(3);
@@ -288,7 +288,7 @@ TEST_F(Text, LargeFilesAreReadInOrderWhateverTheThreadsAndTheBatch) {
     file_.set(many_rows(400000));
     const auto source = open_scan(file_.path(), {"", true});
     ASSERT_TRUE(source);
-    // More than 4 MiB: an estimate.
+    // More than 4 MiB, so the count is an estimate.
     EXPECT_NEAR(static_cast<double>((*source)->info().declared_points), 400000, 8000);
     std::optional<testing::Records> first;
     for (const auto& [threads, batch] : {std::pair(1u, size_t{1} << 16), std::pair(4u, size_t{777})}) {

@@ -1,4 +1,4 @@
-// Text that we write: what it looks like, and that it reads back as the same bits.
+// Text that Lucarne writes: its form, and that it reads back as the same bits.
 #include <cmath>
 #include <random>
 
@@ -59,7 +59,7 @@ Result<void> write(const Made& scan, const std::filesystem::path& path) {
     return writer->finish();
 }
 
-/// Every type, any bits: NaN and infinity too.
+/// Every type with any bits, including NaN and infinity.
 Made everything(PositionType position, size_t points) {
     Made scan;
     scan.schema_.position = position;
@@ -72,7 +72,7 @@ Made everything(PositionType position, size_t points) {
          {ScalarType::u8, ScalarType::i8, ScalarType::u16, ScalarType::i16, ScalarType::u32, ScalarType::i32,
           ScalarType::u64, ScalarType::i64, ScalarType::f32, ScalarType::f64})
         scan.schema_.add(std::string("a:") + std::string(scalar_name(type)), type);
-    scan.schema_.add("Amplitude", ScalarType::f32);  // which others call an intensity
+    scan.schema_.add("Amplitude", ScalarType::f32);  // a name that others use for an intensity
     scan.schema_.add("Größe", ScalarType::u8);
     scan.info_.color_bits = 16;
     scan.info_.metres_per_unit = 0.3048;
@@ -158,7 +158,7 @@ TEST(TextWriter, WritesAHeaderThatOthersRead) {
     EXPECT_EQ(read_bytes(folder / "a.xyz"), "636001.76 0.00 0.00 65535 0 0 0\n");
 }
 
-/// The most that this process ever held, bytes.
+/// Returns the most memory that this process ever held, in bytes.
 uint64_t most_held() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
