@@ -52,7 +52,7 @@ struct ValueRange {
 /// exposure or tone curve.
 struct Backdrop {
     enum class Kind : uint8_t { scene, colour, gradient } kind = Kind::scene;
-    glm::dvec3 top{0.2, 0.24, 0.3};  ///< or the whole colour
+    glm::dvec3 top{0.2, 0.24, 0.3};  ///< upper colour of a gradient, or the single colour
     glm::dvec3 bottom{0.03, 0.035, 0.045};
     bool operator==(const Backdrop&) const = default;
 };

@@ -103,7 +103,7 @@ Result<void> read_exposure(JsonObject& root, Scene& scene) {
         ValueRange range;
         LUCARNE_ASSIGN(range.low, luminance->number("low", kLuminance));
         LUCARNE_ASSIGN(range.high, luminance->number("high", kLuminance));
-        if (!(range.low < range.high)) return luminance->wrong("is no more than low", "high");
+        if (!(range.low < range.high)) return luminance->wrong("is not above low", "high");
         LUCARNE_TRY(luminance->finish());
         scene.luminance = range;
     }

@@ -94,7 +94,7 @@ EGLContext make_current_context(EGLDisplay display, std::string& why) {
 Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
     // libepoxy aborts if libEGL itself is missing, so check first.
     if (!epoxy_has_egl()) return failed("OpenGL", "no usable device: the EGL library is missing", kTodo);
-    std::string why = "EGL knows no platform without a window";
+    std::string why = "EGL has no platform that works without a window";
     for (EGLDisplay display : displays()) {
         EGLContext context = make_current_context(display, why);
         if (context != EGL_NO_CONTEXT)
