@@ -22,12 +22,11 @@
 
 namespace lucarne::gi {
 
-/// The cuts of a frame. They may be the same object's content or differ: the view cut is what the camera
-/// sees, the light-view cut what lights[i] sees, the light cut covers everything that may bounce or block
-/// light.
+/// The cuts of a frame; several may be the same cut. The view cut is what the camera sees, light_views[i] is
+/// what lights[i] sees, and the light cut covers everything that may bounce or block light.
 struct FrameCuts {
     const DeviceCut* view = nullptr;
-    std::vector<const DeviceCut*> light_views;  ///< one a light
+    std::vector<const DeviceCut*> light_views;  ///< one per light
     const DeviceCut* light = nullptr;
 };
 
@@ -36,8 +35,9 @@ struct Bounds {
     bool operator==(const Bounds&) const = default;
 };
 
-/// One picture to be lit. `radiance` is vec4 a pixel (rgb W/(sr m^2), w unused), row 0 on top; the engine
-/// writes all of it: direct and indirect light, emission, background where the G-buffer is empty.
+/// One picture to be lit. `radiance` has a vec4 per pixel (rgb W/(sr m^2), w unused), row 0 on top. The
+/// engine writes all of it: direct and indirect light, emission, and the background where the G-buffer is
+/// empty.
 struct Frame {
     Device& device;
     const SurfelPool& pool;
@@ -48,45 +48,49 @@ struct Frame {
     std::vector<Material> materials;
     glm::vec3 background{0.0f};
     EngineSettings settings;
-    uint64_t index = 0;  ///< of the frame: engines that accumulate take new samples for each
+    uint64_t index = 0;  ///< of the frame; engines that accumulate draw new samples for each index
     Buffer& radiance;
     PassTimes& times;
-    std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
-    Bounds bounds{};                                 ///< of the whole cloud, m
-    bool moving = false;           ///< one of a motion: what the frame before knew may serve
-    Progress* progress = nullptr;  ///< of engines that report it; or none
-    Unlit unlit{};                 ///< of the engine without light
+    std::shared_ptr<const Environment>
+        environment;               ///< lights the scene and replaces `background`; may be null
+    Bounds bounds{};               ///< of the whole cloud, m
+    bool moving = false;           ///< part of a motion: the engine may reuse results of the last frame
+    Progress* progress = nullptr;  ///< of engines that report it; may be null
+    Unlit unlit{};                 ///< settings of the engine without light
 };
 
-/// What others need to know of an engine, without building it. One constant, in the engine's folder.
+/// What the rest of the program needs to know of an engine without making it. It is one constant in the
+/// engine's folder.
 struct EngineInfo {
     std::string_view name;         ///< as --engine takes it
     std::string_view description;  ///< one line
     std::span<const OptionInfo* const> options = {};
-    /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
+    /// Pictures that it keeps beside the radiance (Engine::layers); their names become parts of file names.
     std::span<const std::string_view> layers = {};
-    bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
-    /// Knows no light: its colours are shown as they are, without exposure or tone curve.
+    bool reports_progress = false;  ///< takes long, and adds finished pixels to Frame::progress
+    /// Ignores light: its colours are shown as they are, without exposure or tone curve.
     bool unlit = false;
-    bool direct_only = false;   ///< no light from surface to surface: what the others add shows beside it
-    bool is_reference = false;  ///< converges to the truth: what the others are compared with
+    bool direct_only = false;   ///< computes no light from surface to surface
+    bool is_reference = false;  ///< converges to the truth; other engines are compared with it
 };
 
-/// A way to light a G-buffer; one folder an engine, which exports one EngineEntry.
+/// Lights a G-buffer. Each engine has a folder of its own, which exports one EngineEntry.
 class Engine {
  public:
     virtual ~Engine() = default;
     virtual const EngineInfo& info() const = 0;
-    /// Once per scene, device or settings change that needs new resources; cheap when nothing changed.
+    /// Call before render(). It takes the resources that the frame's scene, device or settings need; cheap
+    /// when nothing changed.
     virtual Result<void> prepare(Frame& frame) = 0;
     virtual Result<void> render(Frame& frame) = 0;
-    /// Figures of the last frame for statistics and reports ("vpls": 256).
+    /// Returns figures of the last frame for statistics and reports ("vpls": 256).
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
-    /// Of info().layers, in their order: vec4 a pixel, of all frames that were accumulated so far.
+    /// Returns the pictures of info().layers, in their order: a vec4 per pixel, over all frames accumulated
+    /// so far.
     virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }
 };
 
-/// An engine, and how it is made.
+/// An engine and the function that makes it.
 struct EngineEntry {
     const EngineInfo& info;
     std::unique_ptr<Engine> (*make)();

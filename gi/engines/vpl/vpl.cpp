@@ -39,7 +39,7 @@ struct Bounce {
     Buffer atlas;
 };
 
-// Bytes of maps that are held from frame to frame: sixteen bounces of `interactive`, one of `high`.
+// Bytes of maps that are kept from frame to frame: sixteen bounces of `interactive`, one of `high`.
 constexpr size_t kMostKept = size_t{64} << 20;
 
 constexpr const OptionInfo* kOptions[] = {
@@ -63,8 +63,8 @@ class VplEngine : public Engine {
     Sky sky_;
     LightSights sights_;
     std::vector<Bounce> bounces_;
-    ShadowMaps maps_;  ///< its atlas is a bounce's while that is drawn or read
-    Basis basis_;      ///< of bounces_
+    ShadowMaps maps_;  ///< borrows the atlas of a bounce while it is drawn or read
+    Basis basis_;      ///< what bounces_ were made from
     Panes panes_;
     History history_;
     Redistribution redistribution_;
@@ -103,7 +103,7 @@ Result<void> VplEngine::prepare(Frame& frame) {
     return upload_materials(frame.device, frame.materials, materials_);
 }
 
-/// Everything that the VPLs and their maps follow from.
+/// Returns everything on which the VPLs and their maps depend.
 Basis basis_of(const Frame& frame) {
     Basis basis{frame.settings, frame.lights,      frame.materials, {frame.cuts.light->fingerprint()},
                 frame.bounds,   frame.environment, frame.index};
@@ -111,9 +111,9 @@ Basis basis_of(const Frame& frame) {
     return basis;
 }
 
-/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
-/// next bounce: frame.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the camera
-/// moves.
+/// Sets frame.radiance to the light of the requested bounces. It places VPLs on the surfaces that the lights
+/// see, draws their shadow maps and shades interleaved pixels, then redistributes the VPLs and repeats this
+/// for the next bounce. VPLs and maps are kept while nothing but the camera moves.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
@@ -121,8 +121,8 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
     Basis basis = basis_of(frame);
     const bool held = keep && basis == basis_;
-    basis_ = {};  // until all is drawn
-    // Frame by frame less is blurred, so that what is averaged converges.
+    basis_ = {};  // invalid until everything is drawn
+    // Each averaged frame blurs less, so that the average converges.
     const float shrink = 1.0f / static_cast<float>(frame.index + 1);
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s[kBestCandidate];
@@ -164,7 +164,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
                 [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
 }
 
-/// Emission, background and what the lights' first reflection sends to the eye.
+/// Adds emission, background and the first reflection of the lights.
 Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));

@@ -6,15 +6,14 @@
 
 namespace lucarne::gi::vpl {
 
-/// The indirect irradiance of the last moving frame, to be blended with the next one's where both show the
-/// same surface (history.glsl). It holds while lights, materials and settings do.
+/// The indirect irradiance of the last moving frame, to be averaged with that of the next frame where both
+/// show the same surface (history.glsl). It is valid while lights, materials and settings stay the same.
 class History {
  public:
-    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no
-    /// device memory.
+    /// Prepares for a frame that merge.comp with LUCARNE_HISTORY will write. Errors: no device memory.
     Result<void> begin(const Frame& frame);
     void bind(const Frame& frame, const Program& merge) const;
-    /// The frame was merged: it is the last one now.
+    /// Makes the frame, which has been merged, the last one.
     void end(const Frame& frame);
 
  private:
@@ -22,7 +21,7 @@ class History {
         Buffer light;     ///< vec4 a pixel: irradiance, W/m^2; frames in it
         Buffer surfaces;  ///< uvec2 a pixel: depth (0: nothing), normal
     };
-    /// What must be the same for light to be the same.
+    /// Light may be reused only while these are equal.
     struct Basis {
         EngineSettings settings;
         std::vector<Light> lights;
@@ -35,7 +34,7 @@ class History {
 
     Side last_, next_;
     Basis basis_;
-    CameraView camera_{};  ///< of last_; no width: there is none
+    CameraView camera_{};  ///< of last_; width 0: there is no last frame
 };
 
 }  // namespace lucarne::gi::vpl
