@@ -6,7 +6,8 @@
 #include "gi/shared/surfel_code.h"
 
 layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
-layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (clip, count, floor, inner), children; then ClipShape
+// CutItem: (origin, size), (clip, count, area_floor, inner), children, children; the ClipShapes follow the items.
+layout(binding = 1) uniform usamplerBuffer cut_items;
 layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
 
 // Returns the cube of the item: xyz its origin, w its side (m).

@@ -154,7 +154,7 @@ Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
     state_->refused |= !fits;
     if (!fits)
         return failed(std::string(what),
-                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
+                      fmt::format("{} MiB in addition to the {} MiB in use exceed the cap of {} MiB",
                                   bytes >> 20, state_->used >> 20, state_->cap >> 20),
                       kMemoryTodo);
     state_->used += bytes;

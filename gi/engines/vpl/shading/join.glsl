@@ -3,7 +3,7 @@
 // follow it.
 #include "gi/engines/vpl/shading/pixel.glsl"
 
-layout(std430, binding = 15) buffer Joints { uvec2 joints[]; };  // per pixel: candidates, 2 bits per pane | mask of missing panes
+layout(std430, binding = 15) buffer Joints { uvec2 joints[]; };  // candidates, 2 bits per pane | mask of missing panes
 
 // The window about a pixel holds one pixel of every pane. If the pixel of pane i shows another surface, its
 // neighbours of the same pane n pixels away, candidates 1 to 3, may replace it.

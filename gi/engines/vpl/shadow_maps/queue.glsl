@@ -6,7 +6,8 @@ layout(std430, binding = 11) buffer Queue {
     uvec2 pairs[];     // id of the surfel, map
 };
 layout(std430, binding = 6) buffer Large { uint large_places[]; };    // indices into pairs[]
-layout(std430, binding = 7) buffer Meetings { uint meetings[]; };     // kRunWords words a block; a bit is set unless the block is culled for that map
+// kRunWords words a block; a bit is set unless the block is culled for that map of the run.
+layout(std430, binding = 7) buffer Meetings { uint meetings[]; };
 
 const uint kRunWords = 8u;
 
