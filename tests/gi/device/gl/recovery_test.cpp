@@ -40,7 +40,7 @@ TEST(LossPlan, GivesTheNumbersOfAListOneAContextAndThenNone) {
     EXPECT_EQ(LossPlan("99999999999").next(), std::nullopt) << "no number that there is";
 }
 
-/// A folder with one shader file of its own.
+/// A shader folder with one file.
 class ShaderFiles : public OnDevice {
  protected:
     void SetUp() override {
