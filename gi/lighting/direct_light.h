@@ -21,7 +21,7 @@ Result<void> upload_materials(Device& device, const std::vector<Material>& mater
 /// The background on the device, and the light that comes from it.
 struct Sky {
     Buffer texels;             ///< three floats per texel
-    SkyDirections directions;  ///< dark without an environment: a mere background does not light
+    SkyDirections directions;  ///< dark without an environment: a plain background emits no light
 };
 Result<void> upload_sky(const Frame& frame, Sky& sky);
 

@@ -18,7 +18,7 @@
 
 namespace lucarne::gi {
 
-/// In the order of the kinds of gi/shared/light.h.
+/// Kinds of lights, in the order of gi/shared/light.h.
 enum class LightKind : uint32_t { spot, point, directional, rectangle, disc };
 
 /// A light of a scene file (data/README.md): world coordinates and lengths in the scan's own unit, angles in

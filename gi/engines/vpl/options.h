@@ -14,7 +14,7 @@ inline constexpr Option<uint32_t> kVpls{{
     .key = "vpls",
     .label = "VPLs",
     .help = "Virtual point lights",
-    .cost = "virtual point lights: time and the shadow maps' memory grow with them",
+    .cost = "virtual point lights: time grows with them, and they share one atlas of shadow maps",
     .least = 1,
     .most = 65536,
     .slider = {16, 4096, true},

@@ -21,7 +21,7 @@ namespace lucarne::gi {
 namespace vpl {
 namespace {
 
-/// What VPLs and maps are made from.
+/// Everything from which VPLs and maps are made.
 struct Basis {
     EngineSettings settings;
     std::vector<Light> lights;
@@ -33,7 +33,7 @@ struct Basis {
     bool operator==(const Basis&) const = default;
 };
 
-/// One bounce's VPLs, and their maps.
+/// The VPLs of one bounce and their maps.
 struct Bounce {
     Seeds seeds;
     Buffer atlas;

@@ -3,7 +3,7 @@ layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/engines/vpl/seeding/importance.glsl"
 
-uniform uint level;  // the one to write
+uniform uint level;  // the level to write
 
 void main() {
     uint side = importance_side >> level;

@@ -18,8 +18,8 @@ class History {
 
  private:
     struct Side {
-        Buffer light;     ///< vec4 a pixel: irradiance, W/m^2; frames in it
-        Buffer surfaces;  ///< uvec2 a pixel: depth (0: nothing), normal
+        Buffer light;     ///< vec4 per pixel: irradiance, W/m^2; w: number of frames
+        Buffer surfaces;  ///< uvec2 per pixel: depth (0: no surface), normal
     };
     /// Light may be reused only while these are equal.
     struct Basis {
