@@ -51,9 +51,8 @@ struct Frame {
     uint64_t index = 0;  ///< of the frame; engines that accumulate draw new samples for each index
     Buffer& radiance;
     PassTimes& times;
-    std::shared_ptr<const Environment>
-        environment;               ///< lights the scene and replaces `background`; may be null
-    Bounds bounds{};               ///< of the whole cloud, m
+    std::shared_ptr<const Environment> environment;  ///< lights, and replaces `background`; may be null
+    Bounds bounds{};                                 ///< of the whole cloud, m
     bool moving = false;           ///< part of a motion: the engine may reuse results of the last frame
     Progress* progress = nullptr;  ///< of engines that report it; may be null
     Unlit unlit{};                 ///< settings of the engine without light

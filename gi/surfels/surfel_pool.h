@@ -62,9 +62,7 @@ class CutPoints {
 /// pool is destroyed. Its bindings are the same for every shader: see bind().
 class DeviceCut {
  public:
-    uint32_t surfels() const {
-        return surfels_;
-    }  ///< points drawn, including those that the clip test removes one by one
+    uint32_t surfels() const { return surfels_; }  ///< points drawn, also those that the clip test removes
     uint32_t clipped() const { return clipped_; }  ///< points of nodes that are clipped as a whole
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
     float size() const { return size_; }           ///< m, side of the source's root cube

@@ -76,8 +76,7 @@ double Illumination::lit(uint32_t index) const {
         if (irradiance == glm::vec3(0.0f))
             irradiance = light_irradiance(light, point, normal = -normal, in);  // a disc has two sides
         double power = area * luminance(irradiance * (surface.kd + surface.ks));
-        if (light.kind !=
-            kDirectionalLight) {  // next to the lamp the whole disc is not as bright as this point
+        if (light.kind != kDirectionalLight) {  // close to the lamp a disc is darker than this point
             const glm::vec3 offset = glm::vec3(light.position) - point;
             const float distance2 = glm::dot(offset, offset);
             power *= distance2 / (distance2 + radius2);

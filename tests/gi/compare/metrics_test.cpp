@@ -111,8 +111,7 @@ TEST(Metrics, TwoHalvesFreeTheErrorFromTheReferencesNoise) {
     EXPECT_NEAR(error->rel_mse, truth, 4 * error->standard_error + 6 * noise * noise);
     EXPECT_LT(error->standard_error, 0.1 * truth);
     EXPECT_NEAR(error->reference_rel_mse, noise, 0.1 * noise);
-    EXPECT_GT(compare_images(picture, mean)->rel_mse,
-              2 * truth);  // the noise raises the error without halves
+    EXPECT_GT(compare_images(picture, mean)->rel_mse, 2 * truth);  // without halves, noise counts
 }
 
 TEST(Metrics, PicturesOfOtherSizesOrWithoutFiniteValuesAreRejected) {

@@ -44,8 +44,7 @@ TEST(SceneFile, EveryKeyArrives) {
     EXPECT_EQ(scene->lights[0].strength, dvec3(10, 20, 30));
     EXPECT_EQ(scene->lights[1].target, dvec3(500000.25, 5000001.5, 100));  // exact: never converted to float
     ASSERT_EQ(scene->materials.size(), 2u);
-    EXPECT_EQ(scene->materials[0].name,
-              "all");  // a material without a condition is the default, wherever it stands in the file
+    EXPECT_EQ(scene->materials[0].name, "all");  // the default has no condition; it may stand anywhere
     EXPECT_EQ(scene->materials[0].emission, dvec3(.5));
     EXPECT_EQ(scene->materials[1].diffuse, dvec3(.5, .4, .3));
     EXPECT_EQ(scene->materials[1].specular, .4);

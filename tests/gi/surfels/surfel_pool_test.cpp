@@ -135,8 +135,7 @@ TEST_F(SurfelPoolTest, SurfelsComeBackAsTheyWent) {
     std::sort(back.begin(), back.end(), by_place);
     size_t matched = 0;
     for (size_t i = 0; i < sent.size(); ++i) {
-        if (glm::length(sent[i].position - back[i].position) > 1e-3f)
-            continue;  // two surfels in the same place
+        if (glm::length(sent[i].position - back[i].position) > 1e-3f) continue;  // two in the same place
         ++matched;
         EXPECT_GT(glm::dot(sent[i].normal, back[i].normal), 0.99999f);
         EXPECT_NEAR(sent[i].albedo.y, back[i].albedo.y, 2e-3f);

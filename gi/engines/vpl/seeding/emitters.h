@@ -12,8 +12,7 @@ namespace lucarne::gi::vpl {
 
 /// The emissive surfels of a cut.
 struct Emitters {
-    std::vector<double>
-        running;  ///< running sums of the weights by id: area times luminance of the emission, W/sr
+    std::vector<double> running;  ///< sums of weights by id: area times luminance of the emission, W/sr
     Buffer scratch;
 
     double sum() const { return running.empty() ? 0.0 : running.back(); }

@@ -27,9 +27,8 @@ constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 // Room of the queue: an atlas of 2048 x 2048 has some 2M pairs. The least room is what one block may need.
 // On a device with little memory the queue takes no more than this share of it.
 constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 16;
-constexpr uint32_t kLargeGroups =
-    65535;  // the number of workgroups that OpenGL guarantees; they share the large discs
-constexpr uint32_t kLargeGroup = 16;  // local size of splat_large.comp
+constexpr uint32_t kLargeGroups = 65535;  // workgroups that OpenGL guarantees; they share the large discs
+constexpr uint32_t kLargeGroup = 16;      // local size of splat_large.comp
 
 struct Range {
     uint32_t first, end;

@@ -38,8 +38,7 @@ TEST_F(DirectTest, PlaneUnderASpotReflectsWhatTheFormulaSays) {
     for (uint32_t y = 20; y < 100; y += 7)
         for (uint32_t x = 30; x < 130; x += 7) {
             const glm::vec3 p = lit.position(x, y), to_light = glm::vec3(0.5f, 0.2f, 2) - p;
-            if (glm::length(glm::vec2(p.x, p.y)) > 0.8f)
-                continue;  // another test covers the edge of the cone
+            if (glm::length(glm::vec2(p.x, p.y)) > 0.8f) continue;  // another test: the edge
             const float d2 = glm::dot(to_light, to_light);
             const float albedo = decode_albedo(lit.texels[y * 160 + x].albedo).x;
             EXPECT_NEAR(albedo, 0.5f, 2e-3f);

@@ -35,8 +35,7 @@ TEST(Emitters, OverlapRadiusAndAreaChangeTheNoiseAndNotTheLight) {
             const auto sampled = one_bounce(emitter, receiver, 512);
             for (size_t i = 0; i < emitter.size(); ++i) emitter[i].area *= i % 3 ? .2f : 4;
             const auto uneven = one_bounce(emitter, receiver, 512);
-            for (Surfel& s : emitter)
-                s.area = 0;  // weight 0: sampling never draws them, so only chance finds them
+            for (Surfel& s : emitter) s.area = 0;  // never drawn: only chance finds them
             const auto chance = one_bounce(emitter, receiver, 512);
             for (const auto& other : {sampled, uneven})
                 EXPECT_NEAR(other.mean, chance.mean,

@@ -245,8 +245,7 @@ TEST(Reference, StandardErrorIsThatOfRepeatedRuns) {
         sum += mean.mean, squares += mean.mean * mean.mean, claimed += mean.standard_error;
     }
     const double spread = std::sqrt((squares - sum * sum / runs) / (runs - 1));
-    EXPECT_NEAR(claimed / runs / spread, 1.0,
-                0.25);  // 200 runs determine their spread to 5 %; the tolerance is five times that
+    EXPECT_NEAR(claimed / runs / spread, 1.0, 0.25);  // 5 times the error of 200 runs
 }
 
 TEST(Reference, SurfelsWithoutNormalOrSizeAreNoObstacle) {

@@ -78,8 +78,7 @@ TEST(SurfelSampler, NoisyDiscsAndBentNormalsLeaveTheMeanAsItIs) {
 
 TEST(SurfelSampler, SeveralLightsOfAllSharpKindsOnGlossyWallsKeepTheirMean) {
     auto surfels = room(.25f, .05f, 4);
-    std::erase_if(surfels,
-                  [](const Surfel& s) { return s.position.z > 3.5f; });  // opens the room for the sun
+    std::erase_if(surfels, [](const Surfel& s) { return s.position.z > 3.5f; });  // lets sun in
     const auto tracer = tracer_of(surfels);
     const Illumination light(
         *tracer, {material(1, .3f, 30, 0)},
