@@ -2,17 +2,17 @@
 
 #include "gi/options.h"
 
-// Options that every engine shares which follows light from surface to surface.
+// Options shared by all engines that follow light from surface to surface.
 namespace lucarne::gi {
 
-/// Indirect bounces; 0: direct light alone.
+/// Number of indirect bounces; 0: direct light alone.
 inline constexpr Option<uint32_t> kBounces{{
     .kind = OptionKind::integer,
     .key = "bounces",
     .label = "bounces",
     .help = "Indirect bounces; 0: direct light alone",
-    .cost = "vpl: the lights are shared out among the bounces, so more cost little and are coarser;\n"
-            "reference: time grows with them",
+    .cost = "time grows with them: in vpl every bounce draws shadow maps of its own,\n"
+            "in reference paths become longer",
     .least = 0,
     .most = 64,
     .slider = {0, 8},
@@ -20,12 +20,12 @@ inline constexpr Option<uint32_t> kBounces{{
     .keeps = true,
 }};
 
-/// Just this bounce, 0: direct light; -1: all.
+/// Computes this bounce alone; 0: direct light, -1: all bounces.
 inline constexpr Option<int32_t> kOnlyBounce{{
     .kind = OptionKind::integer,
     .key = "only_bounce",
     .label = "only bounce",
-    .help = "Just this bounce; 0: direct light",
+    .help = "Compute this bounce alone; 0: direct light",
     .placeholder = "K",
     .least = 0,
     .most = 64,
@@ -41,7 +41,7 @@ inline constexpr Option<uint64_t> kSeed{{
     .label = "seed",
     .help = "Seed of all random numbers",
     .least = 0,
-    .most = 9007199254740991,  // what every reader of JSON holds exactly
+    .most = 9007199254740991,  // 2^53 - 1: every reader of JSON represents it exactly
     .defaults = {int64_t{1}, int64_t{1}, int64_t{1}},
     .keeps = true,
 }};

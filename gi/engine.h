@@ -16,30 +16,32 @@
 
 namespace lucarne::gi {
 
-/// What others need to know of an engine, without building it. One constant, in the engine's folder.
+/// What the rest of the program needs to know of an engine without making it. It is one constant in the
+/// engine's folder.
 struct EngineInfo {
     std::string_view name;         ///< as --engine takes it
     std::string_view description;  ///< one line
     std::span<const OptionInfo* const> options = {};
-    /// Pictures that it keeps beside the radiance (Engine::layers), as parts of files' names.
+    /// Pictures that it keeps beside the radiance (Engine::layers); their names become parts of file names.
     std::span<const std::string_view> layers = {};
-    bool reports_progress = false;  ///< takes long, and adds the pixels that it finishes to Frame::progress
-    /// Draws without light: its colours are shown as they are, without exposure or tone curve.
+    bool reports_progress = false;  ///< takes long, and adds finished pixels to Frame::progress
+    /// Ignores light: its colours are shown as they are, without exposure or tone curve.
     bool unlit = false;
     bool direct_only = false;   ///< computes no light from surface to surface
-    bool is_reference = false;  ///< converges to the truth: other engines are compared with it
+    bool is_reference = false;  ///< converges to the truth; other engines are compared with it
 };
 
-/// A way to light a G-buffer; one folder an engine, which exports one EngineEntry.
+/// Lights a G-buffer. Each engine has a folder of its own, which exports one EngineEntry.
 class Engine {
  public:
     virtual ~Engine() = default;
     virtual const EngineInfo& info() const = 0;
     /// Lights a frame: update(), prepare(), render(). Errors: the settings, device memory, the engine's own.
     Result<void> draw(Frame& frame);
-    /// Figures of the last frame for statistics and reports ("vpls": 256).
+    /// Returns figures of the last frame for statistics and reports ("vpls": 256).
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
-    /// The pictures of info().layers, in their order: vec4 a pixel, of all frames accumulated so far.
+    /// Returns the pictures of info().layers, in their order: a vec4 per pixel, over all frames accumulated
+    /// so far.
     virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }
 
  protected:
@@ -55,7 +57,7 @@ class Engine {
     ChangeTracker tracker_;
 };
 
-/// An engine, and how it is made.
+/// An engine and the function that makes it.
 struct EngineEntry {
     const EngineInfo& info;
     std::unique_ptr<Engine> (*make)();

@@ -1,4 +1,4 @@
-// The engines, in the order they are listed to users. A new engine adds its line here.
+// The engines, in the order in which users see them. A new engine adds its line here.
 #include <array>
 
 #include "gi/engines/direct/direct.h"

@@ -10,14 +10,14 @@
 namespace lucarne::gi {
 namespace {
 
-/// The whole text is the number.
+/// Parses a number; fails unless the number is the whole text.
 template <class T>
 bool parse_all(std::string_view text, T& value) {
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     return problem == std::errc() && end == text.data() + text.size();
 }
 
-/// "0.2,0.4,1".
+/// Parses a colour such as "0.2,0.4,1".
 bool parse_colour(std::string_view text, glm::dvec3& colour) {
     for (int i = 0; i < 3; ++i) {
         const size_t comma = text.find(',');

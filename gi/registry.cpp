@@ -12,7 +12,7 @@ Result<const EngineEntry*> find_engine(std::string_view name) {
         if (entry.info.name == name) return &entry;
         known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
     }
-    return bad_arguments("engine " + std::string(name), "there is none of this name",
+    return bad_arguments("engine " + std::string(name), "no engine has this name",
                          "the engines are " + known);
 }
 

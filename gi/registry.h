@@ -8,17 +8,18 @@
 
 namespace lucarne::gi {
 
-/// All engines, in the order they are listed to users; engine_list.cpp has the list.
+/// Returns all engines in the order in which users see them. engine_list.cpp holds the list.
 std::span<const EngineEntry> engines();
-/// What is drawn with where nobody chose.
+/// Returns the engine that is used if none is chosen.
 const EngineInfo& default_engine();
 
-/// Errors (ErrorKind::arguments): unknown name; the message lists the known ones.
+/// Find or make an engine by name. Errors (ErrorKind::arguments): unknown name; the message lists the known
+/// names.
 Result<const EngineEntry*> find_engine(std::string_view name);
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name);
-/// The first engine that has the property; the default engine where none has.
+/// Returns the first engine that has the property; the default engine if none has it.
 const EngineInfo& engine_with(bool EngineInfo::*property);
-/// Whether there is such an engine, and it has the property.
+/// Returns whether an engine of this name exists and has the property.
 bool engine_is(std::string_view name, bool EngineInfo::*property);
 
 }  // namespace lucarne::gi

@@ -13,14 +13,14 @@ namespace {
 
 using Mask = std::vector<uint8_t>;
 
-// A step of 2 % of the depth: ten times the noise of a scanned wall, a tenth of a doorway's.
+// A step of 2 % of the depth: ten times the noise of a scanned wall, a tenth of the step at a doorway.
 constexpr double kDepthStep = 0.02;
 constexpr double kSameNormal = 0.9;  // cosine: 26 degrees
-// Two neighbours whose luminances differ by this share of the larger one, and by this share of the picture's
-// mean, so that neither noise nor darkness counts.
+// Two neighbours form an edge if their luminances differ by the first share of the larger one and by the
+// second share of the picture's mean, so that neither noise nor darkness counts.
 constexpr double kContrast = 0.25, kLeastContrast = 0.05;
 
-/// Runs over the picture's rows and columns alike: line(first, step, count) gives pixels first + k * step.
+/// Calls line(first, step, count) for every row and column; a line consists of the pixels first + k * step.
 template <class Line>
 void for_each_line(const io::Image& image, const Line& line) {
     const size_t width = image.width, height = image.height;
@@ -28,7 +28,7 @@ void for_each_line(const io::Image& image, const Line& line) {
     for (size_t x = 0; x < width; ++x) line(x, width, height);
 }
 
-/// Both pixels of every pair of neighbours that differ.
+/// Marks both pixels of every pair of neighbours that differ.
 template <class Differ>
 void mark_pairs(const io::Image& image, const Differ& differ, Mask& mask) {
     for_each_line(image, [&](size_t first, size_t step, size_t count) {
@@ -39,7 +39,7 @@ void mark_pairs(const io::Image& image, const Differ& differ, Mask& mask) {
     });
 }
 
-/// Every pixel next to a marked one, the diagonals included.
+/// Marks every pixel next to a marked one, diagonals included.
 Mask widen(const io::Image& image, Mask mask) {
     const auto along = [&](bool rows) {
         Mask wide = mask;
@@ -61,9 +61,9 @@ bool seen(const glm::vec4& texel) {
     return texel.w > 0 && std::isfinite(texel.w);
 }
 
-/// A step or a crease in depth at b, between its neighbours a and c.
+/// Returns whether depth has a step or a crease at b, between its neighbours a and c.
 bool bent(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) {
-    if (!seen(a) || !seen(b) || !seen(c)) return false;  // mark_pairs finds the border of what is seen
+    if (!seen(a) || !seen(b) || !seen(c)) return false;  // mark_pairs finds the border of visible surfaces
     return std::abs(1 / double{a.w} - 2 / double{b.w} + 1 / double{c.w}) * double{b.w} > kDepthStep;
 }
 

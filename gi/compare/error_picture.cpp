@@ -12,7 +12,7 @@
 namespace lucarne::gi {
 namespace {
 
-/// sRGB-coded, 0 to 1.
+/// Appends a pixel; `colour` is sRGB-coded, 0 to 1.
 void push(io::Image8& image, const glm::vec3& colour) {
     for (int c = 0; c < 3; ++c)
         image.bytes.push_back(static_cast<uint8_t>(std::lround(255 * std::clamp(colour[c], 0.0f, 1.0f))));

@@ -1,6 +1,6 @@
 // Based on: Andersson et al. 2020, "FLIP: a difference evaluator for alternating images", sec. 4: a colour
-// pipeline and a feature pipeline, constants and names as there. All of its filters are sums of separable
-// ones, and applied as such.
+// pipeline and a feature pipeline, with the constants and names of the paper. All of its filters are sums of
+// separable filters and are applied as such.
 #include "gi/compare/flip.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using glm::vec3;
 using Kernel = std::vector<float>;  // odd, centred
 using Plane = std::vector<float>;
 
-constexpr size_t kRows = 16;  // of a piece of parallel work
+constexpr size_t kRows = 16;  // rows in a piece of parallel work
 
 // Linear Rec. 709 to CIE XYZ (IEC 61966-2-1, from the primaries and D65 without rounding); columns of the
 // matrix.
@@ -32,7 +32,7 @@ const glm::dmat3 kRgbToXyz(10135552.0 / 24577794, 2613072.0 / 12288897, 1425312.
                            8788810.0 / 24577794, 8788810.0 / 12288897, 8788810.0 / 73733382,   //
                            4435075.0 / 24577794, 887015.0 / 12288897, 70074185.0 / 73733382);
 
-/// The paper's colour spaces, on XYZ relative to the white of the screen.
+/// The paper's colour spaces, based on XYZ relative to the white of the screen.
 struct ColourSpaces {
     glm::mat3 to_white_relative, from_white_relative;
 
@@ -65,13 +65,13 @@ struct ColourSpaces {
     }
 };
 
-/// HyAB (Abasi et al. 2020), a distance that holds for large colour differences.
+/// HyAB (Abasi et al. 2020), a distance that also holds for large colour differences.
 float hyab(vec3 a, vec3 b) {
     const vec3 d = a - b;
     return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
 }
 
-/// exp(-x^2 / (2 variance)) times factor(x) at the pixels up to `radius` from the centre.
+/// Returns exp(-x^2 / (2 variance)) * factor(x) at the pixels up to `radius` from the centre.
 template <class Factor>
 Kernel bell(double variance, int radius, const Factor& factor) {
     Kernel kernel;
@@ -86,7 +86,7 @@ double sum(const Kernel& kernel) {
     return total;
 }
 
-/// Positive weights add up to 1, negative ones to -1.
+/// Scales the kernel so that positive weights add up to 1 and negative ones to -1.
 Kernel normalised(Kernel kernel) {
     double positive = 0, negative = 0;
     for (const float weight : kernel) (weight > 0 ? positive : negative) += weight;
@@ -95,7 +95,7 @@ Kernel normalised(Kernel kernel) {
     return kernel;
 }
 
-/// `columns` applied along x, then `rows` along y; the picture's edge pixels go on beyond it.
+/// Applies `columns` along x, then `rows` along y. The picture's edge pixels are repeated beyond its edge.
 Plane convolve(const Plane& in, size_t width, const Kernel& columns, const Kernel& rows) {
     const size_t height = in.size() / width;
     Plane across(in.size()), out(in.size());
@@ -132,7 +132,7 @@ struct Sensitivity {
 constexpr Sensitivity kSensitivities[] = {
     {{{1, 0.0047}, {0, 1e-5}}}, {{{1, 0.0053}, {0, 1e-5}}}, {{{34.1, 0.04}, {13.5, 0.025}}}};
 
-/// Takes away what the eye does not resolve at this distance.
+/// Removes what the eye does not resolve at this distance.
 Plane filter(const Plane& channel, size_t width, const Sensitivity& sensitivity, double pixels_per_degree) {
     constexpr double kPi = std::numbers::pi, kWidest = 0.04;  // the largest b: one radius for all channels
     const int radius =
@@ -152,13 +152,13 @@ Plane filter(const Plane& channel, size_t width, const Sensitivity& sensitivity,
     return out;
 }
 
-/// What is seen of a picture: colours, and how much of an edge and of a point each pixel is.
+/// What the eye sees of a picture: its colours, and how strong an edge and a point each pixel is.
 struct Seen {
     std::vector<vec3> colours;  // L*a*b*, Hunt-adjusted
     std::vector<glm::vec2> features;
 };
 
-/// Magnitude of the responses along x and y.
+/// Returns the magnitude of the responses along x and y.
 Plane feature(const Plane& lightness, size_t width, const Kernel& derivative, const Kernel& smooth) {
     Plane out = convolve(lightness, width, derivative, smooth);
     const Plane down = convolve(lightness, width, smooth, derivative);
@@ -203,7 +203,7 @@ Seen see(std::span<const glm::vec4> picture, size_t width, double pixels_per_deg
     return seen;
 }
 
-/// Large differences are pressed together: `most` is that of green and blue, the largest there is.
+/// Compresses large differences. `most` is the difference of green and blue, the largest there is.
 float redistribute(float difference, float most) {
     constexpr float kPc = 0.4f, kPt = 0.95f;
     const float bend = kPc * most;

@@ -32,7 +32,7 @@ Result<void> check_pair(Pixels picture, Pixels reference, Selection mask) {
     return check_radiance(reference, row, "second picture");
 }
 
-/// use(i) for every pixel of the mask, in order.
+/// Calls use(i) for every pixel of the mask, in order.
 template <class Use>
 void for_each(size_t pixels, Selection mask, const Use& use) {
     for (size_t i = 0; i < pixels; ++i)
@@ -43,7 +43,7 @@ double mean_of_channels(const glm::dvec3& v) {
     return (v.x + v.y + v.z) / 3;
 }
 
-/// Trimmed mean and percentile; reorders the values.
+/// Computes trimmed mean and percentile; reorders the values.
 void rank(std::vector<double>& errors, ImageMetrics& metrics) {
     const size_t count = errors.size();
     metrics.p99 = std::sqrt(nearest_rank(errors, 0.99));
@@ -79,7 +79,7 @@ double relative_epsilon(Pixels reference) {
     double sum = 0;
     for (const glm::vec4& r : reference) sum += mean_of_channels(glm::dvec3(r));
     const double mean = reference.empty() ? 0 : sum / static_cast<double>(reference.size());
-    // Of two black pictures every term is 0 / 0: the least double keeps it 0.
+    // For two black pictures every term would be 0 / 0; the least double makes it 0.
     return 0.01 * mean * mean + std::numeric_limits<double>::min();
 }
 

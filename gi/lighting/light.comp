@@ -1,4 +1,4 @@
-// Adds to the picture what its surfaces reflect of one light, as far as one of its views shows it.
+// Adds the reflected light of one light to the picture, as far as one view of the light shows it.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/lighting/shadow.glsl"
 #include "gi/shared/brdf.h"
@@ -9,7 +9,7 @@ layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
 uniform CameraView camera;
 uniform Light light;
-uniform uint face;  // of the light that light_view shows
+uniform uint face;  // the face of the light that light_view shows
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;

@@ -4,7 +4,7 @@
 
 #include "gi/options.h"
 
-// Options of engines that see the scene from its lights.
+// Options of engines with light views.
 namespace lucarne::gi {
 
 inline constexpr std::array<int64_t, 7> kLightResolutions = {64, 128, 256, 512, 1024, 2048, 4096};
@@ -25,7 +25,7 @@ inline constexpr Option<uint32_t> kLightResolution{{
     .cheaper = -1,
 }};
 
-/// Views a frame of lights that have a size and of the sky (light_samples.h).
+/// Number of views per frame for lights that have a size and for the sky (light_samples.h).
 inline constexpr Option<uint32_t> kLightSamples{{
     .kind = OptionKind::integer,
     .key = "light_samples",

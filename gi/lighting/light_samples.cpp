@@ -19,7 +19,7 @@ glm::vec3 xyz(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Even points of a square, moved by a vector of the seed, others for each frame.
+/// Evenly distributed points of a square, shifted by a vector of the seed; each frame has other points.
 class Strata {
  public:
     Strata(uint32_t count, const Frame& frame, uint64_t light)
@@ -29,13 +29,14 @@ class Strata {
     }
     uint32_t count() const { return count_; }
 
-    /// The R2 sequence (Roberts 2018), multiples of powers of the plastic number on the torus: a frame goes
-    /// on where the last one ended.
+    /// The R2 sequence (Roberts 2018): multiples of powers of the plastic number on the torus. A frame
+    /// continues where the last one ended.
     glm::dvec2 sequence(uint32_t i) const {
         const double at = frame_ * count_ + i;
         return on_torus(at * kPlastic);
     }
-    /// A Fibonacci lattice, which becomes a spiral on a sphere: better for few points; frames move it.
+    /// A Fibonacci lattice, which becomes a spiral on a sphere. It is better for few points; each frame
+    /// shifts it.
     glm::dvec2 lattice(uint32_t i) const {
         return on_torus(frame_ * kPlastic +
                         glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
@@ -60,13 +61,13 @@ bool shines(const Light& light) {
     return light.strength.x > 0 || light.strength.y > 0 || light.strength.z > 0;
 }
 
-/// More samples of the sun than its penumbra has texels, at most, would show nothing.
+/// Returns the largest useful number of samples of a sun: its penumbra has no more texels than this.
 uint32_t most_samples(const Light& sun, uint32_t resolution) {
     const double tangent = std::tan(std::min<double>(sun.direction.w, 1.5));
     return static_cast<uint32_t>(1 + std::min(2 * tangent * resolution, 1e6));
 }
 
-/// Two unit vectors across a unit vector (Duff et al. 2017).
+/// Computes two unit vectors perpendicular to a unit vector and to each other (Duff et al. 2017).
 void across(const glm::vec3& n, glm::vec3& u, glm::vec3& v) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
@@ -74,8 +75,8 @@ void across(const glm::vec3& n, glm::vec3& u, glm::vec3& v) {
     v = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/// Directions of the cap, evenly: each with its share of the irradiance of a surface that faces its middle,
-/// E / (pi sin^2 a) * 2 pi (1 - cos a).
+/// Adds even directions of the cap. Each has its share of the irradiance of a surface that faces the middle
+/// of the cap, E / (pi sin^2 a) * 2 pi (1 - cos a).
 void add_sun(const Light& sun, const Strata& strata, const DeviceCut* cut, std::vector<SharpLight>& target) {
     const double radius = sun.direction.w, half_sine = std::sin(radius / 2);
     const double height = 2 * half_sine * half_sine;  // 1 - cos a, which small angles do not cancel
@@ -97,7 +98,7 @@ void add_sun(const Light& sun, const Strata& strata, const DeviceCut* cut, std::
     }
 }
 
-/// Points of a rectangle or a disc.
+/// Adds points of a rectangle or a disc.
 void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
               std::vector<SharpLight>& target) {
     const glm::vec3 normal = xyz(area.direction);
@@ -163,7 +164,8 @@ std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sk
         else if (shines(light))
             (light.kind == kDirectionalLight ? suns : areas).push_back(i);
     }
-    // An even share each; what narrow suns leave goes to the others.
+    // Every light with a size gets an even share of the views; views that narrow suns do not need go to the
+    // others.
     uint32_t views = frame.settings[kLightSamples];
     auto takers = static_cast<uint32_t>(suns.size() + areas.size() + (sky.dark() ? 0 : 1));
     const auto share = [&](uint32_t most, uint32_t faces) {

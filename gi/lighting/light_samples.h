@@ -7,20 +7,21 @@
 
 namespace lucarne::gi {
 
-/// A light that a shadow map can hold, and the cut that its views are drawn from.
+/// A light without a size, which a shadow map can represent, and the cut from which its views are drawn.
 struct SharpLight {
     Light light;
     const DeviceCut* cut;
 };
 
-/// The frame's lights, those that have a size in the form of sharp ones that stand for them this frame: of
-/// the sun directions within its cap, of rectangles and discs points that shine as the cosine, of the sky
-/// (`sky`, of the frame's environment) directions by its luminance. They are stratified, and others for each
-/// Frame::index: the average over frames goes to the light with its size. kLightSamples views are
-/// shared out among those lights, at least one sample each; black ones have none.
+/// Returns the lights of the frame. Lights with a size are replaced by sharp lights that stand in for them
+/// in this frame: a sun by directions within its cap, rectangles and discs by points that emit with the
+/// cosine, the sky (`sky`, of the frame's environment) by directions in proportion to its luminance. The
+/// samples are stratified and differ for each Frame::index, so the average over frames converges to the
+/// light with its size. kLightSamples views are shared out among those lights, at least one sample each;
+/// black lights get none.
 std::vector<SharpLight> sharp_lights(const Frame& frame, const SkyDirections& sky);
 
-/// Faces, and so views, of a light (light_face() in gi/shared/light.h).
+/// Returns the number of faces of a light, and so of its views (light_face() in gi/shared/light.h).
 uint32_t light_faces(const Light& light);
 
 }  // namespace lucarne::gi

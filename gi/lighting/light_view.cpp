@@ -10,10 +10,11 @@
 namespace lucarne::gi {
 namespace {
 
-// Diameters of the scene from its middle to the pinhole of a directional light. Rays part by 1/500 at most, a
-// texel of 512 over the whole diameter, and a float's step at that distance is a hundredth of such a texel.
+// Distance of the pinhole of a directional light from the middle of the scene, in diameters of the scene.
+// Rays diverge by 1/500 at most, which is a texel of 512 over the whole diameter, and a float's step at that
+// distance is a hundredth of such a texel.
 constexpr float kFarAway = 250.0f;
-// Texels beyond each edge of a cube's face, for look-ups beside it.
+// Texels beyond each edge of a cube's face, for shadow look-ups at the edge.
 constexpr float kBorder = 4.0f;
 
 CameraView square_view(const glm::vec3& origin, const glm::vec3& forward, float tangent, float near,
@@ -30,13 +31,14 @@ CameraView square_view(const glm::vec3& origin, const glm::vec3& forward, float 
             0};
 }
 
-/// A rectangle across a direction that a box stands behind, about the box's middle, m.
+/// A rectangle perpendicular to a direction that covers a box as seen along it, about the middle of the box,
+/// m.
 struct Outline {
     glm::vec3 right, up;  // unit
     glm::vec2 half;
 };
 
-/// The smallest of those turned by some steps about the direction, so that few texels fall beside the scene.
+/// Returns the smallest of some rectangles turned about the direction, so that few texels miss the scene.
 Outline outline(const Bounds& bounds, const glm::vec3& direction) {
     constexpr int kTurns = 16;  // of a right angle
     const glm::vec3 helper = std::abs(direction.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
@@ -57,7 +59,8 @@ Outline outline(const Bounds& bounds, const glm::vec3& direction) {
     return best;
 }
 
-/// As many texels as a square of `resolution` has, nearly square ones, unless the scene is a mere line.
+/// Makes the view of a directional light: as many texels as a square of `resolution` has, nearly square ones
+/// unless the scene is very elongated.
 CameraView directional_view(const Light& light, const Bounds& bounds, uint32_t resolution) {
     const glm::vec3 direction(light.direction.x, light.direction.y, light.direction.z);
     const float radius = std::max(glm::length(bounds.max - bounds.min) / 2, 1e-3f);
@@ -86,8 +89,9 @@ CameraView face_view(const Light& light, uint32_t face, uint32_t resolution) {
                        1e-3f, resolution);
 }
 
-/// A quarter of the half space before a cosine light: between its normal, its side and the third axis. Seen
-/// along the middle, 45 degrees up, it reaches 1 up and down and sqrt 2 to both sides.
+/// Makes the view of a quarter of the half space in front of a cosine light, between its normal, its side
+/// and the third axis. Seen along the middle, 45 degrees up, the quarter extends 1 up and down and sqrt 2 to
+/// both sides.
 CameraView quarter_view(const Light& light, uint32_t face, uint32_t resolution) {
     const glm::vec3 normal(light.direction.x, light.direction.y, light.direction.z);
     const glm::vec3 side(light.extent.x, light.extent.y, light.extent.z);
@@ -126,7 +130,8 @@ std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky)
     std::vector<LightView> views;
     const uint32_t side = frame.settings[kLightResolution];
     for (const auto& [light, cut] : sharp_lights(frame, sky)) {
-        // Many samples make a light with a size, whose shadows are soft: half as fine.
+        // Many such samples make a light with a size, whose shadows are soft, so half the resolution is
+        // enough.
         const uint32_t resolution = light.kind == kCosineLight ? std::max(side / 2, 1u) : side;
         for (uint32_t face = 0; face < light_faces(light); ++face)
             views.push_back({light, cut, face, view_of(light, face, frame, resolution)});

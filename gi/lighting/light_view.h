@@ -7,9 +7,9 @@
 
 namespace lucarne::gi {
 
-/// A view from a light, to be drawn with rasterize() as its G-buffer and shadow map. Spots and directional
-/// lights have one, point lights six: the faces of a cube; samples of areas four: the quarters of the half
-/// space that they shine into (light_face() in gi/shared/light.h).
+/// A view from a light; rasterize() draws its G-buffer, which is also its shadow map. Spots and directional
+/// lights have one view. Point lights have six, the faces of a cube. Samples of areas have four, the
+/// quarters of the half space into which they shine (light_face() in gi/shared/light.h).
 struct LightView {
     Light light;  ///< sharp
     const DeviceCut* cut;
@@ -17,9 +17,10 @@ struct LightView {
     CameraView view;
 };
 
-/// Of all lights of the frame (`sky` of its environment), kLightResolution texels along a side, of
-/// points of areas half as many. That of a directional light takes in the frame's bounds, a rectangle of as
-/// many texels: a pinhole so far away that its rays part by less than a texel over the scene's height.
+/// Returns the views of all lights of the frame (`sky` is that of its environment), with kLightResolution
+/// texels along a side, half as many for points of areas. The view of a directional light covers the bounds
+/// of the frame with a rectangle of as many texels; its pinhole is so far away that its rays diverge by less
+/// than a texel over the height of the scene.
 std::vector<LightView> light_views(const Frame& frame, const SkyDirections& sky);
 
 }  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-// What reaches the eye without being reflected: emission of surfaces, and the background where there is none.
+// Draws the light that reaches the eye without reflection: the emission of surfaces, and the background elsewhere.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/environment.h"
@@ -27,7 +27,7 @@ void main() {
     if (at >= camera.width * camera.height) return;
     GBufferTexel texel = texels[at];
     vec3 light = texel.depth > 0.0 ? materials[texel_material(texel)].emission.xyz : background(at);
-#ifdef LUCARNE_ADD  // to what the picture holds, instead of replacing it
+#ifdef LUCARNE_ADD  // add to the picture instead of replacing its content
     light += radiance[at].rgb;
 #endif
     radiance[at] = vec4(light, 1.0);

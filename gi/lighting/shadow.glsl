@@ -1,10 +1,11 @@
-// Whether a light's view (gi/lighting/light_view.h) sees a point: its G-buffer read as a shadow map.
+// Tests whether a light view (gi/lighting/light_view.h) sees a point. The G-buffer of the view serves as the shadow
+// map.
 #include "gi/shared/gbuffer.glsl"
 
 layout(std430, binding = 4) readonly buffer LightTexels { GBufferTexel light_texels[]; };
 uniform CameraView light_view;
 
-// Where the light's view shows a point, in texels (centres at .5), and how deep.
+// Projects a point into the light view: returns its place in texels (centres at .5) and sets its depth.
 vec2 light_pixel(vec3 position, out float depth) {
     vec3 offset = position - light_view.origin.xyz;
     depth = dot(offset, light_view.forward.xyz);
@@ -18,9 +19,10 @@ GBufferTexel light_texel(inout ivec2 pixel) {
     return light_texels[uint(pixel.y) * light_view.width + uint(pixel.x)];
 }
 
-// How far a point is lifted off its surface before it is looked up, as the reference's rays are
-// (gi/engines/reference/README.md): by a radius, its own or that of a disc beside it in the map, so that neither noise nor the
-// rims of discs that stick out at edges shade or hide it; and by what one look-up blurs together.
+// Returns how far a point is lifted off its surface before the look-up, as the rays of the reference are
+// (gi/engines/reference/README.md): by a radius, its own or that of a disc beside it in the map, so that neither
+// noise nor the rims of discs that stick out at edges shade or hide it; and at least by the area that one look-up
+// blurs together.
 float shadow_lift(vec3 position, float radius) {
     float depth;
     ivec2 pixel = ivec2(light_pixel(position, depth));
@@ -29,25 +31,26 @@ float shadow_lift(vec3 position, float radius) {
     float caster_radius = texel_radius(light_texel(pixel));
     float caster_depth = light_texel(pixel).depth;
     if (caster_depth > 0.0 && abs(caster_depth - depth) < 4.0 * caster_radius) lift = max(lift, caster_radius);
-    return lift * (1.0 + kRimPush);  // texel_blocks takes the margin off again
+    return lift * (1.0 + kRimPush);  // texel_blocks subtracts the margin again
 }
 
-// True where the surface in this texel of the light's view stands between the light and the lifted point. Instead of
-// two depths, which differ over a texel and give acne, the point is compared with the plane of the caster's disc. It
-// has to stand before that plane by as much as the G-buffer lets a disc stick out of the surface that hides it, or the
-// rims of walls would catch light from outside the room.
+// Returns whether the surface in this texel of the light view stands between the light and the lifted point.
+// Comparing two depths, which differ over a texel, would cause acne, so the point is compared with the plane of the
+// caster's disc. It has to stand in front of that plane by as much as the G-buffer lets a disc stick out of the
+// surface that hides it; otherwise the rims of walls would catch light from outside the room.
 bool texel_blocks(ivec2 pixel, vec3 lifted, float depth, float radius) {
     GBufferTexel texel = light_texel(pixel);
     if (texel.depth <= 0.0) return false;
     float caster_radius = texel_radius(texel);
     vec3 caster = texel_position(light_view, uvec2(pixel), texel);
-    // The plane has no end but the disc has: what is nearer to the light than the disc reaches is not behind it.
+    // The plane is infinite but the disc is not: a point nearer to the light than the disc reaches is not behind it.
     float margin = kRimPush * max(radius, caster_radius);
     return depth > texel.depth - 2.0 * caster_radius && dot(texel_normal(texel), lifted - caster) < margin;
 }
 
-// The share of the light that arrives, 0 to 1: the four nearest texels, weighted bilinearly (percentage-closer
-// filtering; Reeves, Salesin & Cook 1987). `normal` faces the light; `radius` is that of the point's surfel.
+// Returns the share of the light that arrives, 0 to 1: the four nearest texels, weighted bilinearly
+// (percentage-closer filtering; Reeves, Salesin & Cook 1987). `normal` faces the light; `radius` is that of the
+// surfel of the point.
 float spot_visibility(vec3 position, vec3 normal, float radius) {
     float depth;
     light_pixel(position, depth);

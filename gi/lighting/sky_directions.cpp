@@ -11,12 +11,12 @@ namespace {
 
 constexpr uint32_t kMostColumns = 512;
 
-/// The first of the running sums that is beyond `at`, a share in [0, 1) of the last one; `at` becomes the
+/// Returns the first running sum that is beyond `at`, a share in [0, 1) of the last sum. Sets `at` to the
 /// share within that step.
 uint32_t take(std::span<const double> running, double& at) {
     const double value = at * running.back();
     size_t found = static_cast<size_t>(std::ranges::upper_bound(running, value) - running.begin());
-    // Rounding may go past the end: then the last step that is not empty.
+    // Rounding may go past the end; then take the last step that is not empty.
     if (found == running.size())
         found = static_cast<size_t>(std::ranges::lower_bound(running, running.back()) - running.begin());
     const double before = found ? running[found - 1] : 0;
@@ -46,7 +46,7 @@ SkyDirections::SkyDirections(std::shared_ptr<const Environment> environment)
     }
 }
 
-/// Luminance times solid angle of a texel.
+/// Returns the luminance times the solid angle of a texel.
 double SkyDirections::weight(uint32_t x, uint32_t y) const {
     const double step = M_PI / environment_->height;
     const double heights = std::cos(y * step) - std::cos((y + 1.0) * step);
@@ -74,7 +74,7 @@ SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
     running.clear();
     for (uint32_t x = first_x; x < end_x; ++x) step(weight(x, y));
     const uint32_t x = first_x + take(running, u);
-    // Evenly over the texel's solid angle; gi/shared/environment.h says where it lies.
+    // Draw evenly over the solid angle of the texel; gi/shared/environment.h defines where it lies.
     const double slice = M_PI / sky.height;
     const double top = std::cos(y * slice), low = std::cos((y + 1.0) * slice);
     const double z = top + (low - top) * v, sine = std::sqrt(std::max(0.0, 1 - z * z));

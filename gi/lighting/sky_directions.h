@@ -11,11 +11,11 @@
 
 namespace lucarne::gi {
 
-/// Draws directions of an environment in proportion to its luminance, so that even points of a square become
-/// an even sample of its light.
+/// Draws directions of an environment in proportion to its luminance: even points of a square become an even
+/// sample of its light.
 class SkyDirections {
  public:
-    /// Of a picture; none, or a black one, is dark.
+    /// Without an environment, or with a black one, it is dark.
     explicit SkyDirections(std::shared_ptr<const Environment> environment = nullptr);
 
     const std::shared_ptr<const Environment>& environment() const { return environment_; }
@@ -25,7 +25,7 @@ class SkyDirections {
         glm::vec3 direction;  ///< unit, toward the light
         glm::vec3 flux;       ///< radiance over density, W/m^2: the mean over all points is the whole sky's
     };
-    /// Of a sky that is not dark. `point` in [0, 1)^2.
+    /// Draws a direction for `point` in [0, 1)^2. The sky must not be dark.
     Drawn draw(const glm::dvec2& point) const;
 
  private:

@@ -9,7 +9,7 @@ layout(std430, binding = 1) buffer Mean {
     vec4 mean[];
 };
 uniform uint pixels;
-uniform uint count;  // with this one
+uniform uint count;  // number of samples, including this one
 
 void main() {
     uint i = thread_number();

@@ -6,8 +6,8 @@
 
 namespace lucarne::gi {
 
-/// Makes `mean` the average of the `count` samples given so far: mean += (sample - mean) / count. Both hold
-/// vec4 a pixel; what `mean` held before the first sample does not matter. Errors: the shader's.
+/// Updates `mean` to the average of the `count` samples given so far: mean += (sample - mean) / count. Both
+/// hold a vec4 a pixel. The content of `mean` before the first sample does not matter. Errors: the shader's.
 Result<void> accumulate(Device& device, const Buffer& sample, uint32_t pixels, uint32_t count, Buffer& mean);
 
 }  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-// What is seen where no point is, from one colour on top to another at the bottom.
+// Fills the pixels that show no point with a gradient from the top colour to the bottom colour.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 

@@ -6,8 +6,8 @@
 
 namespace lucarne::gi {
 
-/// Gives the pixels of a tone-mapped picture that show no point the backdrop's colour; one of kind `scene`
-/// leaves them as they are. Errors: the shader's.
+/// Fills the pixels of a tone-mapped picture that show no point with the backdrop. A backdrop of kind
+/// `scene` changes nothing. Errors: the shader's.
 Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Backdrop& backdrop, Buffer& picture);
 
 }  // namespace lucarne::gi

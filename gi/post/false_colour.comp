@@ -1,4 +1,4 @@
-// Luminances, or how two pictures' luminances differ, as places along a ramp of colours.
+// Maps luminances, or the differences of two pictures' luminances, to a ramp of colours.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/luminance.h"
@@ -20,7 +20,7 @@ void main() {
     if (mode != 0u) value = own - luminance(other[at].rgb);
     if (mode == 2u) value = abs(value);
     float place = value * gain + offset;
-    place = place > 0.0 ? min(place, 1.0) * float(RAMP - 1) : 0.0;  // no number: the lower end
+    place = place > 0.0 ? min(place, 1.0) * float(RAMP - 1) : 0.0;  // NaN: the lower end
     uint below = min(uint(place), uint(RAMP - 2));
     picture[at] = packUnorm4x8(vec4(mix(ramp[below].rgb, ramp[below + 1u].rgb, place - float(below)), 1.0));
 }

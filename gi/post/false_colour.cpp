@@ -11,7 +11,7 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kRamp = 64;
-constexpr double kStops = 5;  // of automatic false colours, to each side
+constexpr double kStops = 5;  // on each side of mid-grey, for automatic false colours
 
 struct Scale {
     uint32_t mode;

@@ -8,24 +8,25 @@
 
 namespace lucarne::gi {
 
-// The colour maps of what is no picture but a figure.
+// The colour maps of pictures that show figures.
 inline constexpr ColourMap kLuminanceMap = ColourMap::turbo, kDifferenceMap = ColourMap::magma,
                            kSignedMap = ColourMap::cool_warm;
 
-/// cd/m^2 that the ends of false colours stand for: the scene's, or five stops below and above what the
-/// exposure makes mid-grey. Photometry is photometry.h's.
+/// Returns the luminances, cd/m^2, of the ends of the false colours: `wanted` if given, else five stops
+/// below and above the luminance that the exposure makes mid-grey. Photometry is that of photometry.h.
 ValueRange luminance_range(const std::optional<ValueRange>& wanted, double ev);
 
-/// Luminance on a logarithmic scale. Buffers as tone_map() has them; errors likewise.
+/// Draws luminance on a logarithmic scale. Buffers and errors as for tone_map().
 Result<void> false_colour(Device& device, const Buffer& radiance, uint32_t pixels, const ValueRange& range,
                           Buffer& picture);
 
-/// `radiance` less `other`, of luminances times 2^ev, or the absolute value of that; `range` has the last
-/// colour, and nought the map's middle or its first.
+/// Draws the difference `radiance` - `other` of luminances times 2^ev, or its absolute value. `range` is the
+/// difference that gets the last colour; 0 gets the middle of the map, or its first colour for absolute
+/// values.
 Result<void> difference(Device& device, const Buffer& radiance, const Buffer& other, uint32_t pixels,
                         bool absolute, double ev, double range, Buffer& picture);
 
-/// Puts `other` into the picture right of `border`, a share of the width.
+/// Copies `other` into the picture right of `border`, a share of the width.
 Result<void> split(Device& device, const Buffer& other, uint32_t width, uint32_t height, double border,
                    Buffer& picture);
 

@@ -1,4 +1,4 @@
-// Sums over one run of pixels an invocation, in order, so that the result is the same every time.
+// Sums luminances over one run of pixels per invocation, in order, so that the result is the same every time.
 layout(local_size_x = 64) in;
 #include "gi/shared/luminance.h"
 
@@ -10,7 +10,7 @@ uniform float floor_luminance;  // 0: sum luminances; else logarithms of luminan
 
 void main() {
     uint part = gl_GlobalInvocationID.x;
-    vec2 sum = vec2(0.0);  // and how many
+    vec2 sum = vec2(0.0);  // sum and number of pixels
     if (part * run >= pixels) return;
     uint last = min((part + 1u) * run, pixels);
     for (uint at = part * run; at < last; ++at) {

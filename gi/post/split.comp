@@ -1,4 +1,4 @@
-// One picture left of a border, another right of it.
+// Shows one picture left of a border and another right of it.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 
@@ -6,7 +6,7 @@ layout(std430, binding = 0) readonly buffer Other { uint other[]; };
 layout(std430, binding = 1) buffer Picture { uint picture[]; };
 uniform uint pixels;
 uniform uint width;
-uniform uint border;  // the first column of the other
+uniform uint border;  // first column of the other picture
 
 void main() {
     uint at = thread_number();

@@ -1,4 +1,4 @@
-// Radiance to sRGB for the screen.
+// Maps radiance to sRGB for the screen.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/surfel_code.h"

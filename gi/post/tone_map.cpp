@@ -14,10 +14,10 @@ namespace lucarne::gi {
 namespace {
 
 constexpr double kKey = 0.18;
-// What is darker than this share of the mean is black to the eye and says nothing about the exposure.
+// Pixels darker than this share of the mean look black and say nothing about the exposure.
 constexpr double kDarkest = 1.0 / 1024;
 
-/// Mean over the pixels that are lit, of what luminance.comp sums; 0 where none is.
+/// Returns the mean over the lit pixels of what luminance.comp sums; 0 if none is lit.
 Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, float floor) {
     constexpr uint32_t kRun = 256;
     const uint32_t parts = (pixels + kRun - 1) / kRun;
@@ -34,7 +34,7 @@ Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, 
     return total.y > 0 ? total.x / total.y : 0.0;
 }
 
-/// What luminance.comp computes, with its `floor`.
+/// The same on the host, as luminance.comp computes it with this `floor`.
 double mean_of(std::span<const glm::vec4> radiance, double floor) {
     double sum = 0, count = 0;
     for (const glm::vec4& pixel : radiance) {

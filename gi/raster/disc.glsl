@@ -1,24 +1,24 @@
-// Surfels as discs in a view: projection, and where a pixel's ray meets them. View space: x right, y down, z along
-// the view's forward axis (the depth), metres. The ray through a pixel is (x, y, 1), from the eye; orthographic it is
-// (0, 0, 1), from (x, y, 0).
+// Surfels as discs in a view: their projection, and where the ray of a pixel meets them. View space: x right, y down,
+// z along the forward axis of the view (the depth), metres. In perspective the ray through a pixel starts at the eye
+// and has the direction (x, y, 1); in an orthographic view it starts at (x, y, 0) and has the direction (0, 0, 1).
 #include "gi/shared/cut.glsl"
 #include "gi/shared/gbuffer.h"
 
 uniform vec4 view_right;    // unit; w: tangent of half the field, or half the width (m)
-uniform vec4 view_down;     // likewise
+uniform vec4 view_down;     // unit; w: as view_right, along the height
 uniform vec4 view_forward;  // unit; w: near plane, m
-uniform vec4 view_origin;  // w: 1 orthographic, 0 not
+uniform vec4 view_origin;  // w: 1 if orthographic, else 0
 uniform uint view_width;
 uniform uint view_height;
-uniform float point_scale;   // of the radii
-uniform float point_pixels;  // over 0: the diameter of all points
+uniform float point_scale;   // scale of the radii
+uniform float point_pixels;  // if over 0: the diameter of all points
 
 struct Disc {
     vec3 centre;
     vec3 normal;
     float radius;
-    float extent;  // half the depth it spans, m
-    float push;    // of its rim, m of depth
+    float extent;  // half the range of depths that it spans, m
+    float push;    // by which its rim is pushed back, m of depth
 };
 
 const uint kNoKey = 0xffffffffu;
@@ -27,13 +27,14 @@ vec2 pixels_per_tangent() { return vec2(view_width, view_height) / (2.0 * vec2(v
 vec2 pixel_tangent(vec2 pixel) {
     return (2.0 * (pixel + 0.5) / vec2(view_width, view_height) - 1.0) * vec2(view_right.w, view_down.w);
 }
-// What widths and heights in the picture grow with.
+// Returns the factor by which widths and heights in the view grow with depth.
 float view_scale(float depth) { return view_origin.w > 0.0 ? 1.0 : depth; }
 vec2 ray_slope(vec2 tangent) { return tangent * (1.0 - view_origin.w); }
 vec2 ray_start(vec2 tangent) { return tangent * view_origin.w; }
 vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz), dot(v, view_forward.xyz)); }
 
-// False where no part of the disc is before the near plane, and for stray points.
+// Transforms a surfel to the view. Returns false if no part of its disc is in front of the near plane, and for
+// outliers.
 bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
     disc.radius = point_scale * cut_surfel_radius(item, surfel);
@@ -43,22 +44,22 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
         disc.radius = 0.5 * point_pixels * max(view_scale(disc.centre.z), 0.0) / min(pixels.x, pixels.y);
     }
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
-    // Outside a side plane of the view: without this a disc that stands beside the eye would ask every pixel.
+    // Outside a side plane of the view. Without this test a disc beside the eye would cover every pixel.
     vec2 side = vec2(view_right.w, view_down.w);
     vec2 outside = abs(disc.centre.xy) - view_scale(disc.centre.z) * side;
     if (!(view_origin.w > 0.0)) outside *= inversesqrt(1.0 + side * side);
     if (max(outside.x, outside.y) > disc.radius) return false;
     float distance2 = view_origin.w > 0.0 ? 0.0 : dot(disc.centre, disc.centre);
     vec3 toward = distance2 > 0.0 ? disc.centre * inversesqrt(distance2) : vec3(0.0, 0.0, 1.0);
-    disc.push = kRimPush * disc.radius * toward.z;  // so far along the ray
+    disc.push = kRimPush * disc.radius * toward.z;  // along the ray
     bool lies = surfel_has_normal(surfel) && !(point_pixels > 0.0);
     disc.normal = lies ? to_view(surfel_normal(surfel)) : toward;
     disc.extent = disc.radius * sqrt(max(1.0 - disc.normal.z * disc.normal.z, 0.0));
     return disc.centre.z + disc.extent > view_forward.w;
 }
 
-// The range of tangents x/z (axis 0) or y/z (axis 1) that a disc before the eye spans: the two planes through the
-// eye that touch it. With a = (1, 0, -u): (a.c)^2 = r^2 (|a|^2 - (a.n)^2), a quadratic in u.
+// Returns the range of tangents x/z (axis 0) or y/z (axis 1) of a disc in front of the eye: those of the two planes
+// through the eye that touch it. With a = (1, 0, -u): (a.c)^2 = r^2 (|a|^2 - (a.n)^2), a quadratic in u.
 vec2 tangent_range(float centre, float normal, Disc disc) {
     float r2 = disc.radius * disc.radius;
     if (view_origin.w > 0.0) return centre + disc.radius * sqrt(max(1.0 - normal * normal, 0.0)) * vec2(-1.0, 1.0);
@@ -69,8 +70,8 @@ vec2 tangent_range(float centre, float normal, Disc disc) {
     return vec2(b - root, b + root) / a;
 }
 
-// The pixels [box.xy, box.zw] whose centres the disc may cover, clipped to the picture; `home` is the pixel of its
-// centre, which it always takes. False where there are none.
+// Computes the pixels [box.xy, box.zw] whose centres the disc may cover, clipped to the picture. `home` is the pixel
+// of the centre of the disc, for which it always competes. Returns false if there are no such pixels.
 bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
     vec2 scale = pixels_per_tangent();
     vec2 middle = 0.5 * vec2(view_width, view_height);
@@ -79,7 +80,7 @@ bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
     if (disc.centre.z > view_forward.w)
         home = ivec2(floor(clamp(disc.centre.xy / view_scale(disc.centre.z) * scale + middle, vec2(-1.0), vec2(last + 1))));
     box = ivec4(ivec2(0), last);
-    if (view_origin.w > 0.0 || disc.centre.z > 1.001 * disc.extent) {  // else it reaches behind the eye
+    if (view_origin.w > 0.0 || disc.centre.z > 1.001 * disc.extent) {  // else the disc reaches behind the eye
         vec2 x = tangent_range(disc.centre.x, disc.normal.x, disc);
         vec2 y = tangent_range(disc.centre.y, disc.normal.y, disc);
         vec2 low = vec2(x.x, y.x) * scale + middle, high = vec2(x.y, y.y) * scale + middle;
@@ -89,8 +90,8 @@ bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
     return box.x <= box.z && box.y <= box.w;
 }
 
-// Depth along the forward axis where the ray meets the disc's plane, kept within the depths that the disc spans (a
-// plane seen edge-on would put its pixel anywhere).
+// Returns the depth along the forward axis where the ray meets the plane of the disc, clamped to the depths that the
+// disc spans (a plane seen edge-on would put its pixel anywhere).
 float disc_depth(Disc disc, vec2 ray) {
     float slope = dot(disc.normal, vec3(ray_slope(ray), 1.0));
     if (abs(slope) < 1e-12) return disc.centre.z;
@@ -98,8 +99,8 @@ float disc_depth(Disc disc, vec2 ray) {
     return clamp(z, disc.centre.z - disc.extent, disc.centre.z + disc.extent);
 }
 
-// The order of the disc along the ray, or kNoKey where it is missed; bits of a positive float, so that integers
-// compare like depths. Every pass must find the same bits: precise.
+// Returns the order of the disc along the ray, or kNoKey if the ray misses it. The order is the bits of a positive
+// float, so that integers compare like depths. Every pass must compute the same bits: precise.
 uint disc_key(Disc disc, vec2 ray, bool at_home) {
     precise float slope = dot(disc.normal, vec3(ray_slope(ray), 1.0));
     precise vec3 centre = disc.centre - vec3(ray_start(ray), 0.0);

@@ -31,7 +31,7 @@ void set_view(const Program& program, const CameraView& view, const PointSize& s
 
 const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
 
-/// `places`: ids that the cut may have.
+/// `places` is the number of ids of the cut, gaps included.
 Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& target) {
     const auto hold = [&](Buffer& buffer, size_t bytes) { return device.reserve(buffer, bytes, "G-buffer"); };
     LUCARNE_TRY(hold(target.texels, pixels * sizeof(GBufferTexel)));
@@ -87,11 +87,11 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
 
 CameraView spot_view(const Light& spot, uint32_t resolution) {
     const glm::vec3 forward(spot.direction.x, spot.direction.y, spot.direction.z);
-    // Any frame about the axis will do; the helper axis is the one least along it.
+    // Any frame about the axis will do; the helper is an axis far from it.
     const glm::vec3 helper = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
     const glm::vec3 right = glm::normalize(glm::cross(forward, helper));
     const glm::vec3 up = glm::cross(right, forward);
-    // A pinhole cannot see a half space: fields beyond 170 degrees are cut.
+    // A pinhole view cannot show a half space: fields of view beyond 170 degrees are limited to that.
     const float cosine = std::max(spot.position.w, std::cos(1.4835f));
     const float tangent = std::sqrt(std::max(1 - cosine * cosine, 1e-6f)) / cosine;
     CameraView view{};

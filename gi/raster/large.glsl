@@ -1,4 +1,4 @@
-// A disc drawn by a whole workgroup: eight columns by four rows of pixels at a time.
+// Draws a disc by a whole workgroup: eight columns by four rows of pixels at a time.
 layout(local_size_x = 8, local_size_y = 4) in;
 #include "gi/raster/splat.glsl"
 
@@ -10,7 +10,8 @@ void draw_large(uint id) {
     ivec2 home;
     if (!cut_surfel(id, item, surfel) || !view_disc(item, surfel, disc) || is_small(disc)) return;
     if (!disc_box(disc, box, home)) return;
-    // As in splat.comp: each invocation tests up to 32 pixels of its column, then writes those that the disc takes.
+    // As in splat.comp: each invocation tests up to 32 pixels of its column, then writes those that the disc may
+    // take.
     ivec2 pixel = box.xy + ivec2(gl_LocalInvocationID.xy);
     if (pixel.x > box.z || pixel.y > box.w) return;
     do {

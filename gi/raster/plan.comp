@@ -1,5 +1,5 @@
-// After the order pass over all surfels: how many workgroups the queues take. The large discs' kernel needs a place
-// for each of them, or the one that needs no queue draws them.
+// Runs after the order pass over all surfels and computes how many workgroups the queues need. The kernel of large
+// discs needs all of them in the queue; otherwise the overflow kernel, which reads no queue, draws them.
 layout(local_size_x = 1) in;
 #include "gi/raster/queues.h"
 

@@ -1,4 +1,4 @@
-// The queues that the order pass leaves to the kernels after it, shared by C++ and GLSL (std430).
+// The queues that the order pass fills for the kernels after it, shared by C++ and GLSL (std430).
 #ifndef LUCARNE_GI_GBUFFER_QUEUES_H
 #define LUCARNE_GI_GBUFFER_QUEUES_H
 
@@ -8,18 +8,18 @@
 namespace lucarne::gi {
 #endif
 
-const uint kLargeQueue = 65535u;    // discs: the least that OpenGL promises of workgroups in x
-const uint kCandidateGroup = 256u;  // candidates drawn by a workgroup
+const uint kLargeQueue = 65535u;    // discs: the number of workgroups in x that OpenGL guarantees
+const uint kCandidateGroup = 256u;  // candidates that a workgroup draws
 
-// Ahead of the ids of the large discs. The numbers of workgroups: large_groups draws their queue,
-// overflow_groups looks through the whole cut for what did not find a place in it, candidate_groups draws the
-// candidates' ids.
+// Header before the ids of the large discs. It holds numbers of workgroups: large_groups draws the queue of
+// large discs, overflow_groups searches the whole cut for large discs if the queue was too short,
+// candidate_groups draws the ids of the candidates.
 struct QueueHeader {
     uint large_groups[3];
     uint overflow_groups[3];
     uint candidate_groups[3];
-    uint large_count;      // of discs that asked for a place
-    uint candidate_count;  // of small discs that were nearest in a pixel when they were drawn
+    uint large_count;      // large discs found, also beyond the end of the queue
+    uint candidate_count;  // small discs that were nearest in a pixel when they were drawn
     uint pad;
 };
 

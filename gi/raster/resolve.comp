@@ -1,4 +1,4 @@
-// One invocation a pixel: the texel of the surfel that took it.
+// Writes the texel of the surfel that took each pixel; one invocation a pixel.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 #include "gi/raster/disc.glsl"
@@ -17,7 +17,7 @@ void main() {
     if (id != kNoSurfel && cut_surfel(id, item, surfel) && view_disc(item, surfel, disc)) {
         vec2 tangent = pixel_tangent(vec2(at % view_width, at / view_width));
         vec3 ray = vec3(ray_slope(tangent), 1.0);
-        // Points of a fixed size are drawn facing the eye, but are lit as they lie.
+        // Points of a fixed size are drawn facing the eye, but are lit by their own normal.
         vec3 normal = surfel_has_normal(surfel) ? to_view(surfel_normal(surfel)) : disc.normal;
         if (dot(normal, ray) > 0.0) normal = -normal;
         vec3 world = normal.x * view_right.xyz + normal.y * view_down.xyz + normal.z * view_forward.xyz;

@@ -1,14 +1,14 @@
-// Draws small discs pixel by pixel, one invocation each. The first pass goes through the cut, queues the large discs for
-// splat_large.comp and lists those that were the nearest in some pixel when they were drawn; the second pass
+// Draws small discs pixel by pixel, one invocation each. The first pass goes through the cut, queues large discs for
+// splat_large.comp and lists the small discs that were nearest in some pixel when they were drawn. The second pass
 // (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
 layout(local_size_x = 256) in;
 #include "gi/raster/splat.glsl"
 
 layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
 
-// A small disc in the picture, to first order about its centre (what is left out is a share radius/depth of the
-// disc): over pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth
-// has the gradient `slope`.
+// A small disc in the picture, to first order about its centre (the error is a share radius/depth of the disc). For
+// pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth has the
+// gradient `slope`.
 struct Ellipse {
     vec2 centre;  // in pixels, their centres at whole numbers
     float xx, xy, yy;
@@ -35,8 +35,8 @@ Ellipse project(Disc disc) {
 
 float ellipse_distance2(Ellipse e, vec2 d) { return d.x * (e.xx * d.x + e.xy * d.y) + e.yy * d.y * d.y; }
 
-// The order of the disc at an offset, see disc_key; at a pixel of its centre that it does not cover (seen edge-on, or
-// smaller than a pixel) that of its centre's depth.
+// Returns the order of the disc at an offset, see disc_key. In the pixel of its centre, if the disc does not cover it
+// (seen edge-on, or smaller than a pixel), the order is that of the depth of its centre, pushed back like a rim.
 uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
     precise float distance2 = ellipse_distance2(e, d);
     precise float slope = e.slope.x * d.x + e.slope.y * d.y;
@@ -44,7 +44,7 @@ uint ellipse_key(Disc disc, Ellipse e, vec2 d) {
     return floatBitsToUint(key);
 }
 
-// True where the disc took a pixel.
+// Returns whether the disc took a pixel.
 bool draw_small(Disc disc, uint id) {
     Ellipse e = project(disc);
     vec2 home = floor(e.centre + 0.5);
@@ -54,9 +54,9 @@ bool draw_small(Disc disc, uint id) {
     vec2 high = min(max(floor(e.centre + reach), home), vec2(view_width, view_height) - 1.0);
     if (low.x > high.x || low.y > high.y) return false;
     float columns = high.x - low.x + 1.0;
-    // Up to 32 pixels are tested, then those that it takes are written: llvmpipe writes one lane after the other, and
-    // few lanes take the same place in the loop. Loops test at their end, since llvmpipe runs a body that no lane
-    // enters.
+    // First up to 32 pixels are tested, then those that the disc may take are written: llvmpipe writes one lane after
+    // the other, and few lanes take a pixel in the same step of the loop. Loops test at their end, because llvmpipe
+    // runs a loop body even if no lane enters it.
     vec2 pixel = low;
     bool took = false;
     do {

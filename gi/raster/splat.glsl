@@ -1,6 +1,6 @@
-// What the splatting kernels share: the targets, and how a disc takes a pixel. Two passes of 32 bits each, for want of
-// 64-bit atomics: the first leaves the nearest key in each pixel, the second (LUCARNE_ID_PASS) the smallest id of those
-// that have it.
+// Shared by the splatting kernels: the targets, and how a disc takes a pixel. Without 64-bit atomics this takes two
+// passes of 32 bits each. The first leaves the nearest key in each pixel, the second (LUCARNE_ID_PASS) the smallest
+// id of the discs with that key.
 #include "gi/raster/disc.glsl"
 #include "gi/raster/queues.h"
 
@@ -10,7 +10,7 @@ layout(std430, binding = 5) buffer Queues {
     QueueHeader queues;
     uint large_ids[];
 };
-// The keys again, four a texel; perhaps not the latest in the first pass.
+// The keys again, four a texel; in the first pass perhaps not the latest ones.
 layout(binding = 3) uniform usamplerBuffer key_texels;
 
 // Discs of a larger radius, in pixels, are drawn by a workgroup each.
@@ -22,9 +22,9 @@ bool is_small(Disc disc) {
 
 uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
 
-// Whether it is worth asking for the pixel.
+// Returns whether the disc may take the pixel; saves the atomic operation if it cannot.
 bool may_take_pixel(vec2 pixel, uint key) {
-    // Four words and a choice take less time on llvmpipe than one: x86 gathers single words slowly.
+    // Fetching four words and choosing one is faster on llvmpipe than fetching one: x86 gathers single words slowly.
     int index = int(pixel_index(pixel));
     uvec4 four = texelFetch(key_texels, index >> 2);
     uvec2 two = (index & 2) == 0 ? four.xy : four.zw;
@@ -36,7 +36,8 @@ bool may_take_pixel(vec2 pixel, uint key) {
 #endif
 }
 
-// True where the disc was the nearest yet, or one of them: no other's id can end up in the pixel.
+// Takes the pixel if the disc is nearest. Returns whether it is the nearest so far, or one of the nearest: only ids
+// of such discs can end up in the pixel.
 bool take_pixel(vec2 pixel, uint key, uint id) {
 #ifdef LUCARNE_ID_PASS
     atomicMin(ids[pixel_index(pixel)], id);

@@ -1,4 +1,4 @@
-// A workgroup for each disc of the queue.
+// Draws the queued large discs, a workgroup each.
 #include "gi/raster/large.glsl"
 
 void main() { draw_large(large_ids[gl_WorkGroupID.x]); }

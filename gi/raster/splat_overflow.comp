@@ -1,5 +1,5 @@
-// Where more discs are large than the queue holds: a workgroup a block of the cut draws all of the block's, one after
-// the other.
+// Draws the large discs if there are more than the queue holds: a workgroup draws all of those in a block of the cut,
+// one after the other.
 #include "gi/raster/large.glsl"
 
 void main() {

@@ -9,7 +9,7 @@
 
 namespace lucarne::gi {
 
-/// Sets a uniform of the struct's own name in GLSL: `uniform CameraView camera;`, `uniform Light light;`.
+/// Set a uniform struct of the same type in GLSL: `uniform CameraView camera;`, `uniform Light light;`.
 void set(const Program& program, std::string_view uniform, const CameraView& view);
 void set(const Program& program, std::string_view uniform, const Light& light);
 

@@ -14,11 +14,11 @@ using glm::dvec3;
 
 struct BoxFrame {
     dvec3 centre;
-    std::array<dvec3, 3> axes;  ///< one over half the box's length, along it
+    std::array<dvec3, 3> axes;  ///< along the box's axes, of length 1 / half the box's side
 };
 
 BoxFrame frame_of(const ClipBox& box) {
-    constexpr double kThinnest = 1e-12;  // world units: a box of no thickness keeps what lies on it
+    constexpr double kThinnest = 1e-12;  // world units: a flat box keeps the points that lie on it
     const dvec3 half = glm::max((box.max - box.min) / 2.0, dvec3(kThinnest));
     const double c = std::cos(box.rotation), s = std::sin(box.rotation);
     return {(box.min + box.max) / 2.0,
@@ -29,7 +29,7 @@ dvec3 kept_side(const ClipPlane& plane) {
     return glm::normalize(plane.inverted ? -plane.normal : plane.normal);
 }
 
-/// What of a cube lies in a box; `some` may be said of cubes that only come close.
+/// Returns how much of a cube lies in a box. May return `some` for cubes that only come close to the box.
 Kept inside(const ClipBox& box, const octree::Cube& cube) {
     const BoxFrame frame = frame_of(box);
     const double half = cube.size / 2;
@@ -87,7 +87,7 @@ bool DeviceClip::keeps(const glm::vec3& p) const {
 Kept kept(const Clip& clip, const octree::Cube& cube) {
     Kept whole = Kept::all;
     bool any_inside = false;
-    Kept best = Kept::none;  // by the boxes that keep what is inside
+    Kept best = Kept::none;  // over the boxes that keep what is inside
     for (const ClipBox& box : clip.boxes) {
         const Kept in = inside(box, cube);
         if (box.inverted) {

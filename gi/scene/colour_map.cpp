@@ -17,9 +17,10 @@ constexpr glm::vec3 colour_of(uint32_t code) {
            255.0f;
 }
 
-// Every 8th of the 256 colours as Matplotlib 3.10 gives them, between which mapped_colour() goes straight;
-// that is off by at most .024. viridis, magma: van der Walt & Smith 2015. cividis: Nunez, Anderton & Renslow
-// 2018. turbo: Mikhailov 2019. cool_warm: Moreland 2009, "Diverging color maps for scientific visualization".
+// Every 8th of the 256 colours of Matplotlib 3.10. mapped_colour() interpolates between them linearly, with
+// an error of at most .024. viridis, magma: van der Walt & Smith 2015. cividis: Nunez, Anderton & Renslow
+// 2018. turbo: Mikhailov 2019. cool_warm: Moreland 2009, "Diverging color maps for scientific
+// visualization".
 constexpr uint32_t kTables[][kSteps] = {
     // viridis
     {
@@ -58,8 +59,8 @@ constexpr uint32_t kTables[][kSteps] = {
     },
 };
 
-// The specification names classes and leaves their colours to programs; these are what most of those use:
-// ground brown, vegetation green, buildings red, water blue, noise magenta.
+// The specification names classes and leaves their colours to programs. These are the colours that most
+// programs use: ground brown, vegetation green, buildings red, water blue, noise magenta.
 constexpr ClassLook kClasses[] = {
     {0, "Never classified", colour_of(0x9a9a9a)},
     {1, "Unclassified", colour_of(0xbababa)},
@@ -86,7 +87,7 @@ constexpr ClassLook kClasses[] = {
     {22, "Temporal exclusion", colour_of(0x4a4a4a)},
 };
 
-// Okabe & Ito 2008, "Color universal design", without black; then lighter and darker ones.
+// Okabe & Ito 2008, "Color universal design", without black, followed by lighter and darker colours.
 constexpr uint32_t kOrdinals[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442, 0x0072b2, 0xd55e00,
                                   0xcc79a7, 0xb3b3b3, 0xf5cf7f, 0x004d38, 0xa8d8f4, 0x6b2f00};
 

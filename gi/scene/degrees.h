@@ -6,7 +6,8 @@
 
 namespace lucarne::gi {
 
-/// The degrees that glm::radians() turns into these radians again, short ones before others.
+/// Returns degrees that glm::radians() converts back to exactly these radians, preferring numbers with few
+/// decimals.
 inline double degrees_of(double radians) {
     const double degrees = glm::degrees(radians);
     for (const double steps : {1e2, 1e4, 1e6, 1e9}) {

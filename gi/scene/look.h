@@ -15,7 +15,7 @@
 
 namespace lucarne::gi {
 
-/// What a point's colour says. Engines take it for the albedo, so that every engine lights it.
+/// What a point's colour shows. Engines use this colour as the albedo, so every engine lights it.
 enum class ColourBy : uint8_t {
     colour,
     intensity,
@@ -26,9 +26,9 @@ enum class ColourBy : uint8_t {
     normal,
     attribute
 };
-/// As files and options call them, in the order of the enumerators.
+/// Their names in files and options, in the order of the enumerators.
 std::span<const std::string_view> colour_names();
-/// Whether a range of values is mapped to a colour map; the others have colours of their own.
+/// Returns whether a range of values is mapped to a colour map. The other kinds have colours of their own.
 bool has_range(ColourBy by);
 
 /// How the engine `unlit` shades.
@@ -38,8 +38,8 @@ std::span<const std::string_view> shading_names();
 struct Unlit {
     Shading shading = Shading::eye_dome;
     double strength = 1;           ///< of the shading, 0 to 10
-    double eye_dome_pixels = 1.5;  ///< to the neighbours, of a picture 1080 high
-    double occlusion_reach = 4;    ///< how far others darken, in percent of the distance to the eye
+    double eye_dome_pixels = 1.5;  ///< distance to the neighbours, in a picture 1080 pixels high
+    double occlusion_reach = 4;    ///< how far points darken others, in percent of the distance to the eye
     bool operator==(const Unlit&) const = default;
 };
 
@@ -48,33 +48,34 @@ struct ValueRange {
     bool operator==(const ValueRange&) const = default;
 };
 
-/// Behind the points. sRGB, 0 to 1: what the screen shows, whatever engine, exposure or tone curve.
+/// What is drawn behind the points. sRGB, 0 to 1: exactly what the screen shows, whatever the engine,
+/// exposure or tone curve.
 struct Backdrop {
     enum class Kind : uint8_t { scene, colour, gradient } kind = Kind::scene;
-    glm::dvec3 top{0.2, 0.24, 0.3};  ///< or all of it
+    glm::dvec3 top{0.2, 0.24, 0.3};  ///< upper colour of a gradient, or the single colour
     glm::dvec3 bottom{0.03, 0.035, 0.045};
     bool operator==(const Backdrop&) const = default;
 };
 
-/// How points are shown, whatever lights them.
+/// How points are shown, whichever engine lights them.
 struct Look {
     ColourBy colour = ColourBy::colour;
-    std::string attribute;  ///< by ColourBy::attribute: its name, with ".1" and so on for further components
+    std::string attribute;  ///< for ColourBy::attribute: its name, with ".1" and so on for further components
     ColourMap map = ColourMap::viridis;
-    bool reversed = false;            ///< the colour map
-    std::optional<ValueRange> range;  ///< of the values; elevations in world units. Empty: measured
-    std::bitset<256> hidden_classes;  ///< neither seen nor in the light's way
-    double point_size = 1;            ///< of the surfels' radii as the eye sees them, .05 to 20
-    double point_pixels = 0;          ///< over 0: the diameter of every point, pixels
+    bool reversed = false;            ///< reverses the colour map
+    std::optional<ValueRange> range;  ///< of the values, elevations in world units; empty: measured
+    std::bitset<256> hidden_classes;  ///< neither drawn nor blocking light
+    double point_size = 1;            ///< scales the surfels' radii for the camera only, .05 to 20
+    double point_pixels = 0;          ///< if over 0: the diameter of every point, pixels
     Unlit unlit;
     Backdrop backdrop;
     Clip clip;
-    bool legend = false, axes = false, scale_bar = false;  ///< over the picture
+    bool legend = false, axes = false, scale_bar = false;  ///< drawn over the picture
 
     bool operator==(const Look&) const = default;
 };
 
-/// Whether points must be coloured anew.
+/// Returns whether both looks give every point the same colour; otherwise points have to be coloured again.
 bool same_colours(const Look& a, const Look& b);
 
 }  // namespace lucarne::gi

@@ -7,9 +7,9 @@
 
 namespace lucarne::gi {
 
-/// The object `look` of a scene file, as data/README.md documents it. Errors name the place.
+/// Reads the object `look` of a scene file (data/README.md). Errors name the place.
 Result<Look> read_look(JsonObject object);
-/// What read_look reads back to the same; what has its default value is left out.
+/// Writes JSON that read_look() reads back to an equal look. Default values are left out.
 nlohmann::json write_look(const Look& look);
 
 }  // namespace lucarne::gi

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// What the strength of [1, 1, 1] amounts to, W; of directional lights W/m^2.
+/// Returns the power of a light of strength [1, 1, 1], W; for directional lights W/m^2.
 double watts(const SceneLight& light, double metres_per_unit) {
     const double area = metres_per_unit * metres_per_unit;
     switch (light.kind) {
         case LightKind::spot: {
-            // The edge fades as smoothstep of the cosine, whose mean is a half.
+            // The edge fades as the smoothstep of the cosine, whose mean is a half.
             const double half = light.angle / 2, inner = half * (1 - light.softness);
             return 2 * kPi * (1 - (std::cos(inner) + std::cos(half)) / 2);
         }

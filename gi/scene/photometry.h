@@ -7,21 +7,21 @@
 
 namespace lucarne::gi {
 
-/// Lumens that a watt of white light makes, of what lies in the visible band: what Radiance counts with (Ward
-/// & Shakespeare 1998, "Rendering with Radiance", WHTEFFICACY). A colour in watts is weighted by Rec. 709's
+/// Lumens of a watt of white light, counting only the visible band: the value that Radiance uses (Ward &
+/// Shakespeare 1998, "Rendering with Radiance", WHTEFFICACY). A colour in watts is weighted by Rec. 709's
 /// luminance, so that [1, 1, 1] W are 179 lm.
 inline constexpr double kLumensPerWatt = 179;
 
-/// What a spot, point, rectangle or disc sends out, lm; of a directional light the illuminance of a surface
-/// that faces it, lx. `metres_per_unit` is the scan's.
+/// Returns the luminous flux of a spot, point, rectangle or disc, lm; for a directional light the
+/// illuminance of a surface that faces it, lx. `metres_per_unit` is the scan's.
 double luminous_flux(const SceneLight& light, double metres_per_unit);
-/// Scales the strength; a light that is black becomes white.
+/// Scales the strength to the given flux (or illuminance). A black light becomes white.
 void set_luminous_flux(SceneLight& light, double lumens, double metres_per_unit);
 
 inline constexpr double kCoolest = 1667, kHottest = 25000;
-/// Linear Rec. 709 of a black body, the largest channel 1; kelvin is kept within kCoolest to kHottest. Kim et
-/// al. 2002, US patent 7024034, cubic splines of the Planckian locus; daylight's white [1, 1, 1] lies beside
-/// it.
+/// Returns the linear Rec. 709 colour of a black body, its largest channel 1. `kelvin` is clamped to
+/// kCoolest and kHottest. Source: Kim et al. 2002, US patent 7024034, cubic splines of the Planckian locus.
+/// The white of daylight, [1, 1, 1], lies beside the locus.
 glm::dvec3 black_body_colour(double kelvin);
 
 }  // namespace lucarne::gi

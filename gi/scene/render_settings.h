@@ -7,12 +7,13 @@
 
 namespace lucarne::gi {
 
-/// How a picture is computed, as scene files and options say it. What is empty is left to the preset and to
-/// the defaults.
+/// How a picture is computed, as scene files and options state it. Empty values are left to the preset and
+/// to the defaults.
 struct RenderSettings {
     std::string engine, preset;
-    EngineSettings options;  ///< those that are said, over the preset's
-    /// Of the window's sides, which its pictures are made at and scaled up from; kLeastPictureScale to 1.
+    EngineSettings options;  ///< those that are given; they override the preset's
+    /// Resolution of the window's pictures over the window's own, kLeastPictureScale to 1; the pictures are
+    /// scaled up.
     std::optional<double> scale;
 
     bool operator==(const RenderSettings&) const = default;

@@ -9,17 +9,17 @@
 
 namespace lucarne::gi {
 
-/// The object `render` of a scene file, as data/README.md documents it. Errors name the place; whether there
-/// is such an engine or preset is not looked at.
+/// Reads the object `render` of a scene file (data/README.md). Errors name the place. Does not check that
+/// the engine and the preset exist.
 Result<RenderSettings> read_render_settings(JsonObject object);
-/// What read_render_settings() reads back to the same.
+/// Writes JSON that read_render_settings() reads back to equal settings.
 nlohmann::ordered_json write_render_settings(const RenderSettings& settings);
 
-/// A value as scene files and reports have it.
+/// Returns an option's value in the form that scene files and reports use.
 nlohmann::ordered_json option_json(const OptionInfo& option, const OptionValue& value);
 
-/// Of a scene file, whose other keys are not looked at; empty ones where it has none. Errors: those of the
-/// file, its syntax and this object.
+/// Reads the object `render` of a scene file and ignores the file's other keys. Returns empty settings if
+/// there is no such object. Errors: reading the file, its syntax, this object.
 Result<RenderSettings> load_render_settings(const std::filesystem::path& path);
 
 }  // namespace lucarne::gi

@@ -62,7 +62,7 @@ Result<SceneCamera> read_camera(JsonObject object) {
     LUCARNE_ASSIGN(camera.orthographic_height, object.number("orthographic_height", {0, 1e9}, 0.0));
     const dvec3 forward = camera.target - camera.position;
     if (forward == dvec3(0)) return object.wrong("is where the camera stands", "target");
-    // Six millionths of a degree: closer to its axis the camera's roll is noise.
+    // Six millionths of a degree: closer to the up direction the camera's roll is noise.
     if (glm::length(cross(forward, camera.up)) <= 1e-7 * glm::length(forward) * glm::length(camera.up))
         return object.wrong("the camera looks along its up direction", object.has("up") ? "up" : "target");
     LUCARNE_TRY(object.finish());
@@ -103,7 +103,7 @@ Result<void> read_exposure(JsonObject& root, Scene& scene) {
         ValueRange range;
         LUCARNE_ASSIGN(range.low, luminance->number("low", kLuminance));
         LUCARNE_ASSIGN(range.high, luminance->number("high", kLuminance));
-        if (!(range.low < range.high)) return luminance->wrong("is no more than low", "high");
+        if (!(range.low < range.high)) return luminance->wrong("is not above low", "high");
         LUCARNE_TRY(luminance->finish());
         scene.luminance = range;
     }
@@ -177,7 +177,8 @@ Result<Scene> read_scene(const nlohmann::json& document, const std::string& name
     return scene;
 }
 
-/// How far from its centre a box of these half sizes must be seen to fit the picture with a small margin.
+/// Returns the distance from the centre of a box of these half sizes at which the box fits the picture with
+/// a small margin.
 double fitting_distance(const dvec3& half, const dvec3& right, const dvec3& up, const dvec3& back, double fov,
                         double aspect) {
     constexpr double kMargin = .94;

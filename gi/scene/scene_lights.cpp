@@ -15,7 +15,7 @@ using glm::dvec3;
 constexpr JsonRange kConeDegrees{.1, 170}, kCapDegrees{0, 90}, kSide{1e-6, 1e9}, kTurnDegrees{-360, 360},
     kLatitude{-90, 90}, kLongitude{-180, 180};
 
-/// Where a light shines to: `target`, or `direction` from where it stands.
+/// Reads where a light shines to: `target`, or `direction` from its position.
 Result<void> read_aim(JsonObject& object, SceneLight& light) {
     const bool by_direction = object.has("direction");
     if (by_direction && object.has("target"))

@@ -9,10 +9,10 @@
 
 namespace lucarne::gi {
 
-// The parts of a scene file that give light, as data/README.md documents them; load_scene() calls these.
+// The parts of a scene file that emit light (data/README.md); load_scene() calls these functions.
 
 Result<SceneLight> read_light(JsonObject object);
-/// Lets a directional light with a place and a time come from where the sun is then.
+/// Turns a directional light that has a place and a time to the sun's position then.
 void follow_sun(SceneLight& light);
 /// Paths of pictures are relative to `folder`.
 Result<std::shared_ptr<const Environment>> read_environment(JsonObject object,

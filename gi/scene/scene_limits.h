@@ -4,7 +4,7 @@
 
 namespace lucarne::gi {
 
-// Ranges of numbers in scene files that several objects share, as data/README.md states them.
+// Ranges of numbers that several objects of scene files share; data/README.md states them.
 inline constexpr JsonRange kCoordinate{-1e9, 1e9}, kShare{0, 1}, kRadiance{0, 1e12};
 
 }  // namespace lucarne::gi

@@ -1,4 +1,4 @@
-// Scenes as the files that parse_scene() reads. What has its default value is left out.
+// Writes scenes as files that parse_scene() reads. Default values are left out.
 #include <array>
 #include <cmath>
 
@@ -109,7 +109,8 @@ Json write_environment(const Environment& environment, bool on, const std::files
     }
     written["radiance"] = vector(environment.scale);
     if (environment.rotation != 0) {
-        // Single precision: a millionth of a degree is finer.
+        // The rotation is a float: four decimals of a degree are written if they give the same float, else
+        // all digits.
         const double degrees = glm::degrees(static_cast<double>(environment.rotation));
         const double rounded = std::round(degrees * 1e4) / 1e4;
         const bool same = static_cast<float>(glm::radians(rounded)) == environment.rotation;
@@ -168,7 +169,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     put_object("look", write_look(scene.look));
     if (scene.comparison) written["comparison"] = write_comparison(*scene.comparison);
     for (const SceneCamera& camera : scene.cameras) written["cameras"].push_back(write_camera(camera));
-    // Names that are no UTF-8, which only other programs' files bring, are mended.
+    // json_text() repairs names that are not UTF-8, which only files of other programs contain.
     return json_text(written);
 }
 

@@ -26,7 +26,7 @@ int days_in(int year, int month) {
     return static_cast<int>(month == 12 ? 31 : days_of(year, month + 1, 1) - days_of(year, month, 1));
 }
 
-/// Digits from `text` at `at`, as many as `count`; -1 where there is anything else.
+/// Returns the number that the `count` digits of `text` from `at` on make; -1 if any of them is not a digit.
 int digits(std::string_view text, size_t at, size_t count) {
     int value = 0;
     if (at + count > text.size()) return -1;
@@ -105,7 +105,8 @@ std::string time_text(const Moment& moment) {
 }
 
 SolarPosition solar_position(const SunMoment& sun) {
-    // Universal time stands for dynamical time, which was ahead by at most 70 s: the sun moves .0008 degrees.
+    // Universal time stands in for dynamical time, which was ahead by at most 70 s; the sun moves .0008
+    // degrees meanwhile.
     const double days = static_cast<double>(sun.time.seconds) / kDay - 10957.5;  // since J2000
     const double t = days / 36525;                                               // centuries
     // Meeus eqs 25.2 to 25.4 and the equation of the centre below them.

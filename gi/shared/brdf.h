@@ -1,4 +1,4 @@
-// The one reflectance model of all engines, for C++ and GLSL alike.
+// The reflectance model that all engines share, for C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_BRDF_H
 #define LUCARNE_GI_SHARED_BRDF_H
 
@@ -10,10 +10,11 @@ namespace lucarne::gi {
 #endif
 
 const float kPi = 3.14159265f;
-// No scanned surface returns more; a closed white room would never darken.
+// Largest albedo of any channel. No scanned surface reflects more, and light in a closed white room would
+// never die out.
 const float kLargestAlbedo = 0.95f;
 
-// What is needed of a material and the scan's colour to reflect light: kd + ks <= 1 in every channel.
+// The reflectance of a surface, made from its material and the scan's colour: kd + ks <= 1 in every channel.
 struct Reflectance {
     vec3 kd;
     float ks;
@@ -29,9 +30,9 @@ LUCARNE_FN Reflectance make_reflectance(Material material, vec3 albedo) {
     return r;
 }
 
-// The specular lobe alone, 1/sr: ks (n+2)/(2 pi) cos^n of the angle between `to` and the mirror direction of
-// `from` (Lafortune & Willems 1994, "Using the modified Phong reflectance model for physically based
-// rendering", eq. 7). All directions are unit and point away from the surface.
+// Returns the specular lobe alone, 1/sr: ks (n+2)/(2 pi) cos^n of the angle between `to` and the mirror
+// direction of `from` (Lafortune & Willems 1994, "Using the modified Phong reflectance model for physically
+// based rendering", eq. 7). All directions are unit and point away from the surface.
 LUCARNE_FN float specular_brdf(Reflectance r, vec3 normal, vec3 from, vec3 to) {
     if (r.ks <= 0.0f) return 0.0f;
     float cosine = dot(2.0f * dot(normal, from) * normal - from, to);
@@ -39,7 +40,8 @@ LUCARNE_FN float specular_brdf(Reflectance r, vec3 normal, vec3 from, vec3 to) {
     return r.ks * (r.exponent + 2.0f) / (2.0f * kPi) * pow(min(cosine, 1.0f), r.exponent);
 }
 
-// kd/pi plus the lobe, 1/sr, without the cosine; zero where `from` and `to` are not both before the surface.
+// Returns kd/pi plus the lobe, 1/sr, without the cosine. Returns zero unless `from` and `to` are both in
+// front of the surface.
 LUCARNE_FN vec3 brdf(Reflectance r, vec3 normal, vec3 from, vec3 to) {
     if (dot(normal, from) <= 0.0f || dot(normal, to) <= 0.0f) return vec3(0.0f);
     return r.kd / kPi + specular_brdf(r, normal, from, to);

@@ -13,11 +13,11 @@ using vec4 = glm::vec4;
 
 // The ray through pixel (x, y), row 0 on top, has the direction
 //   d = forward + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1)
-// which is scaled so that dot(d, forward) = 1: depth along forward times d is the point. `right` and `up`
-// carry the tangents of half the field of view. Orthographic, all rays have the direction `forward`, and that
-// through (x, y) starts at
+// It is scaled so that dot(d, forward) = 1: the point at a depth along forward is origin + depth * d.
+// `right` and `up` carry the tangents of half the field of view. In an orthographic view all rays have the
+// direction `forward`, and the ray through (x, y) starts at
 //   origin + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1);
-// `right` and `up` carry half the width and height of what is seen, m.
+// There `right` and `up` carry half the width and half the height of the view, m.
 const uint kPerspective = 0u, kOrthographic = 1u;
 
 struct CameraView {

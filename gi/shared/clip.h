@@ -1,4 +1,4 @@
-// Shapes that points are clipped by, and the test of a point, for C++ and GLSL alike.
+// Clip shapes and the test of a point against them, for C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_CLIP_H
 #define LUCARNE_GI_SHARED_CLIP_H
 
@@ -8,20 +8,21 @@
 namespace lucarne::gi {
 #endif
 
-// Metres, relative to the local origin. The first of several also says how many they are.
+// One clip shape, in metres relative to the local origin. The first shape of a list also holds the number of
+// shapes.
 struct ClipShape {
-    vec4 axis[3];  // a box is where |dot(axis.xyz, p) + axis.w| <= 1 for all three
-    vec4 kind;     // x: one of the three below; y: how many shapes there are
+    vec4 axis[3];  // a box: |dot(axis.xyz, p) + axis.w| <= 1 for all three
+    vec4 kind;     // x: one of the three kinds below; y: number of shapes (first shape only)
 };
-const float kClipInside = 0.0f;   // kept are the points in any of these boxes
-const float kClipOutside = 1.0f;  // and in none of these
-const float kClipPlane = 2.0f;    // and with dot(axis[0].xyz, p) + axis[0].w >= 0
+const float kClipInside = 0.0f;   // keeps the points inside any box of this kind
+const float kClipOutside = 1.0f;  // removes the points inside a box of this kind
+const float kClipPlane = 2.0f;    // keeps the points with dot(axis[0].xyz, p) + axis[0].w >= 0
 
-// What the shapes so far say of a point: shapes are folded into it one by one, in any order.
-const uint kClipUntold = 0u;
-const uint kClipInNone = 1u;  // of the boxes that keep what is inside
-const uint kClipInOne = 2u;
-const uint kClipGone = 3u;
+// State of a point after some shapes have been tested. Shapes are folded in one by one, in any order.
+const uint kClipUntold = 0u;  // not removed, and no kClipInside box so far
+const uint kClipInNone = 1u;  // outside every kClipInside box so far
+const uint kClipInOne = 2u;   // inside one of them
+const uint kClipGone = 3u;    // removed
 LUCARNE_FN bool clip_kept(uint known) {
     return known == kClipUntold || known == kClipInOne;
 }
@@ -39,7 +40,7 @@ LUCARNE_FN uint clip_fold(uint known, vec3 p, vec4 x, vec4 y, vec4 z, float kind
 }
 
 #ifdef __cplusplus
-static_assert(sizeof(ClipShape) == 64);  // as large as a CutItem, behind which shaders find it
+static_assert(sizeof(ClipShape) == 64);  // the size of a CutItem: shapes follow the items in one buffer
 }  // namespace lucarne::gi
 #endif
 #endif

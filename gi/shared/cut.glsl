@@ -1,24 +1,25 @@
-// The surfels of a cut and what reads them. DeviceCut::bind binds pool, items and blocks, as texels of four words:
-// see Buffer::bind_texels for why.
+// Access to the surfels of a cut. DeviceCut::bind binds pool, items and blocks as texels of four words;
+// Buffer::bind_texels says why.
 #include "octree/tree/footprint.h"
 #include "gi/shared/clip.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
 layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
-layout(binding = 1) uniform usamplerBuffer cut_items;   // CutItem: (origin, size), (clip, count, floor, inner), children; then ClipShape
+// CutItem: (origin, size), (clip, count, area_floor, inner), children, children; the ClipShapes follow the items.
+layout(binding = 1) uniform usamplerBuffer cut_items;
 layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
 
-// The item's cube: origin, and its side (m).
+// Returns the cube of the item: xyz its origin, w its side (m).
 vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int(4u * item))); }
 
-// Metres, relative to the local origin.
+// Returns the position of the surfel, metres, relative to the local origin.
 vec3 surfel_position(uint item, PackedSurfel surfel) {
     vec4 cube = cut_item_cube(item);
     return cube.xyz + cube.w * surfel_fractions(surfel.a, surfel.b);
 }
 
-// Whether the item's clip keeps the surfel.
+// Returns whether the clip shapes of the item keep the surfel.
 bool surfel_kept(uint item, PackedSurfel surfel) {
     int at = 4 * int(texelFetch(cut_items, int(4u * item + 1u)).x);
     if (at == 0) return true;
@@ -35,9 +36,8 @@ bool surfel_kept(uint item, PackedSurfel surfel) {
     return clip_kept(known);
 }
 
-// Finds surfel `id` of the cut; false where the id lies in the gap behind a block's last surfel, and where it is
-// clipped. Workgroups of
-// kBlockSurfels invocations, one a block, meet one item each.
+// Finds surfel `id` of the cut. Returns false if the id lies in the gap behind the last surfel of a block, or if the
+// surfel is clipped. A workgroup of kBlockSurfels invocations covers one block and therefore reads one item.
 bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
     uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
     uint place = id % kBlockSurfels;
@@ -48,7 +48,7 @@ bool cut_surfel(uint id, out uint item, out PackedSurfel surfel) {
     return surfel_kept(item, surfel);
 }
 
-// See CutBlock.
+// Level-of-detail areas (m^2) as CutBlock describes them: of a code, and of a surfel by its place in its block.
 float lod_area(uint code) { return exp2(float(code) / 512.0 - 64.0); }
 float surfel_lod_area(uint id) {
     uvec4 block = texelFetch(cut_blocks, int(id / kBlockSurfels));
@@ -59,8 +59,9 @@ float surfel_lod_area(uint id) {
 bool surfel_has_normal(PackedSurfel surfel) { return (surfel.d & kSurfelHasNormal) != 0u; }
 vec3 surfel_normal(PackedSurfel surfel) { return decode_octahedral(surfel.c); }
 
-// The floor of the deepest item of the cut around the surfel: only surfels of ancestors look further than once. A
-// stray point in the air has no deeper item around it and must not be drawn as large as its node's others stand apart.
+// Returns the area floor of the deepest item of the cut around the surfel. Only surfels of ancestors take more than
+// one step. In an octant where the source has no child the floor is 0; otherwise an outlier there would be drawn as
+// large as the spacing of the other points of its node.
 float surfel_area_floor(uint item, PackedSurfel surfel) {
     uvec4 facts = texelFetch(cut_items, int(4u * item + 1u));
     for (uint depth = 0u; facts.w != 0u && depth < kOctantLevels; ++depth) {
@@ -75,7 +76,7 @@ float surfel_area_floor(uint item, PackedSurfel surfel) {
     return uintBitsToFloat(facts.z);
 }
 
-// Disc radius (m) and share of the surface (m^2); none of either for a stray point.
+// Return the disc radius (m) and the share of the surface (m^2). Both are 0 for an outlier (surfel_is_stray).
 float cut_surfel_radius(uint item, PackedSurfel surfel) {
     if (surfel_is_stray(surfel.b, surfel.d)) return 0.0;
     return surfel_radius(surfel_own_area(surfel.b, cut_item_cube(item).w), surfel_area_floor(item, surfel));

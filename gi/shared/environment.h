@@ -1,4 +1,4 @@
-// Which texel of an environment's picture a direction meets, for C++ and GLSL alike.
+// Maps a direction to a place in the picture of an environment, for C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_ENVIRONMENT_H
 #define LUCARNE_GI_SHARED_ENVIRONMENT_H
 
@@ -10,9 +10,9 @@ namespace lucarne::gi {
 using glm::acos, glm::atan, glm::fract;
 #endif
 
-// Where the unit direction stands in an equirectangular picture, both in [0, 1), from its upper left corner:
-// the zenith (+z) on top, +y in the middle, +x to the right of it. `rotation` turns the picture about z,
-// radians, counterclockwise seen from above.
+// Returns where the unit direction lies in an equirectangular picture, both coordinates in [0, 1) from the
+// upper left corner. The zenith (+z) is on top, +y in the middle, +x to the right of it. `rotation` turns
+// the picture about z, in radians, counterclockwise seen from above.
 LUCARNE_FN vec2 environment_place(vec3 direction, float rotation) {
     float turns = direction.x == 0.0f && direction.y == 0.0f ? 0.0f : atan(direction.x, direction.y);
     float u = fract(0.5f + (turns + rotation) / 6.28318531f);

@@ -1,4 +1,4 @@
-// A surfel of a cut with its footprint, decoded: for C++, GLSL and OpenCL C alike.
+// A decoded surfel of a cut with its footprint, for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_FLAT_SURFEL_H
 #define LUCARNE_GI_SHARED_FLAT_SURFEL_H
 
@@ -13,7 +13,7 @@ typedef struct FlatSurfel FlatSurfel;
 
 struct FlatSurfel {
     float x, y, z;  // m, relative to the local origin
-    float radius;   // m; 0: no surfel is here, or it is not drawn
+    float radius;   // m; 0: no surfel has this id, or it is not drawn
     float area;     // m^2, its share of the surface
     uint normal;    // octahedral
     uint albedo;    // sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)

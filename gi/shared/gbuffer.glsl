@@ -1,15 +1,16 @@
-// Reading G-buffer texels and the rays of a view.
+// Decodes G-buffer texels and computes the rays of a view.
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/surfel_code.h"
 
 bool is_parallel(CameraView view) { return view.projection == kOrthographic; }
-// A point of the picture in pixels (pixel centres at .5), from its middle along `right` and `up`.
+// Returns the offset of the picture point `at` (pixels, pixel centres at .5) from the middle of the picture, along
+// `right` and `up`.
 vec3 view_across(CameraView view, vec2 at) {
     vec2 ndc = 2.0 * at / vec2(view.width, view.height) - 1.0;
     return view.right.xyz * ndc.x - view.up.xyz * ndc.y;
 }
-// The ray through it: dot(ray, forward) = 1.
+// Returns the ray through the picture point `at`, scaled so that dot(ray, forward) = 1.
 vec3 view_ray(CameraView view, vec2 at) {
     return view.forward.xyz + (is_parallel(view) ? vec3(0.0) : view_across(view, at));
 }
@@ -19,7 +20,8 @@ vec3 view_start(CameraView view, vec2 at) {
 vec3 view_point(CameraView view, vec2 at, float depth) {
     return view_start(view, at) + depth * view_ray(view, at);
 }
-// Where a point stands in the picture, in pixels, and how deep.
+// Projects a point: returns its place in the picture, in pixels, and sets `depth` to its depth along the forward
+// axis, m.
 vec2 view_place(CameraView view, vec3 position, out float depth) {
     vec3 offset = position - view.origin.xyz;
     depth = dot(offset, view.forward.xyz);
@@ -28,7 +30,7 @@ vec2 view_place(CameraView view, vec3 position, out float depth) {
     if (!is_parallel(view)) ndc /= depth;
     return (0.5 * ndc + 0.5) * vec2(view.width, view.height);
 }
-// Of a pixel at a depth, m.
+// Returns the height of a pixel at a depth, m.
 float pixel_height(CameraView view, float depth) {
     return 2.0 * length(view.up.xyz) / float(view.height) * (is_parallel(view) ? 1.0 : depth);
 }

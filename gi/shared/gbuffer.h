@@ -9,17 +9,17 @@ using uint = uint32_t;
 #endif
 
 struct GBufferTexel {
-    float depth;    // along the camera's forward axis, m; 0: nothing here
+    float depth;    // along the camera's forward axis, m; 0: empty
     uint normal;    // octahedral 2 x 16 bit, turned toward the viewer (a surfel is an opaque sheet with two
                     // equal sides); surfels without a normal face the viewer
     uint albedo;    // as PackedSurfel.d: sRGB-coded 3 x 10 bit | flags
     uint material;  // index | radius of the surfel as a half float << 16
 };
 
-// Of discs that overlap on one surface the one whose centre is nearest shall take the pixel, or the noise of
-// their planes would decide: they are ordered by the plane's depth, pushed back by this share of the radius
-// times (distance / radius)^2. So a disc may show where it sticks out of another surface by up to this share
-// of its radius, and no further.
+// Where discs of one surface overlap, the disc with the nearest centre shall take the pixel; otherwise the
+// noise of their planes would decide. So discs are ordered by the depth of their plane, pushed back by this
+// share of the radius times (distance from the centre / radius)^2. A disc may therefore show where it sticks
+// out of another surface by up to this share of its radius, and no further.
 const float kRimPush = 0.25f;
 
 #ifdef __cplusplus

@@ -1,5 +1,6 @@
-// Lets one text be both C++ and GLSL 4.50: the names that GLSL has built in, for C++ from glm. Functions are
-// marked LUCARNE_FN, their results LUCARNE_OUT(type); numbers carry the suffix f, which both languages take.
+// Makes one text valid C++ and GLSL 4.50: C++ takes the names that GLSL has built in from glm. Shared
+// functions are marked LUCARNE_FN and their output parameters LUCARNE_OUT(type). Numbers carry the suffix f,
+// which both languages accept.
 #ifndef LUCARNE_GI_SHARED_LANGUAGE_H
 #define LUCARNE_GI_SHARED_LANGUAGE_H
 

@@ -1,7 +1,7 @@
-// Lights as the devices hold them (std430), and what they send where, for C++ and GLSL alike.
+// Lights as devices store them (std430) and the light that they emit, for C++ and GLSL.
 //
-// Lights are no surfaces: no camera sees one, none blocks light. What they send is counted where it is first
-// reflected (bounce 0). Surfaces that shine by themselves are surfels with an emission (Material).
+// Lights are not surfaces: no camera sees them and they block no light. Their light counts where it is first
+// reflected (bounce 0). Emissive surfaces are surfels whose Material has an emission.
 #ifndef LUCARNE_GI_SHARED_LIGHT_H
 #define LUCARNE_GI_SHARED_LIGHT_H
 
@@ -14,24 +14,25 @@ namespace lucarne::gi {
 const uint kSpotLight = 0u;         // from a point, within a cone
 const uint kPointLight = 1u;        // from a point, everywhere
 const uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
-const uint kRectangleLight = 3u;    // from one side of a rectangle, the same radiance in all directions
-const uint kDiscLight = 4u;         // from one side of a disc, likewise
-// From a point of a rectangle or disc, as the cosine: what those are sampled by.
+const uint kRectangleLight = 3u;    // from one side of a rectangle, with the same radiance in all directions
+const uint kDiscLight = 4u;         // from one side of a disc, with the same radiance in all directions
+// From one point of a rectangle or disc; the intensity falls as the cosine. Rectangles and discs are sampled
+// by such points.
 const uint kCosineLight = 5u;
 
-// What a field holds by kind; fields that a kind does not name are unused.
-//   position   spot, point, cosine, rectangle, disc: m, relative to the local origin (the middle); w: spot:
-//   cos_outer direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the side that
-//   shines);
-//              w: spot: cos_inner; directional: angular radius of the cap, 0 to pi/2
-//   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal); directional:
-//   irradiance of a
-//              surface that faces it, W/m^2; rectangle, disc: radiance, W/(sr m^2)
-//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge; disc: w:
-//   radius, m;
-//              cosine: unit, across the normal: where its faces part
-// A spot's intensity falls from 1 at cos_inner to 0 at cos_outer (half the full angle) as smoothstep of the
-// cosine.
+// What each field holds, by kind. Fields that a kind does not name are unused.
+//   position   spot, point, cosine, rectangle, disc: the middle, m, relative to the local origin;
+//              w of a spot: cos_outer
+//   direction  unit, the way the light goes (cosine, rectangle, disc: the normal of the emitting side);
+//              w of a spot: cos_inner; w of a directional light: angular radius of the cap, 0 to pi/2
+//   strength   spot, point, cosine: radiant intensity, W/sr (cosine: along the normal);
+//              directional: irradiance of a surface that faces the light, W/m^2;
+//              rectangle, disc: radiance, W/(sr m^2)
+//   extent     rectangle: from the middle to the middle of one edge, m; w: half the other edge, m;
+//              disc: w: radius, m;
+//              cosine: unit, perpendicular to the normal: the first axis of its four faces (light_face)
+// A spot's intensity falls from its full value at cos_inner to 0 at cos_outer (the cosine of half the full
+// angle) as the smoothstep of the cosine.
 struct Light {
     vec4 position;
     vec4 direction;
@@ -43,7 +44,8 @@ struct Light {
 #endif
 };
 
-// Radiant intensity, W/sr, of a spot, point or cosine light in the unit direction `away` from it.
+// Returns the radiant intensity, W/sr, of a spot, point or cosine light in the unit direction `away` from
+// it.
 LUCARNE_FN vec3 light_intensity(Light light, vec3 away) {
     vec3 strength = vec3(light.strength.x, light.strength.y, light.strength.z);
     if (light.kind == kPointLight) return strength;
@@ -55,7 +57,8 @@ LUCARNE_FN vec3 light_intensity(Light light, vec3 away) {
     return strength * (t * t * (3.0f - 2.0f * t));
 }
 
-// Of the cube about a point light, the face that an offset from it goes through: +x, -x, +y, -y, +z, -z.
+// Returns the face of the cube about a point light that an offset from it goes through: +x, -x, +y, -y, +z,
+// -z.
 LUCARNE_FN uint cube_face(vec3 offset) {
     vec3 size = abs(offset);
     if (size.x >= size.y && size.x >= size.z) return offset.x > 0.0f ? 0u : 1u;
@@ -63,8 +66,8 @@ LUCARNE_FN uint cube_face(vec3 offset) {
     return offset.z > 0.0f ? 4u : 5u;
 }
 
-// The face of a light that an offset from it goes through: one of six of a point light's cube, of four of a
-// cosine light's half space (the quarters about its normal), else 0.
+// Returns the face of a light that an offset from it goes through: one of the six faces of a point light's
+// cube, one of the four quarters of a cosine light's half space (about its normal), else 0.
 LUCARNE_FN uint light_face(Light light, vec3 offset) {
     if (light.kind == kPointLight) return cube_face(offset);
     if (light.kind != kCosineLight) return 0u;
@@ -73,9 +76,9 @@ LUCARNE_FN uint light_face(Light light, vec3 offset) {
     return (dot(offset, side) < 0.0f ? 1u : 0u) + (dot(offset, cross(normal, side)) < 0.0f ? 2u : 0u);
 }
 
-// Irradiance, W/m^2, of an unshadowed surface at `position` by a spot, point, cosine or directional light,
-// the last as if all of it came from the middle of its cap; `to_light` receives the unit direction to the
-// light. Zero behind the surface and at the light itself.
+// Returns the irradiance, W/m^2, of an unshadowed surface at `position` by a spot, point, cosine or
+// directional light. A directional light counts as if all of it came from the middle of its cap. Sets
+// `to_light` to the unit direction to the light. Returns zero behind the surface and at the light itself.
 LUCARNE_FN vec3 light_irradiance(Light light, vec3 position, vec3 normal, LUCARNE_OUT(vec3) to_light) {
     if (light.kind == kDirectionalLight) {
         to_light = vec3(-light.direction.x, -light.direction.y, -light.direction.z);

@@ -1,5 +1,5 @@
-// Numbers for more threads along x than OpenGL counts (65535 groups at least): Program::dispatch makes rows of them. The
-// last numbers may be beyond what was asked for.
+// Thread numbers for dispatches with more threads along x than OpenGL allows (it promises 65535 groups at least).
+// Program::dispatch lays such threads out in rows. The last numbers may exceed the number of threads asked for.
 uniform uint threads_a_row;  // 0: there is one row
 
 uint thread_number() { return gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * threads_a_row; }

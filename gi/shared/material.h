@@ -1,4 +1,4 @@
-// Materials as the devices hold them (std430), shared by C++ and GLSL.
+// Materials as devices store them (std430), shared by C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_MATERIAL_H
 #define LUCARNE_GI_SHARED_MATERIAL_H
 
@@ -12,8 +12,9 @@ using vec4 = glm::vec4;
 #endif
 
 // BRDF: kd/pi + ks (n+2)/(2 pi) cos^n(angle to the mirror direction), kd + ks <= 1 in every channel.
-// kd = min(albedo * diffuse, .95), scaled down where kd + ks would exceed 1.
-// Surfels and G-buffers name a material by eight bits. Devices hold this many, so that every name is valid.
+// kd = min(albedo * diffuse, .95, 1 - ks).
+// Surfels and G-buffers refer to a material by an eight-bit index. Devices hold this many materials, so that
+// every index is valid.
 #define LUCARNE_DEVICE_MATERIALS 256
 
 struct Material {

@@ -1,4 +1,5 @@
-// Surfels as the devices hold them: structs shared by C++ and GLSL (std430), and what decodes them.
+// Surfels and cuts as devices store them: structs shared by C++ and GLSL (std430). surfel_code.h encodes and
+// decodes them.
 #ifndef LUCARNE_GI_SHARED_SURFEL_H
 #define LUCARNE_GI_SHARED_SURFEL_H
 
@@ -15,7 +16,8 @@ using vec3 = glm::vec3;
 // 16 bytes a surfel.
 //   a: x | y << 16           16-bit fractions of the node's cube
 //   b: z | area << 16 | material << 24
-//      area: own share at full resolution as s^2 * 2^(-code/8), s the node's size; 255: unknown (0)
+//      area: own share at full resolution as s^2 * 2^(-code/8), s the node's size; 255: unknown (0);
+//      254 without a normal: an outlier (kStrayArea)
 //   c: normal, octahedral, two signed 16-bit fractions
 //   d: albedo, sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
 struct PackedSurfel {
@@ -28,31 +30,30 @@ const uint kSurfelHasNormal = 0x40000000u;
 struct CutItem {
     vec3 origin;
     float size;
-    uint clip;   // place behind the items of the shapes that its surfels are tested against, see clip.h; 0:
-                 // none
+    uint clip;   // index of the first ClipShape, counted in items: shapes follow the items; 0: no clip test
     uint count;  // prefix in use
     float area_floor;  // m^2, at that prefix
-    uint inner;        // 1: some octant is to be looked up, 0: area_floor holds for all its surfels
-    int child[8];      // the cut's item in each octant, or one of the two below
+    uint inner;        // 1: child[] has to be looked up; 0: area_floor holds for all its surfels
+    int child[8];      // index of the item in each octant, or one of the two constants below
 };
-// The item's floor holds: its child there is not in the cut, or no more is known.
+// In this octant the item's own floor holds: its child is not in the cut, or nothing more is known.
 const int kCoarseOctant = -1;
-// The source has no child there and the item is drawn whole: full resolution, floor 0.
+// The source has no child in this octant and the item is drawn whole: full resolution, so the floor is 0.
 const int kWholeOctant = -2;
 
-// Surfels are processed in blocks of up to kBlockSurfels, each of one item.
-// A surfel's id within a cut is block * kBlockSurfels + its place in the block: it depends on the cut alone,
-// never on what else is resident, so that ties broken by id are the same on every run.
+// Surfels are processed in blocks of up to kBlockSurfels; the surfels of a block belong to one item.
+// A surfel's id within a cut is block * kBlockSurfels + its place in the block. The id depends on the cut
+// alone, never on what else is resident, so ties broken by id are broken alike on every run.
 struct CutBlock {
     uint item;
-    uint first;  // of its surfels in the pool
+    uint first;  // index of its first surfel in the pool
     uint count;
-    uint lod;  // areas at its ends, see below
+    uint lod;  // codes of the areas at both ends, see below
 };
-// What a surfel would stand for if no finer ones were drawn: the surface's share of each point when the
-// levels of detail down to it are drawn, and its own node up to it. Along a block it falls from `lod &
-// 0xffff` to `lod >> 16`, codes of an area of 2^(code / 512 - 64) m^2; its inverse, the density, rises
-// evenly.
+// CutBlock.lod codes the area that a surfel stands for if no finer surfels are drawn: its share of the
+// surface when the levels of detail above it, and its own node up to it, are drawn. Along a block this area
+// falls from code `lod & 0xffff` to code `lod >> 16`; its inverse, the density, rises linearly. A code
+// stands for 2^(code / 512 - 64) m^2.
 const uint kBlockSurfels = 256u;
 const uint kNoSurfel = 0xffffffffu;
 

@@ -1,4 +1,4 @@
-// How the fields of a PackedSurfel are read and written, for C++ and GLSL alike.
+// Encodes and decodes the fields of a PackedSurfel, for C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_SURFEL_CODE_H
 #define LUCARNE_GI_SHARED_SURFEL_CODE_H
 
@@ -9,7 +9,7 @@
 namespace lucarne::gi {
 #endif
 
-// Octahedral unit vectors (Meyer et al. 2010, "On floating-point normal vectors"), two signed 16-bit
+// Octahedral code of unit vectors (Meyer et al. 2010, "On floating-point normal vectors"), two signed 16-bit
 // fractions: the largest error is .004 degrees.
 LUCARNE_FN uint encode_octahedral(vec3 n) {
     vec2 p = vec2(n.x, n.y) / (abs(n.x) + abs(n.y) + abs(n.z));
@@ -27,7 +27,7 @@ LUCARNE_FN vec3 decode_octahedral(uint code) {
     return n * inversesqrt(dot(n, n));  // |x| + |y| + |z| = 1: never zero
 }
 
-// sRGB (IEC 61966-2-1) to linear light and back, one channel in [0, 1].
+// Convert one channel in [0, 1] from sRGB (IEC 61966-2-1) to linear light and back.
 LUCARNE_FN float srgb_to_linear(float v) {
     return v <= 0.04045f ? v / 12.92f : pow((v + 0.055f) / 1.055f, 2.4f);
 }
@@ -35,33 +35,35 @@ LUCARNE_FN float linear_to_srgb(float v) {
     return v <= 0.0031308f ? v * 12.92f : 1.055f * pow(v, 1.0f / 2.4f) - 0.055f;
 }
 
-// Linear Rec. 709 of the 3 x 10 bits of PackedSurfel.d.
+// Returns the linear Rec. 709 colour of the 3 x 10 bits of PackedSurfel.d.
 LUCARNE_FN vec3 decode_albedo(uint code) {
     return vec3(srgb_to_linear(float(code & 1023u) / 1023.0f),
                 srgb_to_linear(float(code >> 10 & 1023u) / 1023.0f),
                 srgb_to_linear(float(code >> 20 & 1023u) / 1023.0f));
 }
 
-// The 16-bit fractions of the node's cube; a point lies in the middle of its step.
+// Returns the 16-bit fractions of the node's cube; a point lies in the middle of its step.
 const float kFractionSteps = 65536.0f;
 LUCARNE_FN vec3 surfel_fractions(uint a, uint b) {
     return (vec3(float(a & 0xffffu), float(a >> 16), float(b & 0xffffu)) + 0.5f) / kFractionSteps;
 }
 
-// Of the eight octants at `depth` levels below the node, the one that holds the surfel.
+// Returns which of the eight octants holds the surfel, `depth` levels below the node.
 LUCARNE_FN uint surfel_octant(uint a, uint b, uint depth) {
     uint bit = 15u - depth;
     return (a >> bit & 1u) | (a >> (bit + 16u) & 1u) << 1 | (b >> bit & 1u) << 2;
 }
 const uint kOctantLevels = 16u;
 
-// The surfel's own share of the surface in m^2, 0 when unknown; `size` is the node's, m.
+// Area code of a surfel whose share of the surface is unknown.
 const uint kUnknownArea = 255u;
-// With no normal: a point known to hang in the air (a mixed pixel), which is not drawn and has no share.
+// Area code of an outlier, valid only without a normal: a point known to hang in the air (a mixed pixel). It
+// is not drawn and has no share of any surface.
 const uint kStrayArea = 254u;
 LUCARNE_FN bool surfel_is_stray(uint b, uint d) {
     return (b >> 16 & 255u) == kStrayArea && (d & kSurfelHasNormal) == 0u;
 }
+// Returns the surfel's own share of the surface in m^2, 0 if unknown. `size` is the side of its node, m.
 LUCARNE_FN float surfel_own_area(uint b, float size) {
     uint code = b >> 16 & 255u;
     return code == kUnknownArea ? 0.0f : size * size * exp2(-0.125f * float(code));

@@ -1,4 +1,4 @@
-// The curves that bring exposed radiance to the screen, for C++ and GLSL alike.
+// Tone curves from exposed radiance to the screen, for C++ and GLSL.
 #ifndef LUCARNE_GI_SHARED_TONE_CURVE_H
 #define LUCARNE_GI_SHARED_TONE_CURVE_H
 
@@ -20,8 +20,8 @@ LUCARNE_FN vec3 reinhard_curve(vec3 x) {
     return x / (1.0f + luminance(x));
 }
 
-// Exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none). What is
-// no number becomes black.
+// Maps exposed radiance to linear light in [0, 1]. `curve` is a ToneMap (0: filmic, 1: Reinhard, 2: none).
+// NaN and negative values become black.
 LUCARNE_FN vec3 tone_curve(vec3 x, uint curve) {
     // Beyond 10^4 every curve is white; the bound keeps infinity out of the quotients.
     for (int i = 0; i < 3; ++i) x[i] = x[i] > 0.0f ? min(x[i], 1e4f) : 0.0f;

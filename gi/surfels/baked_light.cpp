@@ -17,11 +17,11 @@ namespace {
 
 constexpr int kCells = 48;              // along the longest side
 constexpr int kBlur = 2;                // cells to each side
-constexpr uint64_t kSampled = 400'000;  // points, at least: whole levels
-constexpr size_t kMostNodes = 4096;     // of scans in many small parts
-constexpr double kMost = 8;
+constexpr uint64_t kSampled = 400'000;  // least number of points; whole levels are sampled
+constexpr size_t kMostNodes = 4096;     // limit for scans in many small parts
+constexpr double kMost = 8;             // largest factor, and 1 / the least
 
-/// Sums of luminances and their numbers, cell by cell.
+/// Sums and counts of luminances, cell by cell.
 struct Sums {
     glm::ivec3 size{0};
     std::vector<double> values, counts;
@@ -33,7 +33,7 @@ struct Sums {
     size_t at(int x, int y, int z) const { return static_cast<size_t>((z * size.y + y) * size.x + x); }
 };
 
-/// A box of 2 kBlur + 1 cells along one axis.
+/// Applies a box filter of 2 kBlur + 1 cells along one axis.
 Sums blurred(const Sums& from, int axis) {
     Sums to(from.size);
     for (int z = 0; z < from.size.z; ++z)
@@ -49,7 +49,7 @@ Sums blurred(const Sums& from, int axis) {
     return to;
 }
 
-/// Adds a node's points; their colours as engines have them.
+/// Adds the points of a node, with the colours that engines see.
 void add_node(const octree::NodeSource& source, uint32_t node, const octree::NodeData& data,
               const glm::dvec3& min, double cell, Sums& sums) {
     const octree::SourcePart part = source.part_of(node);
@@ -112,7 +112,7 @@ BakedLight BakedLight::in_unit(double scale) const {
     return own;
 }
 
-/// Trilinear between the middles of cells that have points.
+/// Interpolates trilinearly between the middles of cells that have points.
 double BakedLight::mean_at(const glm::dvec3& position) const {
     const glm::dvec3 place =
         glm::clamp((position - min_) / cell_ - 0.5, glm::dvec3(0), glm::dvec3(size_) - 1.0);

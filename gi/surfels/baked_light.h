@@ -9,20 +9,20 @@
 
 namespace lucarne::gi {
 
-/// How bright the points' colours are hereabouts, against all of them: an estimate of the light that a scan
-/// was taken in. Luminances, linear, are averaged over cells of 1/48 of the scan's longest side and blurred
-/// over 5 cells each way; surfaces whose paint differs on that scale are flattened as well (Land & McCann
-/// 1971, "Lightness and retinex theory": light varies slowly, paint fast).
+/// An estimate of the light in which a scan was taken: how bright the colours around a point are, compared
+/// with all of them. Linear luminances are averaged over cells of 1/48 of the scan's longest side and
+/// blurred over 5 cells along each axis. Surfaces whose paint differs on that scale are flattened as well
+/// (Land & McCann 1971, "Lightness and retinex theory": light varies slowly, paint fast).
 class BakedLight {
  public:
-    /// Of the coarsest nodes, which are an even sample; the same on every run. Errors: a node that cannot be
-    /// read.
+    /// Measures the light on the coarsest nodes, which are an even sample; the result is the same on every
+    /// run. Errors: a node that cannot be read.
     static Result<BakedLight> measured(const octree::NodeSource& source);
-    /// For positions in a part's own unit, of which `scale` source units are one.
+    /// Returns the same light for positions in a part's own unit; one such unit is `scale` source units.
     BakedLight in_unit(double scale) const;
 
-    /// What a linear colour there is to be multiplied by, 1/8 to 8, where `share` of the light is divided
-    /// out.
+    /// Returns the factor, 1/8 to 8, by which a linear colour at `position` has to be multiplied to divide
+    /// out `share` of the light.
     double factor(const glm::dvec3& position, double share) const;
 
  private:
@@ -31,8 +31,8 @@ class BakedLight {
     glm::dvec3 min_{0.0};
     double cell_ = 1;
     glm::ivec3 size_{0};
-    double mean_ = 0;                                  ///< of all; 0: no colours
-    std::shared_ptr<const std::vector<float>> means_;  ///< x fastest; 0: no points there
+    double mean_ = 0;                                  ///< mean over all points; 0: no colours
+    std::shared_ptr<const std::vector<float>> means_;  ///< means of the cells, x fastest; 0: no points there
 };
 
 }  // namespace lucarne::gi

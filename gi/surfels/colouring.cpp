@@ -12,15 +12,15 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr uint64_t kColoursSampled = 20'000;  // points that a range is measured on, at least: whole levels
+constexpr uint64_t kColoursSampled = 20'000;  // least number of points to measure a range on; whole levels
 constexpr size_t kSampledRoots = 16;
-constexpr double kTail = 0.01;  // of the points on either side that a range leaves out
+constexpr double kTail = 0.01;  // share of the points that a range leaves out at each end
 
 uint32_t ten_bits(double v) {
     return v > 0 ? static_cast<uint32_t>(std::lround(std::min(v, 1.0) * 1023)) : 0u;
 }
 
-/// "name", or "name.1" for its second component and so on.
+/// Finds the column of "name", or of "name.1" for the second component and so on.
 std::optional<ValueColumn> column_of(const io::Schema& schema, std::string_view name) {
     uint32_t component = 0;
     const io::Attribute* found = schema.find(name);
@@ -55,9 +55,9 @@ std::string_view attribute_name(const Look& look) {
     return {};
 }
 
-/// What the points of the sample say.
+/// Values collected from the sampled points.
 struct Sampled {
-    std::vector<double> values;  ///< that are numbers, of looks with a range
+    std::vector<double> values;  ///< finite values, for looks with a range
     std::bitset<256> numbers, classes;
 };
 
@@ -133,7 +133,7 @@ uint32_t Colouring::shade(double value) const {
 
 std::optional<uint32_t> Colouring::colour(const std::byte* record, double z, uint32_t scan,
                                           const glm::vec3& normal) const {
-    static const uint32_t kNone = pack_colour(glm::dvec3(0.5));  // where a point lacks the attribute
+    static const uint32_t kNone = pack_colour(glm::dvec3(0.5));  // for points without the attribute
     switch (by_) {
         case ColourBy::colour:
             return std::nullopt;
@@ -156,7 +156,7 @@ std::optional<uint32_t> Colouring::colour(const std::byte* record, double z, uin
 }
 
 ShownValues measured_values(const octree::NodeSource& source, const Look& look) {
-    // Level by level, from some roots where there are many.
+    // Goes level by level, from at most kSampledRoots roots.
     const std::vector<uint32_t> roots = source.roots();
     std::vector<uint32_t> level, below;
     const size_t used = std::min(roots.size(), kSampledRoots);
@@ -167,7 +167,7 @@ ShownValues measured_values(const octree::NodeSource& source, const Look& look) 
         below.clear();
         for (const uint32_t node : level) {
             const Result<octree::NodeData> data = source.load(node);
-            if (!data) continue;  // whoever draws it will say so
+            if (!data) continue;  // drawing the node reports the error
             points += data->count;
             sample(source.part_of(node), look, *data, sampled);
             for (uint32_t octant = 0; octant < 8; ++octant)

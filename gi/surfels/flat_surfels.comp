@@ -1,4 +1,4 @@
-// Decodes the surfels of a cut with their footprints, in the order of their ids; gaps have radius and area 0.
+// Decodes the surfels of a cut with their footprints, in the order of their ids. Ids in gaps get radius and area 0.
 layout(local_size_x = 256) in;
 
 #include "gi/shared/cut.glsl"

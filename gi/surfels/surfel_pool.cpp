@@ -21,8 +21,9 @@ constexpr uint32_t pages_for(size_t surfels) {
     return static_cast<uint32_t>((surfels + SurfelPool::kPageSurfels - 1) / SurfelPool::kPageSurfels);
 }
 
-/// m^2. The shares in a node add up to its surface, and no node holds more than a few times the surface of
-/// its cube: a hostile cache's floors must not make discs that cover the world.
+/// Returns the area floor of a node, m^2, bounded from above. The shares in a node add up to its surface,
+/// and no node holds more than a few times the surface of its cube, so the floors of a hostile cache cannot
+/// make discs that cover the world.
 float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per_unit, float size) {
     const float share = info.count ? static_cast<float>(count) / static_cast<float>(info.count) : 1.0f;
     const float floors[4] = {info.area_floor[0], info.area_floor[1], info.area_floor[2], info.area_floor[3]};
@@ -31,9 +32,9 @@ float sane_floor(const octree::NodeInfo& info, uint32_t count, double metres_per
     return floor > 0 ? static_cast<float>(std::min(floor, most)) : 0.0f;  // NaN: 0
 }
 
-/// m^2: what a point stands for when the first `points` of a node are drawn and nothing below it. At least
-/// what an even pattern would have: where the raw scan fills the surface by its own shares, the floor is
-/// nothing.
+/// Returns the area, m^2, that a point stands for when the first `points` of a node are drawn and nothing
+/// below it. It is at least the area of an even pattern: where the raw scan fills the surface by its own
+/// shares, the floor is 0.
 float stage_area(const octree::NodeInfo& info, double points, double metres_per_unit, const CutItem& item,
                  float above) {
     if (points < 1 || info.count == 0) return above;
@@ -53,7 +54,7 @@ uint64_t hash(std::span<const T> values) {
     return XXH3_64bits(values.data(), values.size_bytes());
 }
 
-/// The same walk as gi/shared/cut.glsl's.
+/// The same walk as surfel_area_floor() in gi/shared/cut.glsl.
 float local_floor(const std::vector<CutItem>& items, const CutItem* item, const PackedSurfel& surfel) {
     for (uint32_t depth = 0; depth < kOctantLevels; ++depth) {
         const int child = item->child[surfel_octant(surfel.a, surfel.b, depth)];
@@ -111,7 +112,8 @@ Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfe
     evict(node);
     const uint32_t pages = pages_for(surfels.size());
     if (pages > free_.size()) return false;
-    // The lowest last: freed nodes leave their pages in order, and runs of them are uploaded at once.
+    // Reversed, so that pages are used in ascending order: freed nodes return their pages in order, and runs
+    // of pages are uploaded at once.
     Resident resident{
         {free_.end() - pages, free_.end()}, static_cast<uint32_t>(surfels.size()), hash(surfels)};
     std::reverse(resident.pages.begin(), resident.pages.end());
@@ -157,7 +159,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     const double unit = source.header().metres_per_unit;
     std::vector<CutEntry> sorted(entries.begin(), entries.end());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
-    std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents stand before their children
+    std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents come before their children
     std::vector<CutItem> items;
     std::vector<CutBlock> blocks;
     const auto cut_points = std::make_shared<CutPoints>();
@@ -184,8 +186,8 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         item.size = static_cast<float>(cube.size * unit);
         cut.fingerprint_ = mix64(cut.fingerprint_, resident->second.content);
         item.count = std::min(entry.count, resident->second.count);
-        // A few points of a node among many of its ancestors' leave those as large as they were, and no
-        // larger.
+        // The floor never exceeds the parent's: where few points of a node stand among many of its
+        // ancestors, the ancestors' points must not grow.
         const float above =
             parent != item_of.end() ? items[parent->second].area_floor : item.size * item.size;
         item.area_floor = std::min(sane_floor(info, item.count, unit, item.size), above);
@@ -197,7 +199,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
             return area_code(stage_area(info, points, unit, item, above));
         };
         const Kept seen = clip.active() ? kept(clip, cube) : Kept::all;
-        item.clip = seen == Kept::some;  // its place follows
+        item.clip = seen == Kept::some;  // its index is set below
         const uint32_t drawn = seen == Kept::none ? 0 : item.count;
         if (drawn) cut_points->runs_.push_back({static_cast<uint32_t>(blocks.size()), entry.node, drawn});
         for (uint32_t at = 0; at < drawn; at += kBlockSurfels) {

@@ -17,37 +17,38 @@
 
 namespace lucarne::gi {
 
-/// No node holds more surface than this many faces of its cube; what claims more is no scan.
+/// No node holds more surface than this many faces of its cube; a file that claims more is not a scan.
 inline constexpr double kMostSurface = 64;
 
 class BakedLight;
 
 /// Packs a node's points for the device: positions as fractions of the node's cube, colours to 10-bit sRGB
-/// (.5 linear where the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The
-/// material is the last one in the scene whose conditions all hold ([0], the default, has none); those beyond
-/// 256 are not used. Colours are what the scene's look asks for (`first_scan` counts the records' scans from
-/// there); points of hidden classes become strays. `baked` is divided out of the points' own colours, as far
-/// as the scene's albedo asks.
+/// (.5 linear if the scan has none), normals from `normal` or `normal_oct`, areas from `area`. The material
+/// is the last one in the scene whose conditions all hold ([0], the default, has none); materials beyond 256
+/// are not used. Colours are those that the scene's look asks for (`first_scan` is added to the scan numbers
+/// of the records). Points of hidden classes become outliers (kStrayArea), which are not drawn. `baked` is
+/// divided out of the points' own colours, as far as the scene's albedo asks.
 std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const octree::NodeInfo& node,
                                        const octree::NodeData& data, const Scene& scene,
                                        uint32_t first_scan = 0, const BakedLight* baked = nullptr);
 
-/// One node of a cut as the stream chose it.
+/// A node of a cut and how many of its points are drawn.
 struct CutEntry {
     uint32_t node = 0;
-    uint32_t count = 0;  ///< prefix
+    uint32_t count = 0;  ///< length of the prefix in use
 };
 
-/// A point of a source: the record `index` of what NodeSource::load gives for `node`.
+/// A point of a source: record `index` of what NodeSource::load() returns for `node`.
 struct PointPlace {
     uint32_t node = 0, index = 0;
     bool operator==(const PointPlace&) const = default;
 };
 
-/// Which points the surfels of a cut are; outlives the cut.
+/// Maps the surfels of a cut to points of the source. It stays valid when the cut is gone.
 class CutPoints {
  public:
-    /// The point behind an id of a G-buffer drawn of the cut; none for kNoSurfel and ids of no surfel.
+    /// Returns the point of an id in a G-buffer drawn from the cut; none for kNoSurfel and ids without a
+    /// surfel.
     std::optional<PointPlace> find(uint32_t id) const;
 
  private:
@@ -58,20 +59,20 @@ class CutPoints {
     std::vector<Run> runs_;  ///< by first_block
 };
 
-/// A cut on the device, made by SurfelPool::make_cut; valid until a node of it is evicted or the pool goes.
-/// Bindings are fixed for every shader: see bind().
+/// A cut on the device, made by SurfelPool::make_cut(). It is valid until one of its nodes is evicted or the
+/// pool is destroyed. Its bindings are the same for every shader: see bind().
 class DeviceCut {
  public:
-    uint32_t surfels() const { return surfels_; }  ///< points drawn, with those that are tested and clipped
-    uint32_t clipped() const { return clipped_; }  ///< points of nodes that are clipped whole
+    uint32_t surfels() const { return surfels_; }  ///< points drawn, also those that the clip test removes
+    uint32_t clipped() const { return clipped_; }  ///< points of nodes that are clipped as a whole
     uint32_t blocks() const { return blocks_; }    ///< workgroups of kBlockSurfels to dispatch
     float size() const { return size_; }           ///< m, side of the source's root cube
-    /// Of what the cut shows: equal for equal surfels at equal places.
+    /// Hash of what the cut shows: equal for equal surfels at equal places.
     uint64_t fingerprint() const { return fingerprint_; }
     /// The nodes that are drawn, sorted.
     std::span<const CutNode> nodes() const { return nodes_; }
     std::shared_ptr<const CutPoints> points() const { return points_; }
-    /// Binds pool, items and blocks as texels at the units 0 to 2. gi/shared/cut.glsl declares them.
+    /// Binds pool, items and blocks as texels to units 0 to 2, as gi/shared/cut.glsl declares them.
     void bind() const;
 
  private:
@@ -88,42 +89,45 @@ class DeviceCut {
     std::shared_ptr<const CutPoints> points_;
 };
 
-/// Owns the surfels of all resident nodes in one buffer cut into pages of kPageSurfels, fed by the stream's
-/// load, replace and evict events. A node takes any pages, so that free ones are never too scattered.
+/// Owns the surfels of all resident nodes, in one buffer divided into pages of kPageSurfels. The stream's
+/// load, replace and evict events feed it. A node takes any free pages, so fragmentation never wastes room.
 class SurfelPool {
  public:
     static constexpr uint32_t kPageSurfels = 1024;
-    /// `capacity` surfels (rounded to pages), 16 bytes each, all taken at once so that the cap is hard.
+    /// Makes a pool of `capacity` surfels (rounded up to pages), 16 bytes each. All memory is taken at once,
+    /// so that the cap is hard. Errors: over the cap, out of device memory.
     static Result<SurfelPool> create(Device& device, uint32_t capacity);
 
-    /// False when there is no room: the caller evicts and tries again. A node that is resident is replaced.
+    /// Loads a node, replacing it if it is resident. Returns false if there is no room; the caller then
+    /// evicts nodes and tries again.
     Result<bool> load(uint32_t node, std::span<const PackedSurfel> surfels);
     void evict(uint32_t node);
     bool holds(uint32_t node) const;
-    uint32_t used() const;  ///< surfels' worth of pages in use
+    uint32_t used() const;  ///< pages in use, in surfels
     uint32_t capacity() const;
 
-    /// Builds a cut from resident nodes (entries must be ancestor-closed; those that are not resident are
-    /// left out with their descendants). `local_origin` in world units; everything on the device is metres
-    /// relative to it. Surfels that `clip` does not keep are not there for anything that reads the cut.
+    /// Builds a cut from resident nodes. `entries` must contain the ancestors of every entry; entries that
+    /// are not resident are left out with their descendants. `local_origin` is in world units; everything on
+    /// the device is in metres relative to it. Surfels that `clip` removes do not exist for readers of the
+    /// cut.
     Result<void> make_cut(Device& device, const octree::NodeSource& source, std::span<const CutEntry> entries,
                           const glm::dvec3& local_origin, DeviceCut& cut, const Clip& clip = {}) const;
 
-    /// The cut's surfels with their footprints, decoded on the host by the same rules, in the order of their
-    /// ids without the gaps: what the reference engine traces.
+    /// Decodes the cut's surfels with their footprints on the host, by the same rules, in the order of their
+    /// ids without the gaps. The reference engine traces them.
     std::vector<Surfel> download(const DeviceCut& cut) const;
 
  private:
     struct Resident {
         std::vector<uint32_t> pages;
         uint32_t count = 0;    ///< surfels
-        uint64_t content = 0;  ///< hash of them
+        uint64_t content = 0;  ///< hash of the surfels
     };
     void upload(const Resident& node, std::span<const PackedSurfel> surfels);
 
     Buffer buffer_;
     std::unordered_map<uint32_t, Resident> resident_;
-    std::vector<uint32_t> free_;  ///< pages, the next to be taken last
+    std::vector<uint32_t> free_;  ///< pages; the next one to take is at the end
     uint32_t capacity_ = 0;       ///< surfels
 };
 

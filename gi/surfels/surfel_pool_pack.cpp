@@ -1,4 +1,4 @@
-// A node's records as surfels for the device.
+// Converts a node's records to surfels for the device.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ glm::dvec3 vector_at(const Attribute& attribute, const std::byte* record) {
             io::scalar_at(attribute.type, at + 2 * step)};
 }
 
-/// Reads one layout of records; attributes of an unexpected shape count as absent.
+/// Packs records of one layout. Attributes of an unexpected shape count as absent.
 class Packer {
  public:
     Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene,
@@ -40,8 +40,8 @@ class Packer {
         scan_ = find(io::names::scan, 1);
     }
 
-    /// Scans without a camera often come with colour fields that were never filled: a node in which every
-    /// colour is zero has none.
+    /// Drops the colours of a node in which every colour is zero: scans without a camera often have colour
+    /// fields that were never filled.
     void drop_empty_colours(const octree::NodeData& data) {
         if (!color_) return;
         const size_t stride = header_.schema.stride;
@@ -58,7 +58,7 @@ class Packer {
                             fraction(position.z - cube_.min.z));
         PackedSurfel surfel;
         surfel.a = at.x | at.y << 16;
-        // A hidden point is one that hangs in the air: not drawn, and no share of any surface.
+        // A hidden point is stored as an outlier: it is not drawn and has no share of any surface.
         const bool hidden = is_hidden(record);
         surfel.b = at.z | (hidden ? kStrayArea : area(record)) << 16 | material(position, record, scan) << 24;
         const glm::vec3 n = hidden ? glm::vec3(0.0f) : normals_.of(record);
@@ -90,7 +90,7 @@ class Packer {
         return steps > 0 ? static_cast<uint32_t>(std::min(steps, 65535.0)) : 0u;
     }
 
-    /// Eighths of an octave below the node's face: 2^(-1/8) is 9 %.
+    /// Returns the area code: eighths of an octave below the face of the node's cube; 2^(-1/8) is 9 %.
     uint32_t area(const std::byte* record) const {
         if (!area_ || area_->type != io::ScalarType::u16) return kUnknownArea;
         const double own =
@@ -115,7 +115,7 @@ class Packer {
         return 0;
     }
 
-    /// The value of full white in a scan's colours.
+    /// Returns the value of full white in a scan's colours.
     double white(uint32_t scan) const {
         if (scan < header_.scans.size()) return io::color_white(header_.scans[scan].color_bits);
         const io::ScalarType type = color_->type;
@@ -146,8 +146,8 @@ class Packer {
     const Attribute *color_, *area_, *classification_, *scan_;
 };
 
-/// Shares add up to the surface in the node. Where a hostile file claims more than any node can hold, all of
-/// them shrink: the work of drawing a node stays bounded.
+/// The shares of a node add up to its surface. Where a hostile file claims more than a node can hold, all
+/// shares shrink, so that the work of drawing a node stays bounded.
 void limit_areas(std::vector<PackedSurfel>& surfels) {
     double sum = 0;  // in faces of the node's cube
     for (const PackedSurfel& s : surfels) sum += surfel_own_area(s.b, 1.0f);

@@ -9,7 +9,7 @@ AliasTable::AliasTable(std::span<const double> weights) {
     if (!(total_ > 0)) return;
     const auto count = static_cast<double>(weights.size());
     cells_.resize(weights.size());
-    std::vector<double> share(weights.size());  // of the mean weight
+    std::vector<double> share(weights.size());  // weight over the mean weight
     std::vector<uint32_t> small, large;
     for (uint32_t i = 0; i < weights.size(); ++i) {
         share[i] = weights[i] / total_ * count;
@@ -24,7 +24,7 @@ AliasTable::AliasTable(std::span<const double> weights) {
         large.pop_back();
         small.push_back(rich);
     }
-    // What is left has the mean weight but for rounding; an index without weight is never drawn.
+    // The rest has the mean weight up to rounding. An index without weight must never be drawn.
     const auto richest = static_cast<uint32_t>(std::ranges::max_element(weights) - weights.begin());
     for (const auto* rest : {&small, &large})
         for (const uint32_t i : *rest) cells_[i] = {weights[i] > 0 ? 1.0f : 0.0f, richest};

@@ -12,16 +12,16 @@ namespace lucarne::gi::tracing {
 /// algorithm for generating random numbers with a given distribution").
 class AliasTable {
  public:
-    /// Weights are finite and not negative. Where all are zero the table is empty.
+    /// `weights` must be finite and not negative. If all are zero the table is empty.
     explicit AliasTable(std::span<const double> weights);
 
     bool empty() const { return cells_.empty(); }
-    double total() const { return total_; }  ///< of the weights
-    uint32_t draw(Random& random) const;     ///< of a table that is not empty
+    double total() const { return total_; }  ///< sum of the weights
+    uint32_t draw(Random& random) const;     ///< the table must not be empty
 
  private:
     struct Cell {
-        float own;  ///< the share of draws that keep this index; the others take `alias`
+        float own;  ///< probability that a draw keeps this index; otherwise it takes `alias`
         uint32_t alias;
     };
     std::vector<Cell> cells_;

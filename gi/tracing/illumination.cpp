@@ -58,9 +58,9 @@ double Illumination::emitted(uint32_t index) const {
     return static_cast<double>(luminance(emission_of(material(surfel.material)))) * surfel.area;
 }
 
-/// What a surfel reflects, in all, of the light that sharp lights send it: probed at one point of it for one
-/// light, so that a surfel costs one ray. Of several lights one is chosen in proportion to what it would do
-/// unhindered.
+/// Returns the light, from all sharp lights, that a surfel reflects. It is probed at one point of the surfel
+/// for one light, so that a surfel costs one ray. With several lights one is chosen in proportion to its
+/// unshadowed effect.
 double Illumination::lit(uint32_t index) const {
     const Surfel& surfel = surfels_.surfels()[index];
     Random random(kProbes, index);
@@ -74,9 +74,9 @@ double Illumination::lit(uint32_t index) const {
     for (const Light& light : sharp_) {
         glm::vec3 in, normal = surfel.normal, irradiance = light_irradiance(light, point, normal, in);
         if (irradiance == glm::vec3(0.0f))
-            irradiance = light_irradiance(light, point, normal = -normal, in);  // discs have two sides
+            irradiance = light_irradiance(light, point, normal = -normal, in);  // a disc has two sides
         double power = area * luminance(irradiance * (surface.kd + surface.ks));
-        if (light.kind != kDirectionalLight) {  // a disc that touches the lamp is not as bright as this point
+        if (light.kind != kDirectionalLight) {  // close to the lamp a disc is darker than this point
             const glm::vec3 offset = glm::vec3(light.position) - point;
             const float distance2 = glm::dot(offset, offset);
             power *= distance2 / (distance2 + radius2);

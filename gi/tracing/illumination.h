@@ -13,26 +13,27 @@
 
 namespace lucarne::gi::tracing {
 
-/// Everything that shines in a scene, ready to be sampled: lights, environment, and the surfels whose
+/// Every source of light in a scene, ready to be sampled: lights, environment, and the surfels whose
 /// material has an emission.
 ///
-/// What shines is drawn by SurfelSampler: surfels that emit in proportion to area * luminance of their
-/// emission, and surfels that sharp lights light in proportion to the light that these make them reflect.
-/// Without the latter, the small bright patch beside a lamp is met by chance alone.
+/// SurfelSampler draws surfels of two kinds: surfels that emit, in proportion to area * luminance of the
+/// emission, and surfels that sharp lights illuminate, in proportion to the light that they reflect. Without
+/// the latter only chance would find the small bright patch beside a lamp.
 class Illumination {
  public:
-    /// `surfels` outlives it.
+    /// `surfels` must outlive this.
     Illumination(const SurfelTracer& surfels, std::vector<Material> materials, std::vector<Light> lights,
                  std::shared_ptr<const Environment> environment);
 
     const SurfelTracer& surfels() const { return surfels_; }
-    /// The default, plain white, where there is none of this index.
+    /// Returns the material with this index; plain white if there is none.
     const Material& material(uint32_t index) const;
 
     std::span<const Light> sharp_lights() const { return sharp_; }
-    std::span<const Light> soft_lights() const { return soft_; }  ///< those that have to be sampled
+    std::span<const Light> soft_lights() const { return soft_; }  ///< lights that have to be sampled
     const EnvironmentSampler* environment() const { return environment_ ? &*environment_ : nullptr; }
-    /// Whether the light of a sharp one arrives at a ray's origin from the direction `in`.
+    /// Returns whether the light of a sharp light, which comes from the direction `in`, reaches the origin
+    /// of a ray.
     bool arrives(const Light& sharp, const glm::vec3& origin, const glm::vec3& in) const;
     bool anything_soft() const { return environment_ || !soft_.empty(); }
 
@@ -40,7 +41,7 @@ class Illumination {
     const SurfelSampler& lit_surfels() const { return lit_; }
 
  private:
-    // Weights of a surfel to be drawn.
+    // Weights with which surfels are drawn.
     double emitted(uint32_t surfel) const;
     double lit(uint32_t surfel) const;
     SurfelSampler sampler_of(const std::function<double(uint32_t)>& weight) const;

@@ -16,7 +16,7 @@ glm::vec3 xyz(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// A rectangle or a disc as points middle + a * u + b * v, a and b in [-1, 1] or in the unit disc.
+/// A rectangle or a disc: the points middle + a * u + b * v, with a and b in [-1, 1] or in the unit disc.
 struct Area {
     glm::vec3 middle, normal, u, v;
     float area;
@@ -39,7 +39,7 @@ Area area_of(const Light& light) {
     return result;
 }
 
-/// What arrives at `position` from the point `at` of the area.
+/// Returns the light that arrives at `position` from the point `at` of the area.
 std::optional<Incident> from_area(const Light& light, const Area& area, const glm::vec3& position,
                                   const glm::vec3& at) {
     const glm::vec3 offset = at - position;
@@ -52,9 +52,9 @@ std::optional<Incident> from_area(const Light& light, const Area& area, const gl
     return Incident{direction, xyz(light.strength), distance2 / (cosine * area.area), distance};
 }
 
-// The cap of sky of a directional light: its solid angle is 2 pi (1 - cos a) and the irradiance of a surface
-// that faces its middle pi sin^2 a times the radiance. 1 - cos a as 2 sin^2(a/2), which small angles do not
-// cancel.
+// The cap of sky of a directional light with the angular radius a. Its solid angle is 2 pi (1 - cos a); the
+// irradiance of a surface that faces its middle is pi sin^2 a times the radiance. 1 - cos a is computed as 2
+// sin^2(a/2), which does not cancel for small angles.
 float cap_height(const Light& light) {
     const float s = std::sin(light.direction.w / 2);
     return 2 * s * s;
@@ -74,7 +74,7 @@ void frame_of(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
 }
 
 bool is_sharp(const Light& light) {
-    // Below a thousandth of a degree the cap is smaller than floats tell directions apart.
+    // Below a thousandth of a degree the cap is smaller than the directions that floats can distinguish.
     constexpr float kSmallestCap = 2e-5f;
     return light.kind == kSpotLight || light.kind == kPointLight ||
            (light.kind == kDirectionalLight && light.direction.w < kSmallestCap);
@@ -144,7 +144,7 @@ EnvironmentSampler::EnvironmentSampler(std::shared_ptr<const Environment> enviro
 
 Incident EnvironmentSampler::incident(const glm::vec3& direction, size_t texel) const {
     const glm::vec3& radiance = environment_->texels[texel];
-    // Weight over total is the texel's probability, and within it directions are even.
+    // Weight over total is the probability of the texel; within it directions are evenly distributed.
     const double pdf = table_.empty() ? 0 : luminance(radiance) / table_.total();
     return {direction, radiance, static_cast<float>(pdf)};
 }

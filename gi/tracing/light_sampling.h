@@ -14,20 +14,23 @@
 
 namespace lucarne::gi::tracing {
 
-/// Light that would arrive at a point from one direction, were nothing in the way.
+/// Light that would arrive at a point from one direction if nothing blocked it.
 struct Incident {
     glm::vec3 direction;  ///< unit, toward the light
     glm::vec3 radiance;   ///< W/(sr m^2)
-    float pdf = 0;        ///< with which sampling the light draws the direction, 1/sr
+    float pdf = 0;        ///< density, 1/sr, with which sampling the light draws the direction
     float distance = std::numeric_limits<float>::infinity();
 };
 
-/// Whether light comes from a single direction (light_irradiance() knows it); the others have to be sampled.
+/// Returns whether the light comes from a single direction (then light_irradiance() computes it). Other
+/// lights have to be sampled.
 bool is_sharp(const Light& light);
 
-/// A direction of a light that is not sharp, evenly over its area or cap. Empty where it shows its dark side.
+/// Draws a direction of a light that is not sharp, evenly over its area or cap. Returns none if its dark
+/// side faces the position.
 std::optional<Incident> sample_light(const Light& light, const glm::vec3& position, Random& random);
-/// What such a light sends along a given direction, and how likely sample_light() is to draw that.
+/// Returns the light that such a light sends along a given direction, with the density of sample_light() for
+/// it.
 std::optional<Incident> light_along(const Light& light, const glm::vec3& position,
                                     const glm::vec3& direction);
 
@@ -37,7 +40,7 @@ class EnvironmentSampler {
     explicit EnvironmentSampler(std::shared_ptr<const Environment> environment);
 
     bool dark() const { return table_.empty(); }
-    Incident sample(Random& random) const;  ///< of one that is not dark
+    Incident sample(Random& random) const;  ///< the environment must not be dark
     Incident along(const glm::vec3& direction) const;
 
  private:
@@ -47,7 +50,7 @@ class EnvironmentSampler {
     AliasTable table_;
 };
 
-/// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
+/// Computes two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
 void frame_of(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent);
 
 }  // namespace lucarne::gi::tracing

@@ -11,7 +11,7 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-/// A direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
+/// Draws a direction about `axis` with the density (n+1)/(2 pi) cos^n; n = 1 is cosine-weighted.
 glm::vec3 sample_cosine_power(const glm::vec3& axis, float n, Random& random) {
     const auto u = static_cast<float>(random.uniform());
     const auto phi = static_cast<float>(2 * M_PI * random.uniform());
@@ -31,7 +31,7 @@ float mean(const glm::vec3& v) {
     return (v.x + v.y + v.z) / 3.0f;
 }
 
-/// Of draws, how many take the specular lobe; less than 0 where nothing is reflected.
+/// Returns the share of draws that take the specular lobe; negative if nothing is reflected.
 float specular_share(const Reflectance& surface) {
     const float total = mean(surface.kd) + surface.ks;
     return total > 0 ? surface.ks / total : -1.0f;

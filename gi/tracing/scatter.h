@@ -16,11 +16,11 @@ struct Scattered {
 };
 
 /// Draws a direction from the mixture of both lobes of the BRDF as seen from `out` (one-sample model, Veach
-/// 1997, sec. 9.2.4: the pdf of the whole mixture divides, whichever lobe was drawn). Empty where the draw
-/// falls below the surface: such a path carries nothing.
+/// 1997, sec. 9.2.4: the density of the whole mixture divides, whichever lobe was drawn). Returns none if
+/// the draw falls below the surface; such a path carries no light.
 std::optional<Scattered> scatter(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                                  Random& random);
-/// The density, 1/sr, with which scatter() draws a direction.
+/// Returns the density, 1/sr, with which scatter() draws a direction.
 float scatter_pdf(const Reflectance& surface, const glm::vec3& normal, const glm::vec3& out,
                   const glm::vec3& in);
 

@@ -10,37 +10,38 @@
 
 namespace lucarne::gi::tracing {
 
-/// Evenly distributed.
+/// Draws a point, evenly distributed on the disc of a surfel.
 glm::vec3 point_on_disc(const Surfel& surfel, Random& random);
 
-/// Draws surfels in proportion to weights, and points evenly on their discs, so that paths are led to
-/// surfaces which are bright (next event estimation).
+/// Draws surfels in proportion to weights, and points evenly on their discs, so that paths sample bright
+/// surfaces (next event estimation).
 ///
-/// Discs overlap and noise puts them above each other, so what a ray toward such a point meets first is often
-/// another disc. What is drawn is therefore a direction: it takes the light of whatever it meets, and counts
-/// where the disc drawn is crossed by the ray up to some end that follows from the direction alone. Its
-/// density is then the sum over all discs crossed up to there of P(disc) / (pi r^2) * d^2 / cos, which
-/// divides the draw and weighs directions drawn in other ways (multiple importance sampling, Veach & Guibas
-/// 1995). No property of the cloud is assumed: wrong weights, radii, areas, normals and positions change the
-/// noise alone.
+/// Discs overlap, and noise puts them above each other, so a ray toward such a point often hits another disc
+/// first. What is drawn is therefore a direction. It carries the light of whatever its ray hits, and counts
+/// if the ray crosses the drawn disc before an end that depends on the direction alone. The density of a
+/// direction is then the sum over all discs crossed before that end of P(disc) / (pi r^2) * d^2 / cos. It
+/// divides the draw, and weighs directions drawn in other ways (multiple importance sampling, Veach & Guibas
+/// 1995). The method assumes nothing about the cloud: wrong weights, radii, areas, normals and positions
+/// only change the noise.
 class SurfelSampler {
  public:
-    /// One weight a surfel of `surfels`, which outlives this: finite, not negative.
+    /// `weights` has one weight per surfel of `surfels`, finite and not negative. `surfels` must outlive
+    /// this.
     SurfelSampler(const SurfelTracer& surfels, std::span<const double> weights);
 
-    bool empty() const { return table_.empty(); }  ///< all weights are 0
+    bool empty() const { return table_.empty(); }  ///< true if all weights are 0
 
     struct Draw {
         uint32_t surfel;
         glm::vec3 point;  ///< on its disc
     };
-    Draw draw(Random& random) const;  ///< of one that is not empty
+    Draw draw(Random& random) const;  ///< the sampler must not be empty
 
     struct Density {
-        float pdf = 0;         ///< 1/sr, with which draws that count take this direction
+        float pdf = 0;         ///< density, 1/sr, of this direction among draws that count
         bool crossed = false;  ///< whether `drawn` is among the discs crossed
     };
-    /// Of a unit direction whose ray meets nothing before `begin` and ends at `end`, m.
+    /// Returns the density of a unit direction whose ray hits nothing before `begin` and ends at `end`, m.
     Density density(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
                     uint32_t drawn = kNoSurfel) const;
 
@@ -48,7 +49,7 @@ class SurfelSampler {
     const SurfelTracer* surfels_;
     AliasTable table_;
     std::vector<uint32_t> drawn_;  // surfels, in the order of table_
-    std::vector<float> per_area_;  // of each surfel: its probability over its disc's area, 1/m^2
+    std::vector<float> per_area_;  // of each surfel: its probability over the area of its disc, 1/m^2
 };
 
 }  // namespace lucarne::gi::tracing

@@ -55,7 +55,7 @@ Result<std::unique_ptr<SurfelTracer>> SurfelTracer::create(std::vector<Surfel> s
     if (!embree.device) return failed("reference", "Embree does not start on this machine");
     embree.scene = rtcNewScene(embree.device);
     rtcSetSceneFlags(embree.scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);  // for each_crossed()
-    // No compact or robust flags: robust ones concern triangles, and discs are planes plus a radius.
+    // No compact or robust flags: robust ones only concern triangles, and discs are planes with a radius.
     if (count > 0) {
         const RTCGeometry discs = rtcNewGeometry(embree.device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
         auto* places = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -101,7 +101,7 @@ bool any_hit(RTCScene scene, RTCRay ray) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, &ray);
-    return ray.tfar < 0;  // Embree's sign of a hit: -infinity
+    return ray.tfar < 0;  // Embree sets it to -infinity on a hit
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ void SurfelTracer::each_crossed(const glm::vec3& origin, const glm::vec3& direct
     context.visit = &visit;
     context.filter = [](const RTCFilterFunctionNArguments* found) {
         (*static_cast<const Context*>(found->context)->visit)(RTCHitN_primID(found->hit, found->N, 0));
-        found->valid[0] = 0;  // no hit: the ray goes on
+        found->valid[0] = 0;  // reject the hit, so that the ray continues
     };
     RTCRay ray = make_ray(origin, direction, end);
     ray.tnear = begin;
@@ -140,7 +140,7 @@ double SurfelTracer::coverage() const {
 }
 
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius) {
-    // 1e-6 of the largest coordinate is some eight float steps: below that Embree's rounding decides.
+    // 1e-6 of the largest coordinate is some eight float steps; below that Embree's rounding decides.
     const float largest = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
     return position + normal * std::max(kOriginOffset * radius, 1e-6f * largest);
 }

@@ -13,9 +13,9 @@
 
 namespace lucarne::gi::tracing {
 
-/// A ray starts this many radii above its surfel, along the normal. See
-/// gi/engines/reference/README.md for how it was chosen: what it loses in corners against what noise in the
-/// positions would shade wrongly.
+/// A ray starts this many radii above its surfel, along the normal. gi/engines/reference/README.md explains
+/// the choice: it weighs the light lost in corners against the wrong shadows that noise in the positions
+/// would cause.
 inline constexpr float kOriginOffset = 1.0f;
 
 /// Ray queries against surfels as opaque discs with two equal sides (Embree's oriented discs). Surfels
@@ -29,23 +29,23 @@ class SurfelTracer {
     SurfelTracer(const SurfelTracer&) = delete;
     SurfelTracer& operator=(const SurfelTracer&) = delete;
 
-    /// Those that can be hit.
+    /// The surfels that can be hit.
     const std::vector<Surfel>& surfels() const { return surfels_; }
 
-    /// The nearest surfel along a ray (`direction` is a unit vector), as an index into surfels().
+    /// Returns the nearest surfel along a ray (`direction` is a unit vector), as an index into surfels().
     std::optional<uint32_t> nearest(const glm::vec3& origin, const glm::vec3& direction) const;
-    /// Whether anything stands on the segment, its ends excluded.
+    /// Returns whether a surfel blocks the segment, its ends excluded.
     bool occluded(const glm::vec3& from, const glm::vec3& to) const;
-    /// Whether anything stands on the whole ray.
+    /// Returns whether a surfel blocks the whole ray.
     bool occluded_along(const glm::vec3& origin, const glm::vec3& direction) const;
 
-    /// Calls visit(index) once for every surfel on the ray from `begin` to `end`, m, in no order that is
-    /// promised but always the same.
+    /// Calls visit(index) once for every surfel on the ray from `begin` to `end`, m. The order is
+    /// unspecified, but the same on every run.
     void each_crossed(const glm::vec3& origin, const glm::vec3& direction, float begin, float end,
                       const std::function<void(uint32_t)>& visit) const;
 
-    /// Area of all discs over the area of the surface (the sum of the surfels' shares), 0 where that is
-    /// unknown. Randomly placed surfels let a share exp(-coverage) of the rays through.
+    /// Returns the area of all discs over the area of the surface (the sum of the surfels' shares); 0 if
+    /// that is unknown. Randomly placed surfels let a share exp(-coverage) of the rays through.
     double coverage() const;
 
  private:
@@ -55,8 +55,8 @@ class SurfelTracer {
     std::vector<Surfel> surfels_;
 };
 
-/// Where a ray from a surfel starts: above its disc, far enough for the rounding of the coordinates as well.
-/// `normal` is turned to the side the ray leaves on.
+/// Returns the origin of a ray from a surfel: above its disc, and far enough for the rounding of
+/// coordinates. `normal` points to the side where the ray leaves.
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float radius);
 
 }  // namespace lucarne::gi::tracing

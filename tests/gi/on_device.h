@@ -8,7 +8,8 @@
 
 namespace lucarne::gi {
 
-/// A test that needs OpenGL. It fails where no device opens: Mesa's software devices run everywhere.
+/// Fixture of tests that need OpenGL. The test fails if no device opens, because Mesa's software devices run
+/// everywhere.
 class OnDevice : public ::testing::Test {
  protected:
     void SetUp() override {

@@ -32,7 +32,7 @@ T value_of(cl_device_id device, cl_device_info what) {
     return value;
 }
 
-/// The first device of any platform that is of the kind; null where there is none.
+/// Returns the first device of this kind on any platform; null if there is none.
 cl_device_id find_device(cl_device_type kind) {
     cl_uint count = 0;
     if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS) return nullptr;
@@ -45,7 +45,7 @@ cl_device_id find_device(cl_device_type kind) {
     return nullptr;
 }
 
-/// The first error of clang's log, which names file and line by itself.
+/// Returns the first error of clang's log, which names file and line itself.
 std::string first_error(const std::string& log) {
     for (size_t at = 0; at < log.size();) {
         const size_t end = std::min(log.find('\n', at), log.size());
@@ -120,7 +120,7 @@ Result<ClBuffer> ClDevice::buffer(size_t bytes, std::string_view what) {
 
 Result<void> ClDevice::reserve(ClBuffer& target, size_t bytes, std::string_view what) {
     if (target && target.bytes() >= bytes) return {};
-    target = ClBuffer();  // first, so that the old and the new never count together
+    target = ClBuffer();  // free the old buffer first, so that both never count together
     LUCARNE_ASSIGN(target, buffer(bytes, what));
     return {};
 }

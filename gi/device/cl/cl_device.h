@@ -14,7 +14,7 @@
 #include "gi/device/gl/shader_texts.h"
 #include "io/core/error.h"
 
-// OpenCL's own handles, so that its headers stay in cl_device.cpp.
+// Forward declarations of OpenCL's handles, which keep its headers inside cl_device.cpp.
 struct _cl_context;
 struct _cl_command_queue;
 struct _cl_device_id;
@@ -26,7 +26,8 @@ namespace lucarne::gi {
 
 class ClDevice;
 
-/// Memory of an OpenCL device, counted under the cap of the OpenGL device beside it.
+/// A buffer in the memory of an OpenCL device. It counts against the memory cap of the OpenGL device.
+/// Move-only.
 class ClBuffer {
  public:
     ClBuffer() = default;
@@ -36,7 +37,7 @@ class ClBuffer {
 
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return memory_ != nullptr; }
-    /// Both wait for the device. Errors: the device failed.
+    /// Copy to and from the host; both wait for the device. Errors: out of bounds, the device failed.
     Result<void> upload(size_t offset, std::span<const std::byte> data);
     Result<void> download(size_t offset, std::span<std::byte> out) const;
 
@@ -48,15 +49,15 @@ class ClBuffer {
     size_t bytes_ = 0;
 };
 
-/// A function of a compiled OpenCL program; owned by the device's cache.
+/// A kernel function of a compiled OpenCL program. The cache of its ClDevice owns it.
 class ClKernel {
  public:
     ~ClKernel();
     ClKernel(const ClKernel&) = delete;
     ClKernel& operator=(const ClKernel&) = delete;
-    /// Sets the arguments in their order, and runs `items` work-items in groups of `group` (0: the driver
-    /// chooses). `items` is rounded up to whole groups. Arguments: ClBuffers and plain values (uint32_t,
-    /// float). Errors: an argument does not fit; the device failed.
+    /// Sets the arguments in order and runs `items` work-items in groups of `group` (0: the driver chooses).
+    /// `items` is rounded up to whole groups. Arguments are ClBuffers and plain values (uint32_t, float).
+    /// Errors: an argument does not fit, the device failed.
     template <class... Arguments>
     Result<void> run(size_t items, size_t group, const Arguments&... arguments) const {
         uint32_t index = 0;
@@ -88,28 +89,28 @@ struct ClDeviceInfo {
     bool is_gpu = false;
 };
 
-/// One OpenCL device with one queue in order; used from the OpenGL device's thread. Engines that need it open
-/// it in Engine::prepare: starting OpenCL takes most of a second.
+/// One OpenCL device with one in-order queue. Use it from the OpenGL device's thread. Engines that need it
+/// open it in Engine::prepare, because starting OpenCL takes most of a second.
 class ClDevice {
  public:
-    /// The first GPU, else the first processor. `budget`: its memory cap holds for both, and it outlives
-    /// this. Errors: there is none; the message says what to install.
+    /// Opens the first GPU of any platform, else the first processor. The memory cap of `budget` holds for
+    /// both devices; `budget` must outlive this. Errors: no device; the message says what to install.
     static Result<std::unique_ptr<ClDevice>> open(Device& budget);
     ~ClDevice();
     ClDevice(const ClDevice&) = delete;
     ClDevice& operator=(const ClDevice&) = delete;
 
     const ClDeviceInfo& info() const { return info_; }
-    /// Not initialised. Errors: over the cap, over max_buffer_bytes, out of device memory.
+    /// Returns an uninitialised buffer. Errors: over the cap, over max_buffer_bytes, out of device memory.
     Result<ClBuffer> buffer(size_t bytes, std::string_view what);
-    /// Makes `buffer` hold at least `bytes`; contents are lost when it grows.
+    /// Grows `buffer` to at least `bytes`; growing loses its contents. Errors as for buffer().
     Result<void> reserve(ClBuffer& buffer, size_t bytes, std::string_view what);
-    /// The function `name` of an embedded source ("gi/engines/micro/gather.cl"), compiled once for each set
-    /// of defines. Includes are resolved as those of shaders are. The driver keeps the binaries (PoCL in
+    /// Returns the function `name` of an embedded source ("gi/engines/micro/gather.cl"), compiled once for
+    /// each set of defines. Includes are resolved as in shaders. The driver caches the binaries (PoCL in
     /// POCL_CACHE_DIR). Errors carry the compiler's first message with file and line.
     Result<const ClKernel*> kernel(std::string_view path, std::string_view name, const Defines& defines = {},
                                    const std::vector<ShaderText>& texts = shader_texts());
-    /// Waits until all work is done. Errors: the device failed.
+    /// Waits until all queued work is done. Errors: the device failed.
     Result<void> finish();
 
  private:

@@ -6,7 +6,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr size_t kPiece = size_t{16} << 20;  ///< bytes on the host at a time
+constexpr size_t kPiece = size_t{16} << 20;  ///< bytes in host memory at a time
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace lucarne::gi {
 bool ContextWatch::lost() {
     if (!reason_.empty()) return true;
     if (checks_left_ && (*checks_left_ == 0 || --*checks_left_ == 0)) {
-        reason_ = "its context was lost, as a test wished";
+        reason_ = "its context was lost, as a test requested";
         return true;
     }
     switch (glGetGraphicsResetStatus()) {

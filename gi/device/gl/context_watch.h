@@ -8,15 +8,15 @@
 
 namespace lucarne::gi {
 
-/// Whether the OpenGL context that is current still works: a driver that was reset, updated or taken away
-/// loses all contexts and what was made in them (ARB_robustness), and they have to be made again.
+/// Watches whether the current OpenGL context still works. When a driver is reset, updated or removed, all
+/// contexts and everything made in them are lost (ARB_robustness) and have to be made again.
 class ContextWatch {
  public:
-    /// Asks the driver; once true it stays so.
+    /// Asks the driver. Once it has returned true it keeps returning true.
     bool lost();
-    /// Why, as far as the driver tells; empty while it works.
+    /// Why the context was lost, as far as the driver tells; empty while it works.
     const std::string& reason() const { return reason_; }
-    /// For tests: lost() says so from its `checks`th call on, whatever the driver says.
+    /// For tests: lost() returns true from its `checks`th call on, whatever the driver says.
     void lose_after(uint32_t checks) { checks_left_ = checks; }
 
  private:
@@ -24,16 +24,16 @@ class ContextWatch {
     std::string reason_;
 };
 
-/// After how many checks the first context, the second ... are to be lost, for tests of the whole program;
-/// those beyond the list never are. One reader.
+/// For tests of the whole program: after how many checks the first, the second, ... context is lost.
+/// Contexts beyond the end of the list are never lost. Not thread-safe.
 class LossPlan {
  public:
-    /// "30,5": numbers with commas between; what is no number ends the list.
+    /// "30,5": numbers separated by commas. The list ends at the first text that is not a number.
     explicit LossPlan(std::string_view numbers);
-    /// Of an environment variable; LUCARNE_TEST_LOSE_CONTEXT and LUCARNE_TEST_LOSE_WINDOW
+    /// Reads the plan from an environment variable: LUCARNE_TEST_LOSE_CONTEXT or LUCARNE_TEST_LOSE_WINDOW
     /// (gi/device/gl/README.md).
     static LossPlan from_environment(const char* variable);
-    /// For the next context that is made; none: it is left alone.
+    /// Returns the number of checks for the next context that is made; none if it shall not be lost.
     std::optional<uint32_t> next();
 
  private:

@@ -38,7 +38,7 @@ void clear_errors() {
     }
 }
 
-/// A linked program's name; errors carry the compiler's first message.
+/// Compiles and links a program and returns its name. Errors carry the compiler's first message.
 Result<GLuint> compile(std::string_view path, const ShaderSource& source) {
     const char* text = source.text.c_str();
     const GLuint id = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
@@ -55,7 +55,7 @@ Result<GLuint> compile(std::string_view path, const ShaderSource& source) {
                   "the driver is " + gl_string(GL_VERSION));
 }
 
-/// A program and what it was made of.
+/// A program and the source it was compiled from.
 struct CompiledProgram {
     std::string text;
     std::unique_ptr<Program> program;
@@ -64,7 +64,7 @@ struct CompiledProgram {
 }  // namespace
 
 struct Device::State {
-    std::unique_ptr<HeadlessContext> context;  // empty: a window's; last to go
+    std::unique_ptr<HeadlessContext> context;  // empty if the context is a window's; destroyed last
     DeviceInfo info;
     uint64_t cap = UINT64_MAX, used = 0;
     bool refused = false;
@@ -154,7 +154,7 @@ Result<void> Device::take_memory(uint64_t bytes, std::string_view what) {
     state_->refused |= !fits;
     if (!fits)
         return failed(std::string(what),
-                      fmt::format("{} MiB more than the {} MiB in use exceed the device's {} MiB",
+                      fmt::format("{} MiB in addition to the {} MiB in use exceed the cap of {} MiB",
                                   bytes >> 20, state_->used >> 20, state_->cap >> 20),
                       kMemoryTodo);
     state_->used += bytes;
@@ -179,7 +179,7 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
     Buffer made;
     glCreateBuffers(1, &made.id_);
     glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
-    if (glGetError() != GL_NO_ERROR) {  // `made` has no share of the budget: its device_ is empty
+    if (glGetError() != GL_NO_ERROR) {  // `made` returns nothing to the budget: its device_ is null
         give_memory_back(bytes);
         return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
     }
@@ -190,7 +190,7 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
 
 Result<void> Device::reserve(Buffer& target, size_t bytes, std::string_view what) {
     if (target && target.bytes() >= bytes) return {};
-    target = Buffer();  // first, so that the old and the new never count together
+    target = Buffer();  // free the old buffer first, so that both never count together
     LUCARNE_ASSIGN(target, buffer(bytes, what));
     return {};
 }
@@ -245,7 +245,7 @@ const std::string& Device::shader_problem() const {
 
 void Device::note_unknown_uniform(std::string_view path, std::string_view uniform) {
     const std::string what = fmt::format("shader {}: uniform {}", path, uniform);
-    // Whoever edits shaders may leave one out for a while.
+    // Whoever edits shaders may remove a uniform for a while.
     if (state_->shaders)
         note_shader_problem(Error{ErrorKind::failed, what, "is not declared", ""});
     else if (state_->mistake.empty())

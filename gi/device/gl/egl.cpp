@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kTodo =
     "install Mesa's drivers (libegl-mesa0, libgl1-mesa-dri) or a graphics driver with OpenGL 4.5";
 
-/// Displays worth trying, best first.
+/// Returns the displays worth trying, best first.
 std::vector<EGLDisplay> displays() {
     std::vector<EGLDisplay> found;
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) return found;
@@ -36,7 +36,7 @@ std::vector<EGLDisplay> displays() {
     return found;
 }
 
-/// A context on `display`, current; EGL_NO_CONTEXT and the reason where there is none.
+/// Creates a context on `display` and makes it current. On failure returns EGL_NO_CONTEXT and sets `why`.
 EGLContext make_current_context(EGLDisplay display, std::string& why) {
     EGLint major = 0, minor = 0;
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) {
@@ -60,7 +60,7 @@ EGLContext make_current_context(EGLDisplay display, std::string& why) {
 #else
     constexpr EGLint kDebug = EGL_TRUE;
 #endif
-    // The last pair has the driver tell of a reset (EGL 1.5, 3.7.1); drivers that cannot refuse it.
+    // The last pair asks the driver to report resets (EGL 1.5, 3.7.1). Drivers that cannot do so refuse it.
     std::array<EGLint, 11> attributes = {EGL_CONTEXT_MAJOR_VERSION,
                                          4,
                                          EGL_CONTEXT_MINOR_VERSION,
@@ -92,9 +92,9 @@ EGLContext make_current_context(EGLDisplay display, std::string& why) {
 }  // namespace
 
 Result<std::unique_ptr<HeadlessContext>> HeadlessContext::create() {
-    // libepoxy aborts where libEGL itself is missing, so ask first.
+    // libepoxy aborts if libEGL itself is missing, so check first.
     if (!epoxy_has_egl()) return failed("OpenGL", "no usable device: the EGL library is missing", kTodo);
-    std::string why = "EGL knows no platform without a window";
+    std::string why = "EGL has no platform that works without a window";
     for (EGLDisplay display : displays()) {
         EGLContext context = make_current_context(display, why);
         if (context != EGL_NO_CONTEXT)
@@ -107,7 +107,7 @@ HeadlessContext::~HeadlessContext() {
     if (eglGetCurrentContext() == context_)
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
-    // The display stays: EGL hands the same one to every context of the process.
+    // The display stays open: EGL hands the same one to every context of the process.
 }
 
 }  // namespace lucarne::gi

@@ -6,11 +6,12 @@
 
 namespace lucarne::gi {
 
-/// A current OpenGL 4.5 core context without a window. Its destruction makes it no longer current.
+/// An OpenGL 4.5 core context without a window, current on this thread. The destructor makes it no longer
+/// current.
 class HeadlessContext {
  public:
-    /// Hardware first (EGL_EXT_platform_device), then Mesa's surfaceless platform, which always has llvmpipe.
-    /// Errors: no EGL, or no device with OpenGL 4.5.
+    /// Tries hardware first (EGL_EXT_platform_device), then Mesa's surfaceless platform, which always has
+    /// llvmpipe. Errors: no EGL, or no device with OpenGL 4.5.
     static Result<std::unique_ptr<HeadlessContext>> create();
     ~HeadlessContext();
     HeadlessContext(const HeadlessContext&) = delete;
@@ -18,7 +19,7 @@ class HeadlessContext {
 
  private:
     HeadlessContext(void* display, void* context) : display_(display), context_(context) {}
-    void* display_;  // EGLDisplay and EGLContext: their header drags X11's macros along
+    void* display_;  // EGLDisplay and EGLContext as void*: their header includes X11's macros
     void* context_;
 };
 

@@ -9,7 +9,7 @@
 namespace lucarne::gi {
 namespace {
 
-/// Of gi/shared/many_threads.glsl.
+/// The uniform of gi/shared/many_threads.glsl.
 constexpr const char* kThreadsARow = "threads_a_row";
 
 constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
@@ -20,7 +20,7 @@ constexpr GLbitfield kAllReads = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETC
 std::set<std::string, std::less<>> declared_uniforms(std::string_view text) {
     std::set<std::string, std::less<>> names;
     const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-    std::string plain;  // without comments to the line's end
+    std::string plain;  // the text without // comments
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find('\n', at), text.size());
         const std::string_view line = text.substr(at, end - at);

@@ -8,7 +8,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr uint64_t kMostBytes = uint64_t{1} << 20;  ///< of a file; ours have some thousand
+constexpr uint64_t kMostBytes = uint64_t{1} << 20;  ///< of a file; ours have a few thousand
 
 std::optional<std::string> whole_text(const std::filesystem::path& path) {
     const auto file = InputFile::open(path);

@@ -9,18 +9,18 @@
 
 namespace lucarne::gi {
 
-/// The shader files as they are on disk now, for who writes them; those that are not there are the program's
-/// own. Only files that the program knows are read.
+/// The shader files as they are on disk now, for developers of shaders. The embedded text stands in for
+/// files that are not there. Only files that are embedded in the program are read.
 class ShaderFolder {
  public:
-    /// `folder` holds the files as the project's root does ("gi/engines/vpl/shading/shade.comp").
+    /// `folder` has the layout of the project's root ("gi/engines/vpl/shading/shade.comp").
     explicit ShaderFolder(std::filesystem::path folder) : folder_(std::move(folder)) { read(); }
     void read();
     const std::vector<ShaderText>& texts() const { return texts_; }
 
  private:
     std::filesystem::path folder_;
-    std::deque<std::string> read_;  ///< what texts_ points at
+    std::deque<std::string> read_;  ///< owns the texts read from disk, to which texts_ points
     std::vector<ShaderText> texts_;
 };
 

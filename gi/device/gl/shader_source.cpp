@@ -50,7 +50,7 @@ class Assembler {
         return {};
     }
 
-    /// OpenCL's compilers take names of files, GLSL's numbers.
+    /// OpenCL compilers take file names in #line, GLSL takes file numbers.
     void add_place(size_t line, size_t file) {
         if (language_ == ShaderLanguage::opencl)
             source.text += fmt::format("#line {} \"{}\"\n", line, source.files[file]);
@@ -67,7 +67,8 @@ class Assembler {
 Result<ShaderSource> shader_source(std::string_view path, const Defines& defines,
                                    const std::vector<ShaderText>& texts, ShaderLanguage language) {
     Assembler assembler(texts, language);
-    // Without contraction a result is the same on every device that computes in the same order.
+    // Without contraction of floating-point operations the result is the same on every device that computes
+    // in the same order.
     assembler.source.text =
         language == ShaderLanguage::glsl ? "#version 450 core\n" : "#pragma OPENCL FP_CONTRACT OFF\n";
     for (const auto& [name, value] : defines)
@@ -84,7 +85,7 @@ std::string readable_message(std::string_view log, const std::vector<std::string
         rest.remove_prefix(std::min(end + 1, rest.size()));
         if (first.empty()) first = line;
         unsigned file = 0, number = 0;
-        int mesa = 0, nvidia = 0;  // characters before the message, 0 where the line is not of the kind
+        int mesa = 0, nvidia = 0;  // characters before the message; 0 if the line has another format
         if (std::sscanf(line.c_str(), "%u:%u(%*u): %n", &file, &number, &mesa) < 2 || !mesa)
             std::sscanf(line.c_str(), "%u(%u) : %n", &file, &number, &nvidia);
         const auto start = static_cast<size_t>(std::max(mesa, nvidia));

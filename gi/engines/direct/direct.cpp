@@ -32,11 +32,11 @@ class DirectEngine : public Engine {
  private:
     Buffer materials_;
     Sky sky_;
-    GBuffer light_gbuffer_;  // of one light's view after another
+    GBuffer light_gbuffer_;  // reused for the view of each light in turn
 };
 
 Result<void> DirectEngine::render(Frame& frame) {
-    if (frame.settings[kOnlyBounce] > 0) {  // no bounce at all is drawn here
+    if (frame.settings[kOnlyBounce] > 0) {  // this engine draws no indirect bounce
         frame.gl.radiance.clear(0);
         return {};
     }

@@ -4,7 +4,7 @@
 
 namespace lucarne::gi {
 
-/// Light from the spots after one reflection, with shadow maps: bounce 0 of every other engine.
+/// Direct light with shadow maps, from all kinds of lights: bounce 0 of every other engine.
 EngineEntry direct_engine();
 
 }  // namespace lucarne::gi

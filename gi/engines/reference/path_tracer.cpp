@@ -19,13 +19,13 @@ using tracing::scatter;
 using tracing::scatter_pdf;
 namespace {
 
-constexpr uint32_t kRouletteFrom = 4;  // bounces that every path may take before chance ends it
+constexpr uint32_t kRouletteFrom = 4;  // bounces of every path before Russian roulette may end it
 constexpr float kLargestSurvival = 0.95f;
-constexpr float kSheetThickness = 4.0f;  // radii; noise of a spacing is about two
-constexpr float kGrazing = 0.1f;         // cosine below which a sheet is not followed further
-constexpr float kMostShift = 4.0f;  // radii: beyond that the ray grazes a plane that is hardly the surface
+constexpr float kSheetThickness = 4.0f;  // in radii; a noise of one spacing is about two radii
+constexpr float kGrazing = 0.1f;         // least cosine when computing how far a sheet extends along a ray
+constexpr float kMostShift = 4.0f;  // in radii; beyond that the ray grazes a plane that is hardly the surface
 
-/// The weight of a draw that another way draws with the density `other` (balance heuristic).
+/// Returns the weight of a draw that another strategy draws with the density `other` (balance heuristic).
 float balance(float own, float other) {
     return own / (own + other);
 }
@@ -34,21 +34,21 @@ float balance(float own, float other) {
 
 struct PathTracer::Vertex {
     glm::vec3 position;
-    glm::vec3 normal;  // toward where the path came from
-    glm::vec3 out;     // likewise, along the ray
-    glm::vec3 origin;  // of rays that leave, a radius above
+    glm::vec3 normal;  // on the side where the path came from
+    glm::vec3 out;     // unit, toward where the path came from
+    glm::vec3 origin;  // of rays that leave, one radius above the surface
     glm::vec3 emission;
     float radius;
     Reflectance surface;
 };
 
-/// A direction, the density with which the BRDF draws it, and what it meets.
+/// A direction, the density with which the BRDF draws it, and what the ray hits.
 struct PathTracer::Ray {
     glm::vec3 direction;
     float pdf;
-    const Surfel* hit = nullptr;   // or none
-    float distance = 0, side = 0;  // of the hit's plane from the origin; cosine to its normal
-    glm::vec3 point{0.0f};         // where it meets that plane
+    const Surfel* hit = nullptr;   // null if nothing is hit
+    float distance = 0, side = 0;  // distance to the plane of the hit, cosine to its normal
+    glm::vec3 point{0.0f};         // where the ray meets that plane
 };
 
 PathTracer::PathTracer(const Illumination& illumination, const PathSettings& settings)
@@ -76,7 +76,7 @@ bool PathTracer::anything_random() const {
     return last_ > 0 || light_.anything_soft();
 }
 
-/// What light from single directions becomes here.
+/// Returns the reflected light of the sharp lights.
 glm::vec3 PathTracer::sharp_light(const Vertex& v) const {
     glm::vec3 sum(0.0f);
     for (const Light& light : light_.sharp_lights()) {
@@ -88,7 +88,7 @@ glm::vec3 PathTracer::sharp_light(const Vertex& v) const {
     return sum;
 }
 
-/// Likewise from areas, caps and the environment: one draw each.
+/// Returns the reflected light of areas, caps and the environment: one draw each.
 glm::vec3 PathTracer::soft_light(const Vertex& v, Random& random) const {
     glm::vec3 sum(0.0f);
     const auto add = [&](const Incident& in) {
@@ -107,7 +107,7 @@ glm::vec3 PathTracer::soft_light(const Vertex& v, Random& random) const {
     return sum;
 }
 
-/// What arrives of the same along a direction that the BRDF drew, weighted.
+/// Returns the weighted light of the same sources along a direction that the BRDF drew.
 glm::vec3 PathTracer::soft_light_along(const Vertex& v, const Ray& ray) const {
     glm::vec3 sum(0.0f);
     for (const Light& light : light_.soft_lights()) {
@@ -125,7 +125,7 @@ glm::vec3 PathTracer::soft_light_along(const Vertex& v, const Ray& ray) const {
     return sum;
 }
 
-/// `side` stays 0 where it meets nothing, or a disc edge-on.
+/// Casts a ray. `side` stays 0 if it hits nothing, or a disc edge-on.
 PathTracer::Ray PathTracer::cast(const Vertex& from, const glm::vec3& direction, float pdf) const {
     Ray ray{direction, pdf};
     const auto hit = surfels_.nearest(from.origin, direction);
@@ -139,9 +139,10 @@ PathTracer::Ray PathTracer::cast(const Vertex& from, const glm::vec3& direction,
     return ray;
 }
 
-/// The vertex where a ray ends. It started a radius above its surface to get clear of it, and would see
-/// everything from a radius nearer. So what it met is lit where the line from the surface itself meets that
-/// plane; rays go on from what was hit, so that none gets out through a corner.
+/// Returns the vertex where a ray ends. The ray started a radius above its surface to clear it, and so would
+/// see everything from a radius nearer. Therefore the vertex is lit at the point where the line from the
+/// surface itself meets the plane of the hit. Rays continue from the point that was hit, so that none
+/// escapes through a corner.
 PathTracer::Vertex PathTracer::arrive(const Vertex& from, const Ray& ray) const {
     const Surfel& surfel = *ray.hit;
     Vertex at = vertex({ray.point, ray.side > 0 ? surfel.normal : -surfel.normal, -ray.direction,
@@ -152,7 +153,8 @@ PathTracer::Vertex PathTracer::arrive(const Vertex& from, const Ray& ray) const 
     return at;
 }
 
-/// Discs that may have been drawn in the place of the one met lie behind it within the noise of their sheet.
+/// Returns the density of a draw. Discs that may have been drawn instead of the one that was hit lie behind
+/// it within the noise of their sheet.
 SurfelSampler::Density PathTracer::density(const SurfelSampler& sampler, const Vertex& from, const Ray& ray,
                                            uint32_t drawn) const {
     const float behind = kSheetThickness * ray.hit->radius / std::max(std::abs(ray.side), kGrazing);
@@ -160,12 +162,13 @@ SurfelSampler::Density PathTracer::density(const SurfelSampler& sampler, const V
     return sampler.density(from.origin, ray.direction, begin, ray.distance + behind, drawn);
 }
 
-/// What the light of one surfel becomes here, emitted or of sharp lights as `sampler` has it.
+/// Draws one surfel and returns its reflected light: emission, or reflected sharp light, depending on
+/// `sampler`.
 glm::vec3 PathTracer::sampled_surfel(const SurfelSampler& sampler, const Vertex& v, Random& random) const {
     const auto [drawn, point] = sampler.draw(random);
     const glm::vec3 in = glm::normalize(point - v.origin);
     const glm::vec3 f = brdf(v.surface, v.normal, v.out, in);
-    if (!(luminance(f) > 0)) return glm::vec3(0.0f);  // nor where the point is the origin
+    if (!(luminance(f) > 0)) return glm::vec3(0.0f);  // also if the point is the origin
     const Ray ray = cast(v, in, scatter_pdf(v.surface, v.normal, v.out, in));
     if (ray.side == 0) return glm::vec3(0.0f);
     const Vertex at = arrive(v, ray);
@@ -175,7 +178,7 @@ glm::vec3 PathTracer::sampled_surfel(const SurfelSampler& sampler, const Vertex&
     return crossed ? f * light * (glm::dot(v.normal, in) / (pdf + ray.pdf)) : glm::vec3(0.0f);
 }
 
-/// The light of what the BRDF's ray met, weighted.
+/// Returns the weighted light of the surface that the BRDF's ray hit.
 glm::vec3 PathTracer::met_light(const Vertex& from, const Vertex& at, const Ray& ray) const {
     const auto weighed = [&](const glm::vec3& light, const SurfelSampler& sampler) {
         return light == glm::vec3(0.0f) ? light : light * balance(ray.pdf, density(sampler, from, ray).pdf);
@@ -185,7 +188,7 @@ glm::vec3 PathTracer::met_light(const Vertex& from, const Vertex& at, const Ray&
            (settings_.sample_lit ? weighed(sharp, light_.lit_surfels()) : sharp);
 }
 
-/// All light of one path from `first` that has chance in it.
+/// Returns the sampled light of one path from `first`.
 glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
     glm::vec3 sum(0.0f), throughput(1.0f);
     Vertex at = first;
@@ -217,9 +220,9 @@ glm::vec3 PathTracer::path(const Vertex& first, Random& random) const {
     return sum;
 }
 
-/// The G-buffer may take a disc's rim that sticks out a little behind another surface (kRimPush). Its rays
-/// have to start on the viewer's side of that surface, or the rims of a sealed room would be lit from
-/// outside.
+/// Returns the origin for rays of a start. The G-buffer may show the rim of a disc that lies a little behind
+/// another surface (kRimPush). Such rays have to start on the viewer's side of that surface; otherwise the
+/// rims of a sealed room would be lit from outside.
 glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& start) const {
     const auto hit = surfels_.nearest(origin, start.viewer);
     if (!hit) return origin;
@@ -227,7 +230,7 @@ glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& st
     const float side = glm::dot(surfel.normal, start.viewer);
     if (side == 0) return origin;
     const float distance = glm::dot(surfel.normal, surfel.position - origin) / side;
-    if (distance > 2 * std::max(start.radius, surfel.radius)) return origin;  // something else in front of it
+    if (distance > 2 * std::max(start.radius, surfel.radius)) return origin;  // another object in front of it
     return offset_origin(origin + start.viewer * distance, side > 0 ? surfel.normal : -surfel.normal,
                          surfel.radius);
 }
@@ -237,7 +240,7 @@ PathSums PathTracer::trace(const Start& start, uint64_t index) const {
     if (!(start.radius > 0)) return sums;
     Vertex first = vertex(start);
     first.origin = before_what_hides(first.origin, start);
-    // Emission and light from single directions have no chance in them: once is enough.
+    // Emission and sharp light are not sampled: once is enough.
     if (counts(0)) sums.exact = glm::dvec3(first.emission + sharp_light(first));
     if (!anything_random()) return sums;
     const uint64_t key = mix64(mix64(settings_.seed, settings_.frame), index);
@@ -245,7 +248,7 @@ PathSums PathTracer::trace(const Start& start, uint64_t index) const {
     for (uint64_t i = 0; i < samples; ++i) {
         Random random(key, i);
         const glm::vec3 light = path(first, random);
-        const uint64_t half = (settings_.frame * samples + i) & 1;  // single paths take turns frame by frame
+        const uint64_t half = (settings_.frame * samples + i) & 1;  // one path a frame: the halves alternate
         sums.halves[half] += glm::dvec3(light);
         ++sums.paths[half];
         const double bright = luminance(light);

@@ -22,42 +22,44 @@ using tracing::SurfelTracer;
 
 struct PathSettings {
     uint32_t bounces = 1;
-    int32_t only_bounce = -1;  ///< >= 0: just that one
+    int32_t only_bounce = -1;  ///< >= 0: this bounce alone
     uint32_t samples = 64;     ///< paths a start
     uint64_t seed = 1;
-    uint64_t frame = 0;  ///< each frame takes paths of its own
-    /// Whether paths are led to what sharp lights light; else the BRDF alone has to find it. Same mean.
+    uint64_t frame = 0;  ///< each frame has paths of its own
+    /// Whether paths sample the surfels that sharp lights illuminate; otherwise only the BRDF finds them.
+    /// The mean is the same.
     bool sample_lit = true;
 };
 
-/// A point whose outgoing radiance is wanted: what a G-buffer texel says of it.
+/// A point whose outgoing radiance is computed, as a G-buffer texel describes it.
 struct Start {
     glm::vec3 position;
     glm::vec3 normal;  ///< unit, toward the viewer
     glm::vec3 viewer;  ///< unit, from the point to the viewer
     glm::vec3 albedo;  ///< linear, before the material's scale
-    float radius = 0;  ///< of its surfel; 0: there is nothing here, its radiance is 0
+    float radius = 0;  ///< of its surfel; 0: no surface here, the radiance is 0
     uint32_t material = 0;
 };
 
-/// Unidirectional path tracing over surfels. Lights, environment and emitting surfels are sampled where a
-/// path reflects (next event estimation), and so are surfels that sharp lights light; what the BRDF's own
-/// directions meet counts as well, all weighted by the balance heuristic (Veach & Guibas 1995).
+/// Unidirectional path tracing over surfels. At each vertex a path samples lights, environment, emitting
+/// surfels (next event estimation) and surfels that sharp lights illuminate. The light that the BRDF's own
+/// directions find counts as well; all are weighted by the balance heuristic (Veach & Guibas 1995).
 ///
-/// Bounces are orders of the Neumann series L = sum_k T^k L0 (Kajiya 1986): L0 is emission and the light that
-/// comes from lights and the environment and is reflected once (bounce 0), and each bounce is one more
-/// reflection by the transport operator T. Emission therefore counts like directly reflected light: seen
-/// directly it is bounce 0.
+/// Bounces are orders of the Neumann series L = sum_k T^k L0 (Kajiya 1986). L0 is emission, plus the light
+/// of lights and the environment reflected once (bounce 0). Each bounce is one more reflection by the
+/// transport operator T. Emission therefore counts like directly reflected light: seen directly it is bounce
+/// 0.
 class PathTracer {
  public:
-    /// `illumination` outlives the tracer.
+    /// `illumination` must outlive the tracer.
     PathTracer(const Illumination& illumination, const PathSettings& settings);
 
-    /// One a start. The numbers follow from (seed, frame, start's index, path) alone, so that they are the
-    /// same for any number of threads. Starts that are done are added to `progress` if there is one.
+    /// Returns one sum per start. Random numbers depend only on (seed, frame, index of the start, path), so
+    /// the result is the same for any number of threads. Adds finished starts to `progress` unless it is
+    /// null.
     std::vector<PathSums> trace(std::span<const Start> starts, Progress* progress = nullptr) const;
 
-    /// Of one start; `index` chooses its random numbers.
+    /// Returns the sum of one start; `index` selects its random numbers.
     PathSums trace(const Start& start, uint64_t index) const;
 
  private:
@@ -81,7 +83,7 @@ class PathTracer {
     const Illumination& light_;
     const SurfelTracer& surfels_;
     PathSettings settings_;
-    uint32_t last_;  // bounce that counts
+    uint32_t last_;  // last bounce that counts
 };
 
 }  // namespace lucarne::gi::reference

@@ -24,8 +24,8 @@ using reference::Start;
 using tracing::Illumination;
 using tracing::SurfelTracer;
 
-/// The surfaces that the camera sees, as every engine gets them: the reference differs from the others in
-/// transport alone, not in what is visible.
+/// Returns the surfaces that the camera sees. They come from the G-buffer, as for every engine, so that the
+/// reference differs from the others in transport and not in visibility.
 std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTexel> texels) {
     std::vector<Start> starts(texels.size());
     const vec3 forward(camera.forward), right(camera.right), up(camera.up), eye(camera.origin);
@@ -43,7 +43,7 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
             start.position = from + texel.depth * ray;
             start.normal = decode_octahedral(texel.normal);
             start.albedo = decode_albedo(texel.albedo);
-            // A half float may have become 0 or infinite: there is a surface all the same.
+            // A half float may have become 0 or infinite, but there is a surface.
             start.radius = std::clamp(glm::unpackHalf2x16(texel.material).y, 1e-7f, 65504.0f);
             start.material = texel.material & 0xffffu;
         }
@@ -51,7 +51,7 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
     return starts;
 }
 
-/// What the camera sees where nothing is.
+/// Returns the radiance of a pixel without a surface.
 vec3 background(const Frame& frame, const Start& start) {
     return frame.environment ? frame.environment->radiance(-start.viewer) : frame.background;
 }
@@ -116,7 +116,7 @@ Result<void> ReferenceEngine::prepare(Frame& frame) {
     return {};
 }
 
-/// Adds a frame to those before, or begins again.
+/// Adds a frame to the sums so far, or starts them again.
 void ReferenceEngine::take_in(const Frame& frame, std::vector<PathSums> sums) {
     const bool goes_on = frame.index > 0 && frame.index == next_frame_ && sums_.size() == sums.size();
     next_frame_ = frame.index + 1;
@@ -158,7 +158,7 @@ std::vector<std::pair<std::string, double>> ReferenceEngine::stats() const {
             {"standard error", mean_.standard_error}};
 }
 
-/// The standard error of each pixel's luminance, and the radiance by half the paths each.
+/// Returns the standard error of each pixel's luminance, and the radiance of each half of the paths.
 std::vector<std::vector<glm::vec4>> ReferenceEngine::layers() const {
     std::vector<std::vector<glm::vec4>> layers(info().layers.size());
     for (const PathSums& sums : sums_) {

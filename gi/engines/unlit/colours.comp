@@ -1,16 +1,16 @@
-// A pixel's colour times the shade of its shape; pixels without a point keep the background.
+// Writes the colour of a pixel times the shade of its shape. Pixels without a point keep the background.
 layout(local_size_x = 16, local_size_y = 4) in;
 #include "gi/engines/unlit/texels.glsl"
 
 layout(std430, binding = 6) writeonly buffer Radiance { vec4 radiance[]; };
 uniform float strength;
-uniform float neighbour;  // distance of those compared with, pixels
+uniform float neighbour;  // distance of the neighbours, pixels
 
 #if defined(LUCARNE_EYE_DOME)
 // Boucheny 2009 ("Interactive scientific visualization of large datasets: towards a perceptive-based approach",
-// section 3.3): a pixel is darker by how far its neighbours stand before it. Depths are compared by their
+// section 3.3): a pixel gets darker the farther its neighbours lie in front of it. Depths are compared by their
 // logarithms, so that a scene looks alike from near and far.
-const float kEyeDome = 100.0;  // of strength 1: a neighbourhood nearer by 1 % darkens to exp(-1.4 / 2)
+const float kEyeDome = 100.0;  // at strength 1; if half the neighbours are nearer by 1 %, the shade is exp(-1.4 / 2)
 float shade(ivec2 pixel, GBufferTexel texel) {
     const vec2 kDirections[8] = vec2[](vec2(1.0, 0.0), vec2(0.7071, 0.7071), vec2(0.0, 1.0), vec2(-0.7071, 0.7071),
                                        vec2(-1.0, 0.0), vec2(-0.7071, -0.7071), vec2(0.0, -1.0),
@@ -24,14 +24,15 @@ float shade(ivec2 pixel, GBufferTexel texel) {
 }
 #elif defined(LUCARNE_OCCLUSION)
 layout(std430, binding = 4) readonly buffer Obscurance { float obscurance[]; };
-// The mean over the 4 x 4 pixels that occlusion.comp turns its samples through, of those on the same surface.
+// The mean obscurance over the 4 x 4 pixels through which occlusion.comp rotates its samples, counting only pixels of
+// the same surface.
 float shade(ivec2 pixel, GBufferTexel texel) {
     float sum = 0.0, weights = 0.0;
     for (int y = -2; y < 2; ++y)
         for (int x = -2; x < 2; ++x) {
             ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), ivec2(camera.width, camera.height) - 1);
             float apart = abs(texel_at(at).depth - texel.depth) / sight_distance(texel.depth);
-            float weight = max(1.0 - 40.0 * apart, 0.0);  // nothing from beyond 2.5 % of the distance
+            float weight = max(1.0 - 40.0 * apart, 0.0);  // 0 if more than 2.5 % of the distance apart
             sum += weight * obscurance[at.y * int(camera.width) + at.x];
             weights += weight;
         }

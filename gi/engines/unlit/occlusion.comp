@@ -1,22 +1,23 @@
-// Ambient obscurance of each pixel from the depths around it: McGuire, Mara & Luebke 2012 ("Scalable ambient
-// obscurance", eq. 1 with the falloff of section 2.4), samples on a spiral that turns with the pixel.
+// Computes the ambient obscurance of each pixel from the depths around it: McGuire, Mara & Luebke 2012 ("Scalable
+// ambient obscurance", eq. 1 with the falloff of section 2.4). The samples lie on a spiral that is rotated from pixel
+// to pixel.
 layout(local_size_x = 16, local_size_y = 4) in;
 #include "gi/engines/unlit/texels.glsl"
 
 layout(std430, binding = 4) writeonly buffer Obscurance { float obscurance[]; };
-uniform float reach;  // of the distance to the eye
+uniform float reach;  // radius of the samples, as a share of the distance to the eye
 
 const int kSamples = 10;
 const float kTurns = 7.0;
 const float kTau = 6.28318531;
 
-// Metres from the eye, along the world's axes.
+// Returns the position of a pixel relative to the eye, metres, along the axes of the world.
 vec3 place_of(ivec2 pixel, float depth) {
     return view_point(camera, vec2(pixel) + 0.5, depth) - camera.origin.xyz;
 }
 
-// Where points have no normal: of the plane through the pixel and its neighbours, on either side those nearest in depth,
-// so that none is taken across an edge.
+// Returns the normal of the plane through the pixel and its neighbours, for points without a normal. On each axis it
+// uses the neighbour that is nearer in depth, so that the plane does not cross an edge.
 vec3 plane_normal(ivec2 pixel, float depth) {
     vec3 here = place_of(pixel, depth), along[2];
     for (int axis = 0; axis < 2; ++axis) {
@@ -43,7 +44,7 @@ void main() {
         vec3 normal = (texel.albedo & kSurfelHasNormal) != 0u ? texel_normal(texel) : plane_normal(pixel, texel.depth);
         float sight = sight_distance(texel.depth), radius = reach * sight, radius2 = radius * radius;
         float in_pixels = radius / pixel_height(camera, texel.depth);
-        // Each of the 4 x 4 pixels by another sixteenth of a turn, in an order that neighbours share little of.
+        // Each of the 4 x 4 pixels uses another sixteenth of a turn, in an order that makes neighbours differ.
         int turn = ((pixel.x & 3) * 4 + (pixel.y & 3) * 9) & 15;
         for (int i = 0; i < kSamples; ++i) {
             float part = (float(i) + 0.5) / float(kSamples);
@@ -54,7 +55,7 @@ void main() {
             vec3 apart = place_of(clamp(at, ivec2(0), ivec2(camera.width, camera.height) - 1), depth) - here;
             float distance2 = dot(apart, apart);
             float fall = max(radius2 - distance2, 0.0) / radius2;
-            // A surface known to a few thousandths of its distance darkens itself by less.
+            // A margin: a surface known to a few thousandths of its distance would darken itself otherwise.
             float over = max(dot(apart, normal) - 0.003 * sight, 0.0);
             sum += fall * fall * fall * over * radius / (distance2 + 1e-4 * radius2);
         }

@@ -1,11 +1,12 @@
-// The G-buffer as texels of four words (see Buffer::bind_texels for why), read at any place of the picture.
+// Reads the G-buffer as texels of four words (Buffer::bind_texels says why), at any place of the picture.
 #include "gi/shared/gbuffer.glsl"
 
 layout(binding = 3) uniform usamplerBuffer gbuffer_texels;
 uniform CameraView camera;
 
-// What lengths are shares of that look alike from near and far: to the eye; orthographic, where depths depend on nothing
-// that is seen, to where an eye of a field of 53 degrees would stand.
+// Returns the distance of which lengths are shares, so that a scene looks alike from near and far: the distance to
+// the eye. In an orthographic view, where depth says nothing about the picture, it is the distance of an eye with a
+// field of view of 53 degrees.
 float sight_distance(float depth) { return is_parallel(camera) ? 2.0 * length(camera.up.xyz) : depth; }
 
 GBufferTexel texel_at(ivec2 pixel) {

@@ -32,12 +32,12 @@ class UnlitEngine : public Engine {
  private:
     Result<void> obscure(Frame& frame);
 
-    Buffer materials_;  // one that emits nothing
+    Buffer materials_;  // a single material without emission
     Sky sky_;
     Buffer obscurance_;  // float a pixel
 };
 
-/// Ambient occlusion of every pixel, before it is smoothed.
+/// Computes the ambient occlusion of every pixel, before smoothing.
 Result<void> UnlitEngine::obscure(Frame& frame) {
     const GBuffer& gbuffer = frame.gl.gbuffer;
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;

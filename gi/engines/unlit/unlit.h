@@ -4,7 +4,7 @@
 
 namespace lucarne::gi {
 
-/// The points' colours as they are, shaded by shape alone: see README.md beside this file.
+/// The points' colours without light, shaded by shape alone: see README.md beside this file.
 EngineEntry unlit_engine();
 
 }  // namespace lucarne::gi

@@ -1,7 +1,8 @@
-// The part of a VPL's disc that lies in the room. A footprint is what the density of VPLs leaves to each; in
-// a corner, or on something small, a disc of that size sticks into the walls, and what its rim sends lands
-// nowhere. A VPL's own map shows how far its plane is clear: over the directions low above the horizon, the
-// mean of the disc up to what stands there is the area that is left. A workgroup a map.
+// Cuts the footprint of each VPL down to the part of its disc that lies in the room; a workgroup a map. A footprint
+// follows from the density of the VPLs. In a corner, or on something small, a disc of that size sticks into the
+// walls, and what its rim sends lands nowhere. The VPL's own map shows how far its plane is clear. The area that is
+// left is pi times the mean, over directions low above the horizon, of the squared distance to the blocker along the
+// plane, at most the squared radius.
 layout(local_size_x = 64) in;
 
 #include "gi/shared/brdf.h"

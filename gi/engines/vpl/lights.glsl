@@ -1,4 +1,4 @@
-// The VPLs as texels, for loops: llvmpipe fetches those ten times faster than storage.
+// Reads the VPLs as texels, for loops: llvmpipe fetches texels ten times faster than storage.
 #include "gi/engines/vpl/lobes.glsl"
 #include "gi/engines/vpl/vpl_light.h"
 
@@ -11,13 +11,14 @@ vec4 vpl_diffuse(uint index) { return vpl_word(index, 2u); }
 vec4 vpl_flux(uint index) { return vpl_word(index, 3u); }
 vec4 vpl_incident(uint index) { return vpl_word(index, 4u); }
 
-// The directions from VPL `index` to a point that it sees in a unit direction under a cosine, `distance2` away: one for
-// every place of its footprint.
+// Returns the directions from VPL `index` to a point, one for every place of its footprint. The VPL sees the point in
+// a unit direction, under `cosine`, at a squared distance of `distance2`.
 Cone vpl_cone(uint index, vec3 direction, float cosine, float distance2) {
     return Cone(direction, footprint_spread(max(vpl_position(index).w / kPi, 1e-12), cosine, distance2));
 }
 
-// What a VPL's lobe adds to its radiant intensity over the cosine, W/sr, in a cone of directions away from it.
+// Returns what a VPL's lobe adds to its radiant intensity over the cosine, W/sr, in a cone of directions away from
+// it.
 vec3 vpl_lobe(uint index, vec3 normal, float exponent, Cone away) {
     vec4 incident = vpl_incident(index);
     if (incident.w <= 0.0) return vec3(0.0);
@@ -25,8 +26,8 @@ vec3 vpl_lobe(uint index, vec3 normal, float exponent, Cone away) {
     return vpl_flux(index).xyz * incident.w * widened_lobe(exponent, cosine, away.spread);
 }
 
-// Where the shadow map is drawn from: one radius above the surfel, as the reference engine's rays start, above what
-// noise and the rims of neighbouring discs put in its way.
+// Returns the centre of projection of the VPL's shadow map: one radius above the surfel, where the rays of the
+// reference engine start too, so that noise and the rims of neighbouring discs do not block it.
 vec3 vpl_map_centre(uint index) {
     vec4 normal = vpl_normal(index);
     return vpl_position(index).xyz + normal.xyz * normal.w;

@@ -1,30 +1,33 @@
-// Phong lobes and the footprints of VPLs as spherical Gaussians: what a lobe reflects of a disc, and what a disc's lobe
-// sends, are integrals of their products, which have closed form.
+// Phong lobes and the footprints of VPLs as spherical Gaussians. What a lobe reflects of a disc, and what the lobe of
+// a disc sends, are integrals of products of Gaussians, which have closed form.
 //
-// Based on: Hasan, Krivanek, Walter, Bala 2009 (virtual spherical lights: the footprint, not the point, is what is seen,
-// and energy is kept); Tokuyoshi 2015 (virtual spherical Gaussian lights: the same without samples).
+// Based on: Hasan, Krivanek, Walter, Bala 2009 (virtual spherical lights: a receiver sees the footprint, not the
+// point, and energy is kept); Tokuyoshi 2015 (virtual spherical Gaussian lights: the same without samples).
 //
-// G(w; a, k) = exp(k (a.w - 1)). A Phong lobe cos^n is one of k = n + 1, of the same integral, and a wider one is taken
-// as the Phong lobe of the sharpness that comes out: as the footprint shrinks, the BRDF itself is left.
+// G(w; a, k) = exp(k (a.w - 1)). A Phong lobe cos^n becomes the Gaussian of k = n + 1 with the same integral. A
+// widened Gaussian becomes the Phong lobe of its sharpness again, so that the BRDF itself remains as the footprint
+// shrinks.
 #include "gi/shared/brdf.h"
 
-// Variance of the Gaussian that stands for a footprint of area A, over that of the disc, r^2/4 an axis: VPLs are about
-// sqrt(A) apart, and a sum of Gaussians that far apart is smooth where their standard deviation is .6 of that. It
-// shrinks with the frames that are averaged, and the blur with it (lobes.h).
+// Variance of the Gaussian that stands for a footprint of area A, over that of the disc, r^2/4 per axis. VPLs are
+// about sqrt(A) apart, and a sum of Gaussians that far apart is smooth if their standard deviation is .6 of that. The
+// variance shrinks with the number of averaged frames, and the blur with it (lobes.h).
 uniform float footprint_variance;
 
-// m^2 an axis.
+// Returns the variance of the footprint, m^2 per axis.
 float footprint_gaussian(float r2) { return 0.25 * footprint_variance * r2; }
 
-// rad^2 an axis: of the directions from a point to a footprint of squared radius r2, that is seen under a cosine from
-// `distance2` away. Of one that is near and wide no more than a hemisphere is left.
+// Returns the variance, rad^2 per axis, of the directions from a point to a footprint of squared radius r2, seen
+// under `cosine` from a squared distance of `distance2`. A footprint that is near and wide fills no more than a
+// hemisphere.
 float footprint_spread(float r2, float cosine, float distance2) {
     float variance = footprint_gaussian(r2);
     return variance * cosine / (distance2 + variance);
 }
 
-// The mean over directions that spread by `spread` of the lobe (n+2)/(2 pi) cos^n, 1/sr: Gaussians of sharpness n + 1
-// and 1/spread convolved, 1/k = 1/(n+1) + spread, with the lobe's integral kept. No lobe is wider than a hemisphere.
+// Returns the mean, over directions of variance `spread`, of the lobe (n+2)/(2 pi) cos^n, 1/sr. It is the convolution
+// of Gaussians of sharpness n + 1 and 1/spread, 1/k = 1/(n+1) + spread, which keeps the integral of the lobe. No lobe
+// is wider than a hemisphere.
 float widened_lobe(float exponent, float cosine, float spread) {
     float sharpness = exponent + 1.0;
     float wide = max(sharpness / (1.0 + sharpness * spread), 1.0);
@@ -35,20 +38,21 @@ float widened_lobe(float exponent, float cosine, float spread) {
 // A cone of directions, as a Gaussian.
 struct Cone {
     vec3 axis;     // unit
-    float spread;  // rad^2 an axis
+    float spread;  // variance, rad^2 per axis
 };
 
-// The product of a cone and a lobe about `axis`, as a cone: where the light comes from that the lobe reflects.
+// Returns the product of a cone and a lobe about `axis`, as a cone: the directions of the light that the lobe
+// reflects.
 Cone seen_by_lobe(Cone cone, vec3 axis, float exponent) {
     vec3 sum = cone.axis + axis * (exponent + 1.0) * cone.spread;  // over the cone's sharpness
     float size = max(length(sum), 1e-6);
     return Cone(sum / size, cone.spread / size);
 }
 
-// The density, 1/m^2, of a footprint of this variance where a lobe about `axis` meets its plane, from a point `offset` away
-// from its middle: the other view of the same integral. Gaussians in the plane: the lobe's section there is
-// t^2/k (1 + tan^2 along the slope) wide, and a wide footprint near by gives all the light it has, where the mean over
-// directions would look for it in its middle.
+// Returns the density, 1/m^2, of a footprint of this variance where a lobe about `axis` meets its plane, seen from a
+// point `offset` away from its middle. This is the same integral in the plane: the section of the lobe there has the
+// variance t^2/k (1 + tan^2 along the slope). A wide footprint near by gives all the light it has, while the mean
+// over directions would look for that light in its middle.
 float lobe_on_plane(vec3 axis, float exponent, vec3 light_normal, vec3 offset, float variance) {
     float facing = max(-dot(axis, light_normal), 1e-3);
     float t = dot(offset, light_normal) / facing;
@@ -62,9 +66,9 @@ float lobe_on_plane(vec3 axis, float exponent, vec3 light_normal, vec3 offset, f
     return (exponent + 2.0) / (exponent + 1.0) * exp(-0.5 * squares) / (2.0 * kPi * sqrt(across * along));
 }
 
-// What of a VPL's disc of unit radiant intensity a lobe about `axis` sees, 1/m^2, from a point `offset` away whose form
-// factor (sr over the disc's area) is known. By directions while the footprint is small beside the lobe; in the plane
-// while the lobe is small beside the footprint and does not graze the plane.
+// Returns what a lobe about `axis` sees of a VPL's disc of unit radiant intensity, 1/m^2, from a point `offset` away
+// whose form factor (sr over the disc's area) is known. It is computed over directions while the footprint is small
+// beside the lobe, and in the plane while the lobe is small beside the footprint and does not graze the plane.
 float lobe_sees(vec3 axis, float exponent, vec3 normal, vec3 light_normal, vec3 offset, float form_factor, Cone away,
                 float variance) {
     float facing = max(-dot(axis, light_normal), 0.0), narrow = 1.0 / (exponent + 1.0);

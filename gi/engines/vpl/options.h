@@ -14,7 +14,7 @@ inline constexpr Option<uint32_t> kVpls{{
     .key = "vpls",
     .label = "VPLs",
     .help = "Virtual point lights",
-    .cost = "virtual point lights: time and the shadow maps' memory grow with them",
+    .cost = "virtual point lights: time grows with them, and they share one atlas of shadow maps",
     .least = 1,
     .most = 65536,
     .slider = {16, 4096, true},
@@ -26,9 +26,9 @@ inline constexpr Option<uint32_t> kInterleave{{
     .kind = OptionKind::integer,
     .key = "interleave",
     .label = "interleaving",
-    .help = "Pixels along a side that share out the lights",
-    .cost = "pixels along a side that share out the lights: 4 is up to 16 times faster than 1,\n"
-            "at the price of blurred detail in indirect light",
+    .help = "Pixels along a side of the interleaved pattern, which share the VPLs",
+    .cost = "pixels along a side of the pattern that shares the VPLs: 4 is up to 16 times faster than 1,\n"
+            "but blurs detail in indirect light",
     .least = 1,
     .most = 4,
     .values = kInterleaves,
@@ -54,14 +54,14 @@ inline constexpr Option<uint32_t> kAtlas{{
 inline constexpr Option<bool> kBestCandidate{{
     .kind = OptionKind::flag,
     .key = "best_candidate",
-    .help = "Redistribute as Preiner 2010 does, by the best candidate (biased, for comparison)",
+    .help = "Redistribute VPLs by the best candidate, as Preiner 2010 does (biased, for comparison)",
     .defaults = {false, false, false},
 }};
 
 inline constexpr Option<bool> kReuse{{
     .kind = OptionKind::flag,
     .key = "reuse",
-    .help = "While the camera moves, average with the frames before; --no-reuse lights each by itself",
+    .help = "While the camera moves, average with earlier frames; --no-reuse lights each frame by itself",
     .defaults = {true, true, true},
 }};
 

@@ -22,7 +22,7 @@ namespace lucarne::gi {
 namespace vpl {
 namespace {
 
-/// Everything that VPLs and shadow maps are computed from.
+/// Everything from which VPLs and maps are made.
 struct Basis {
     SceneRevisions scene;
     LightCutRevisions cuts;
@@ -30,13 +30,13 @@ struct Basis {
     bool operator==(const Basis&) const = default;
 };
 
-/// One bounce's VPLs, and their maps.
+/// The VPLs of one bounce and their maps.
 struct Bounce {
     Seeds seeds;
     Buffer atlas;
 };
 
-// Bytes of maps that are held from frame to frame: sixteen bounces of `interactive`, one of `high`.
+// Bytes of maps that are kept from frame to frame: sixteen bounces of `interactive`, one of `high`.
 constexpr size_t kMostKept = size_t{64} << 20;
 
 constexpr const OptionInfo* kOptions[] = {
@@ -63,8 +63,8 @@ class VplEngine : public Engine {
     Sky sky_;
     LightSights sights_;
     std::vector<Bounce> bounces_;
-    ShadowMaps maps_;       ///< its atlas is a bounce's while that is drawn or read
-    Basis basis_;           ///< of bounces_
+    ShadowMaps maps_;       ///< borrows the atlas of a bounce while it is drawn or read
+    Basis basis_;           ///< what bounces_ were made from
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
     Panes panes_;
@@ -110,9 +110,9 @@ void VplEngine::update(const Changes& changes) {
     cuts_ = changes.light_cuts;
 }
 
-/// VPLs on what the light sees, their shadow maps, interleaved shading; redistributed, the same again for the
-/// next bounce: frame.gl.radiance becomes the bounces asked for. VPLs and maps hold while nothing but the
-/// camera moves.
+/// Sets frame.gl.radiance to the light of the requested bounces. It places VPLs on the surfaces that the
+/// lights see, draws their shadow maps and shades interleaved pixels, then redistributes the VPLs and repeats
+/// this for the next bounce. VPLs and maps are kept while nothing but the camera moves.
 Result<void> VplEngine::light_indirectly(Frame& frame) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
@@ -120,8 +120,8 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
     const Basis basis{scene_, cuts_, frame.index};
     const bool held = keep && basis == basis_;
-    basis_ = {};  // until all is drawn
-    // Frame by frame less is blurred, so that what is averaged converges.
+    basis_ = {};  // invalid until everything is drawn
+    // Each averaged frame blurs less, so that the average converges.
     const float shrink = 1.0f / static_cast<float>(frame.index + 1);
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s[kBestCandidate];
@@ -163,7 +163,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
                 [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
 }
 
-/// Emission, background and what the lights' first reflection sends to the eye.
+/// Adds emission, background and the first reflection of the lights.
 Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));

@@ -4,7 +4,7 @@
 
 namespace lucarne::gi {
 
-/// Virtual point lights with imperfect shadow maps (Preiner 2010): see README.md here.
+/// Virtual point lights with imperfect shadow maps (Preiner 2010): see README.md beside this file.
 EngineEntry vpl_engine();
 
 }  // namespace lucarne::gi

@@ -14,7 +14,7 @@ namespace {
 constexpr uint32_t kSide = 20;
 const glm::vec3 kTowards(0, 0, 1);
 
-/// A G-buffer from normal and depth by column, the same in every row.
+/// Returns a G-buffer with normal and depth by column, the same in every row.
 template <class Texel>
 io::Image columns(const Texel& texel) {
     io::Image image{kSide, kSide, {}};
@@ -26,7 +26,7 @@ glm::vec4 texel(const glm::vec3& normal, double depth) {
     return {normal, static_cast<float>(depth)};
 }
 
-/// Which columns are marked; every row must be alike.
+/// Returns which columns are marked; every row must be alike.
 std::vector<uint32_t> marked(const std::vector<uint8_t>& mask) {
     std::vector<uint32_t> result;
     for (uint32_t x = 0; x < kSide; ++x) {

@@ -78,7 +78,7 @@ TEST(Flip, AgreesWithNvidiasEvaluatorPixelByPixel) {
             flip_errors(make(formula, width, height, false), make(formula, width, height, true), width);
         EXPECT_NEAR(mean(errors), pair["mean"], 2e-5) << pair["name"];
         for (size_t i = 0; i < pair["pixels"].size(); ++i, ++compared)
-            // Near 0 the roots that FLIP takes turn the rounding of floats (1e-7) into some 1e-4.
+            // Near 0 the roots in FLIP turn the rounding of floats (1e-7) into some 1e-4.
             EXPECT_NEAR(errors[i * stride], pair["pixels"][i], 1e-3) << pair["name"] << " " << i * stride;
     }
     EXPECT_GT(compared, 80u);
@@ -91,7 +91,7 @@ TEST(Flip, IsZeroForEqualPicturesAndTheSameBothWays) {
 }
 
 TEST(Flip, LargestDifferenceOfFlatColoursIsOne) {
-    // Green and blue are farthest apart, and flat: the colour term alone.
+    // Green and blue are farthest apart. Flat pictures test the colour term alone.
     const auto errors = flip_errors(Picture(12, {0, 1, 0, 1}), Picture(12, {0, 0, 1, 1}), 4);
     for (const float error : errors) EXPECT_NEAR(error, 1, 1e-4);
 }

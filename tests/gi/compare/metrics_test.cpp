@@ -59,7 +59,7 @@ TEST(Metrics, TrimmingLeavesOutTheWorstPixelInAThousandAndNoMore) {
     Picture reference(2000, grey(1)), picture = reference;
     picture[7] = grey(101);  // two fireflies
     picture[1500] = grey(51);
-    picture[20] = grey(1.5f);  // an honest error
+    picture[20] = grey(1.5f);  // an ordinary error
     const auto metrics = compare_images(picture, reference);
     ASSERT_TRUE(metrics);
     EXPECT_EQ(metrics->trimmed_pixels, 2u);
@@ -111,7 +111,7 @@ TEST(Metrics, TwoHalvesFreeTheErrorFromTheReferencesNoise) {
     EXPECT_NEAR(error->rel_mse, truth, 4 * error->standard_error + 6 * noise * noise);
     EXPECT_LT(error->standard_error, 0.1 * truth);
     EXPECT_NEAR(error->reference_rel_mse, noise, 0.1 * noise);
-    EXPECT_GT(compare_images(picture, mean)->rel_mse, 2 * truth);  // what the noise does without them
+    EXPECT_GT(compare_images(picture, mean)->rel_mse, 2 * truth);  // without halves, noise counts
 }
 
 TEST(Metrics, PicturesOfOtherSizesOrWithoutFiniteValuesAreRejected) {

@@ -1,4 +1,4 @@
-// Surfels built by hand, brought onto a device through the same pool, cut and G-buffer as a scan's.
+// Surfels built by hand, loaded to a device through the same pool, cut and G-buffer as those of a scan.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@
 
 namespace lucarne::gi::scenes {
 
-/// One octree node with all surfels of a scene, which share one area. Classification carries the material.
+/// One octree node with all surfels of a scene, which all have the same area. The classification holds the
+/// material.
 class OneNode final : public octree::NodeSource {
  public:
     explicit OneNode(std::vector<Surfel> surfels) {
@@ -45,7 +46,7 @@ class OneNode final : public octree::NodeSource {
         octree::NodeInfo node;
         node.count = static_cast<uint32_t>(surfels.size());
         node.subtree_count = node.count;
-        // No share of its own is stored, so that the floor decides: an even pattern.
+        // Surfels store no share of their own, so that the floor decides: an even pattern.
         for (uint32_t step = 0; step < octree::kPrefixSteps; ++step)
             node.area_floor[step] = surfels[0].area * static_cast<float>(1u << step);
         nodes_.push_back(node);
@@ -83,11 +84,12 @@ struct AnalyticScene {
     CameraView camera;
     EngineSettings settings = test_settings();
     std::shared_ptr<const Environment> environment = nullptr;
-    /// Materials of the scene that the surfels were packed for, where it had more.
+    /// Number of materials of the scene for which the surfels were packed, if it had more.
     size_t packed_materials = 0;
 };
 
-/// A square picture seen from `eye` toward `target`, `tangent` of half its field.
+/// Returns the camera of a square picture at `eye` that looks at `target`; `tangent` is that of half the
+/// field of view.
 inline CameraView look(const glm::vec3& eye, const glm::vec3& target, float tangent, uint32_t size) {
     const glm::vec3 forward = glm::normalize(target - eye);
     const glm::vec3 hint = std::abs(forward.z) < 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
@@ -144,7 +146,7 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
     LUCARNE_TRY(rasterize(device, cut, scene.camera, gbuffer));
     const size_t pixels = size_t{scene.camera.width} * scene.camera.height;
     LUCARNE_ASSIGN(Buffer radiance, device.buffer(pixels * sizeof(glm::vec4), "radiance"));
-    radiance.clear(0x7fc00000u);  // NaN: whatever the engine leaves out shows
+    radiance.clear(0x7fc00000u);  // NaN: shows pixels that the engine does not write
     PassTimes times(device);
     const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(scene.lights.size(), &cut), &cut};
     const std::vector<Material> materials =
@@ -165,7 +167,7 @@ inline Result<Rendered> render(Device& device, std::string_view engine_name, con
                     gbuffer.texels.download_all<GBufferTexel>(pixels), engine->stats()};
 }
 
-/// The point that a texel shows.
+/// Returns the point that a texel shows.
 inline glm::vec3 position_of(const CameraView& camera, const std::vector<GBufferTexel>& texels,
                              size_t pixel) {
     const float x =

@@ -1,4 +1,4 @@
-// Scenes whose light is known in closed form, and every engine held against them: one table for all.
+// Scenes whose light has closed form, rendered by every engine: one table for all.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -19,11 +19,11 @@ namespace {
 
 using scenes::AnalyticScene, scenes::look, scenes::material, scenes::spot;
 
-/// What an engine claims to compute, beyond direct light: the tests that apply to it.
+/// What an engine claims to compute beyond direct light, which selects the tests that apply to it.
 struct Claims {
     const char* engine;
-    bool one_bounce;        ///< light of spots that one surface sends to another
-    bool emission_bounces;  ///< light of emitting surfaces likewise, any number of times
+    bool one_bounce;        ///< light of spots that one surface reflects to another
+    bool emission_bounces;  ///< light of emitting surfaces, reflected any number of times
     double furnace_tolerance;
 };
 constexpr Claims kClaims[] = {
@@ -89,7 +89,8 @@ TEST_P(Engines, SheetBetweenLightAndFloorCastsItsShadowAndNoMore) {
     for (size_t i = 0; i < rendered.radiance.size(); ++i) {
         const glm::vec3 p = scenes::position_of(scene.camera, rendered.texels, i);
         if (p.z > 0.1f) continue;
-        // Where the ray to the light passes the sheet's plane, from its centre; the disc rim is .02 wide.
+        // The point where the ray to the light crosses the plane of the sheet, relative to its centre. The
+        // rim of discs is .02 wide.
         const glm::vec3 to_light = glm::vec3(light.position) - p;
         const glm::vec3 at = p + to_light * ((above.z - p.z) / to_light.z) - above;
         const float away = std::max(std::abs(at.x), std::abs(at.y));
@@ -135,7 +136,7 @@ TEST_P(Engines, EmissionIsSeenAsItIs) {
     for (const glm::vec4& pixel : render(scene).radiance) ASSERT_NEAR(pixel.x, 0.75f, 1e-4f);
 }
 
-// While a scene with fewer materials takes the place of another, surfels still carry the old names.
+// When a scene with fewer materials replaces another, surfels still carry the old indices.
 TEST_P(Engines, MaterialThatNoLongerExistsIsTheDefault) {
     AnalyticScene scene;
     scenes::add_rectangle(scene.surfels, kO, 2.0f * kX, 2.0f * kY, 160, glm::vec3(0.5f), 200);
@@ -160,7 +161,7 @@ AnalyticScene lit_corner() {
     return scene;
 }
 
-/// Radiance of the floor at a point by quadrature over the wall.
+/// Returns the radiance of the floor at a point, by quadrature over the wall.
 double floor_light(const AnalyticScene& scene, const glm::vec3& point) {
     const Light& light = scene.lights[0];
     const glm::vec3 place(light.position), axis(light.direction);
@@ -262,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(All, Engines, testing::ValuesIn(registered()),
                          [](const auto& tested) { return std::string(tested.param.engine); });
 
 TEST(EngineTable, EveryEngineIsTested) {
-    // Those that know light; gi/engines/unlit has tests of its own.
+    // Engines that compute light; gi/engines/unlit has tests of its own.
     const auto lit =
         std::ranges::count_if(engines(), [](const auto& entry) { return entry.info.name != "unlit"; });
     EXPECT_EQ(registered().size(), static_cast<size_t>(lit));

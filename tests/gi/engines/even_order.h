@@ -1,4 +1,4 @@
-// The order that surfels have inside a node.
+// The order of surfels inside a node.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace lucarne::gi {
 
-/// So that every prefix is about as even as the whole, as the octree's builder leaves nodes: along a curve
-/// through space, in the order of their indices' digits mirrored.
+/// Orders surfels so that every prefix is about as even as the whole, as the octree builder does: along a
+/// curve through space, in the order of the mirrored digits of their indices.
 inline void order_evenly(std::vector<Surfel>& surfels) {
     glm::vec3 low(3e38f), high(-3e38f);
     for (const Surfel& s : surfels) {

@@ -23,7 +23,7 @@ inline Material make_material(float diffuse = 1, float specular = 0, float expon
             glm::vec4(emission, emission, emission, exponent)};
 }
 
-/// The picture of an engine and what is needed to judge it.
+/// The picture of an engine with the data that tests compare it with.
 struct Lit {
     CameraView camera;
     std::vector<glm::vec4> radiance;
@@ -54,7 +54,7 @@ struct LitOptions {
     Clip clip{};
 };
 
-/// One cut, the whole cloud, serves as view cut, light-view cuts and light cut.
+/// Renders a cloud with an engine. One cut, the whole cloud, is view cut, light-view cut and light cut.
 inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, const CameraView& camera,
                     const LitOptions& options) {
     Lit lit{camera, {}, {}};
@@ -75,7 +75,7 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
     const size_t pixels = size_t{camera.width} * camera.height;
     auto radiance = device.buffer(pixels * sizeof(glm::vec4), "radiance");
     EXPECT_TRUE(radiance);
-    radiance->clear(0x7fc00000u);  // no number: the engine has to write every pixel
+    radiance->clear(0x7fc00000u);  // NaN: the engine has to write every pixel
     PassTimes times(device);
     const FrameCuts cuts{&cut, std::vector<const DeviceCut*>(options.lights.size(), &cut), &cut};
     GlFrame on_device{device, (*loaded)->pool, cuts, gbuffer, *radiance};

@@ -70,7 +70,7 @@ TEST(EngineSettings, HaveTheDefaultsOfInteractiveUntilTheyAreSet) {
     EXPECT_EQ(over.get(*bounces), OptionValue(int64_t{7}));
 }
 
-/// The rows of data/README.md.
+/// Returns the table of options in data/README.md.
 std::string options_table() {
     std::string table =
         "| key | values | preview, interactive, high | engines | meaning |\n| --- | --- | --- | --- | --- "

@@ -14,7 +14,7 @@
 
 namespace lucarne::gi {
 
-/// A surfel for the device; `cube` is its node's. The area is kept to 9 % (see PackedSurfel).
+/// Packs a surfel for the device; `cube` is that of its node. The area is exact to 9 % (see PackedSurfel).
 inline PackedSurfel pack(const Surfel& s, const octree::Cube& cube) {
     const glm::dvec3 at = (glm::dvec3(s.position) - cube.min) / cube.size * 65536.0;
     const auto step = [](double v) { return static_cast<uint32_t>(std::clamp(v, 0.0, 65535.0)); };
@@ -31,9 +31,9 @@ inline PackedSurfel pack(const Surfel& s, const octree::Cube& cube) {
     return packed;
 }
 
-/// An additive octree over surfels: a node keeps an even `keep` of the surfels in its cube and hands the
-/// others to its children; up to 4 * keep stay whole in a leaf. The floor of a node is the area of its cube's
-/// surfels over the number of those drawn down to it, times `floor_scale`.
+/// An additive octree over surfels. A node keeps an even subset of `keep` of the surfels in its cube and
+/// hands the others to its children; up to 4 * keep surfels stay together in a leaf. The floor of a node is
+/// the area of the surfels in its cube over the number of those drawn down to it, times `floor_scale`.
 class SurfelCloud : public octree::NodeSource {
  public:
     explicit SurfelCloud(std::vector<Surfel> surfels, const octree::Cube& root = {{-8, -8, -8}, 16},
@@ -121,11 +121,11 @@ class SurfelCloud : public octree::NodeSource {
     float floor_scale_;
     octree::SourceHeader header_;
     std::vector<octree::NodeInfo> nodes_;
-    std::vector<std::vector<Surfel>> contents_, inherited_;  ///< a node's own; its ancestors' in its cube
+    std::vector<std::vector<Surfel>> contents_, inherited_;  ///< of a node; of its ancestors, within its cube
     std::vector<std::vector<PackedSurfel>> packed_;
 };
 
-/// Everything of a cloud on the device.
+/// A whole cloud on the device.
 struct LoadedCloud {
     SurfelPool pool;
     DeviceCut cut;
@@ -141,7 +141,7 @@ inline Result<std::unique_ptr<LoadedCloud>> load_cloud(Device& device, const Sur
     return loaded;
 }
 
-/// A camera at `from` that looks at `to`, z up.
+/// Returns a camera at `from` that looks at `to`, z up.
 inline CameraView look(const glm::vec3& from, const glm::vec3& to, uint32_t width, uint32_t height,
                        float vertical_field = 1.0f) {
     const glm::vec3 forward = glm::normalize(to - from);

@@ -16,10 +16,11 @@ inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1), kO(0.0f);
 
 namespace scenes {
 
-/// A square lattice needs a coverage (disc area over surface area) of pi/2 to close; 1.7 leaves a margin.
+/// A square lattice is closed from a coverage (disc area over surface area) of pi/2; 1.7 leaves a margin.
 inline constexpr float kLatticeCoverage = 1.7f;
 
-/// Appends a parallelogram corner + u a + v b, a and b in [0, 1], as n x n surfels whose areas add up to it.
+/// Appends the parallelogram corner + u a + v b, a and b in [0, 1], as n x n surfels whose areas add up to
+/// its area.
 inline void add_rectangle(std::vector<Surfel>& surfels, const glm::vec3& corner, const glm::vec3& u,
                           const glm::vec3& v, int n, const glm::vec3& albedo, uint32_t material = 0) {
     const glm::vec3 normal = glm::normalize(glm::cross(u, v));

@@ -5,7 +5,7 @@
 
 namespace lucarne::gi {
 
-/// What tests render with that choose nothing else: finer shadow maps and more paths than `interactive`.
+/// The settings of tests that choose no others: finer shadow maps and more paths than `interactive`.
 inline EngineSettings test_settings() {
     EngineSettings settings;
     settings.set(vpl::kAtlas, 2048);

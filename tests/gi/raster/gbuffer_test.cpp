@@ -17,7 +17,7 @@ struct Picture {
     CameraView view;
     std::vector<GBufferTexel> texels;
     std::vector<uint32_t> ids;
-    std::vector<Surfel> surfels;  ///< as the device holds them
+    std::vector<Surfel> surfels;  ///< as the device stores them
 
     glm::vec3 ray(uint32_t x, uint32_t y) const {
         const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(view.width) - 1;
@@ -67,7 +67,7 @@ void append(std::vector<Surfel>& to, const std::vector<Surfel>& more) {
 }
 
 TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
-    for (const float area : {2e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: both ways of drawing
+    for (const float area : {2e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: small and large discs
         const Surfel tilted{{0.3f, 3, 0.2f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 3};
         const Picture p = draw({tilted}, look({0, 0, 0}, {0, 1, 0}, 320, 240));
         ASSERT_EQ(p.surfels.size(), 1u);
@@ -128,7 +128,7 @@ TEST_F(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
 
 TEST_F(GBufferTest, WindowInAWallStaysOpen) {
     constexpr float kSpacing = 0.02f, kHalf = 0.3f;
-    const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f) * 1.05f;  // areas are kept to 9 %
+    const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f) * 1.05f;  // areas are exact to 9 %
     auto surfels = wall(2, 1.5f, kSpacing, kWhite, 1);
     std::erase_if(surfels, [&](const Surfel& s) {
         return std::max(std::abs(s.position.x), std::abs(s.position.z)) < kHalf;

@@ -42,9 +42,9 @@ TEST(SceneFile, EveryKeyArrives) {
     EXPECT_DOUBLE_EQ(scene->lights[0].angle, M_PI / 2);
     EXPECT_EQ(scene->lights[0].softness, .5);
     EXPECT_EQ(scene->lights[0].strength, dvec3(10, 20, 30));
-    EXPECT_EQ(scene->lights[1].target, dvec3(500000.25, 5000001.5, 100));  // exact: doubles all the way
+    EXPECT_EQ(scene->lights[1].target, dvec3(500000.25, 5000001.5, 100));  // exact: never converted to float
     ASSERT_EQ(scene->materials.size(), 2u);
-    EXPECT_EQ(scene->materials[0].name, "all");  // without a condition: the default, wherever it stands
+    EXPECT_EQ(scene->materials[0].name, "all");  // the default has no condition; it may stand anywhere
     EXPECT_EQ(scene->materials[0].emission, dvec3(.5));
     EXPECT_EQ(scene->materials[1].diffuse, dvec3(.5, .4, .3));
     EXPECT_EQ(scene->materials[1].specular, .4);
@@ -80,7 +80,7 @@ TEST(SceneFile, WhatIsLeftOutHasItsDocumentedDefault) {
 
 struct Mistake {
     const char* text;
-    const char* place;  ///< what the message must hold
+    const char* place;  ///< what the message must contain
     const char* reason;
 };
 
@@ -167,7 +167,8 @@ TEST(SceneFile, TheScenesOfThisRepositoryLoad) {
     }
 }
 
-/// How far from the middle of the picture a point is seen: 1 at its nearest edge, infinite behind the camera.
+/// Returns how far from the middle of the picture a point appears: 1 at the nearest edge of the picture,
+/// infinite behind the camera.
 double place(const SceneCamera& camera, const dvec3& point, double aspect) {
     const dvec3 forward = glm::normalize(camera.target - camera.position);
     const dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
@@ -210,11 +211,11 @@ TEST(DefaultScene, CameraAndSpotTakeInTheWholeBox) {
                 dot(glm::normalize(spot.target - spot.position), glm::normalize(p - spot.position));
             EXPECT_GE(cosine, std::cos(spot.angle / 2));
         }
-        // A surface in the middle that faces the light at 45 degrees: 18 % grey.
+        // A surface in the middle that faces the light at 45 degrees must be 18 % grey.
         const double distance = glm::length(spot.target - spot.position);
         EXPECT_NEAR(.5 / M_PI * spot.strength.x * M_SQRT1_2 / (distance * distance), .18, 1e-9);
     }
-    // In feet the light is the same in metres.
+    // With feet as the unit the light must be the same in metres.
     const Scene metres = default_scene(dvec3(0), dvec3(1)),
                 feet = default_scene(dvec3(0), dvec3(1 / .3048), .3048);
     EXPECT_NEAR(feet.lights[0].strength.x, metres.lights[0].strength.x, 1e-9);

@@ -125,7 +125,7 @@ TEST_F(SceneLights, EnvironmentThatIsNoPictureOrNotFiniteIsRejected) {
     auto scene = parse_scene(R"({"environment": {"image": "infinite.exr"}})", "e.json", folder);
     ASSERT_FALSE(scene);
     EXPECT_THAT(scene.error().line(), HasSubstr("pixel (2, 1)"));
-    image.pixels[6].y = -1;  // as filters leave them
+    image.pixels[6].y = -1;  // negative values, as filters leave them
     ASSERT_TRUE(io::write_exr(folder / "negative.exr", image, true));
     scene = parse_scene(R"({"environment": {"image": "negative.exr"}})", "e.json", folder);
     ASSERT_TRUE(scene) << scene.error().line();

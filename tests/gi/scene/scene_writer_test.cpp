@@ -1,4 +1,4 @@
-// What is written is what is read.
+// Written scenes are read back unchanged.
 #include <filesystem>
 #include <random>
 
@@ -56,7 +56,7 @@ TEST(SceneWriter, EveryScenesFileComesBackTheSame) {
     EXPECT_GE(files, 10u);
 }
 
-/// Scenes of every kind, by chance.
+/// Random scenes with objects of every kind.
 class Chance {
  public:
     explicit Chance(uint32_t seed) : random_(seed) {}

@@ -23,15 +23,16 @@ TEST(Sun, AtThePoleItIsAsHighAsItsPublishedDeclination) {
     // Meeus 1998, example 25.a: 1992 October 13 at 0 h, apparent declination -7 degrees 47 minutes 06
     // seconds.
     EXPECT_NEAR(position("1992-10-13T00:00:00Z", 90, 0).elevation, -7.785, 0.002);
-    // Astronomical almanacs' equinox and solstices of 2024, whose declinations are by definition 0 and the
-    // obliquity of the ecliptic, 23.438 degrees then.
+    // Equinoxes and solstices of 2024 from astronomical almanacs. Their declinations are by definition 0 and
+    // the obliquity of the ecliptic, which was 23.438 degrees then.
     EXPECT_NEAR(position("2024-03-20T03:06:00Z", 90, 0).elevation, 0, 0.002);
     EXPECT_NEAR(position("2024-06-20T20:51:00Z", 90, 0).elevation, 23.438, 0.003);
     EXPECT_NEAR(position("2024-12-21T09:20:00Z", 90, 0).elevation, -23.438, 0.003);
 }
 
 TEST(Sun, CrossesTheMeridianAtGreenwichByTheEquationOfTime) {
-    // Almanacs: 16 min 26 s before the clock's noon early in November, 14 min 13 s after it on 11 February.
+    // From almanacs: solar noon is 16 min 26 s before clock noon early in November, 14 min 13 s after it on
+    // 11 February.
     EXPECT_NEAR(position("2025-11-03T11:43:34Z", 51.4769, 0).azimuth, 180, 0.05);
     EXPECT_NEAR(position("2025-02-11T12:14:13Z", 51.4769, 0).azimuth, 180, 0.05);
 }

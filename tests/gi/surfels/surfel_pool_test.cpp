@@ -72,7 +72,8 @@ TEST_F(SurfelPoolTest, EvictedNeighboursMakeRoomForALargerNode) {
 }
 
 TEST_F(SurfelPoolTest, ScatteredFreePagesHoldALargeNodeAndNothingIsLost) {
-    // Of single pages every second goes; the others stay what they were when the large node comes.
+    // Evicts single-page nodes that lie between others, so that free pages are scattered. The other nodes
+    // must not change when a large node takes those pages.
     std::vector<Surfel> surfels = random_surfels(40000, 3);
     const SurfelCloud cloud(surfels);
     const uint32_t pages = cloud.pages(), others = 8;
@@ -146,7 +147,8 @@ TEST_F(SurfelPoolTest, SurfelsComeBackAsTheyWent) {
 }
 
 TEST_F(SurfelPoolTest, AncestorsTakeTheFloorOfTheDeepestNodeAround) {
-    // Dense in one octant only: the root's surfels there are small, elsewhere they keep the root's floor.
+    // Dense in one octant only: there the root's surfels are small, elsewhere they keep the floor of the
+    // root.
     std::vector<Surfel> surfels;
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(0, 1);
@@ -164,7 +166,7 @@ TEST_F(SurfelPoolTest, AncestorsTakeTheFloorOfTheDeepestNodeAround) {
     ASSERT_TRUE(loaded);
     ASSERT_GT(cloud.nodes().size(), 2u);
     const auto back = (*loaded)->pool.download((*loaded)->cut);
-    for (size_t i = 0; i < 512; ++i) {  // the root's own come first
+    for (size_t i = 0; i < 512; ++i) {  // the root's own surfels come first
         const float share = back[i].position.x > 0 ? 1e-4f : 1e-2f;
         EXPECT_NEAR(back[i].area, 4 * share, share * 0.01f) << back[i].position.x;
         EXPECT_NEAR(back[i].radius, octree::surfel_radius(share, 4 * share), back[i].radius * 0.03f);
@@ -231,7 +233,7 @@ TEST_F(SurfelPoolTest, IdsDoNotDependOnWhatElseIsResidentOrOnTheOrderOfTheEntrie
     std::reverse(entries.begin(), entries.end());
     for (const CutEntry& entry : entries)
         ASSERT_TRUE(other.load(entry.node, cloud.packed(entry.node)).value());
-    entries.push_back(entries[3]);  // twice is once
+    entries.push_back(entries[3]);  // a repeated entry counts once
     DeviceCut cut;
     ASSERT_TRUE(other.make_cut(*device, cloud, entries, glm::dvec3(0), cut));
     const auto a = (*first)->pool.download((*first)->cut), b = other.download(cut);
@@ -276,7 +278,7 @@ TEST_F(SurfelPoolTest, HostileFloorsAndEntriesAreBounded) {
     }
 }
 
-/// One record with everything a scan may say.
+/// One record with every attribute of a scan.
 struct Records {
     octree::SourceHeader header;
     octree::NodeData data;
@@ -448,7 +450,7 @@ TEST(PackSurfels, PointsOutsideTheirNodeAndMissingBytesAreHarmless) {
     Records records;
     records.add({-1e300, 1e300, std::numeric_limits<double>::quiet_NaN()}, {0, 0, 0}, octree::kNoNormal, 0, 0,
                 0);
-    records.data.count = 1000;  // says more than there is
+    records.data.count = 1000;  // claims more points than there are
     const auto packed = records.pack(one_material());
     ASSERT_EQ(packed.size(), 1u);
     EXPECT_EQ(packed[0].a, 0xffff0000u);

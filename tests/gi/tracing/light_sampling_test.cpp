@@ -33,7 +33,7 @@ TEST(AliasTable, DrawsInProportionToTheWeights) {
     EXPECT_TRUE(AliasTable({}).empty());
 }
 
-/// Light of a single kind on a diffuse surface of albedo .5 without anything in the way.
+/// The light of one source on a diffuse surface of albedo .5, with nothing in the way.
 MeanLuminance lit(const Light& light, const Start& start, uint32_t samples = 100000) {
     const auto nothing = tracer_of({});
     const Illumination illumination(*nothing, {}, {light}, nullptr);
@@ -70,7 +70,7 @@ TEST(LightSampling, CapOfSkyGivesItsIrradianceTimesTheCosineWhateverItsRadius) {
     const glm::vec3 away = glm::normalize(glm::vec3(.5f, 0, -1));
     for (const float radius : {0.0f, .00465f, .2f, .8f}) {
         const auto mean = lit(sun(away, 10, radius), {kO, kZ, kZ, glm::vec3(.5f), .01f, 0});
-        const double truth = .5 / M_PI * 10 * -away.z;  // the whole cap stands above the horizon
+        const double truth = .5 / M_PI * 10 * -away.z;  // the whole cap is above the horizon
         EXPECT_NEAR(mean.mean, truth, 1e-4 * truth + 5 * mean.standard_error) << radius;
         EXPECT_LT(mean.standard_error, .003 * truth) << radius;
     }
@@ -83,11 +83,11 @@ TEST(LightSampling, HalfTheSunBehindAnEdgeGivesHalfItsLight) {
     const Illumination light(*tracer, {}, {sun(-kZ, 10, .1f)}, nullptr);
     const Start start{kO, kZ, kZ, glm::vec3(.5f), 1e-4f, 0};
     const auto mean = traced(light, {start}, {.bounces = 0, .samples = 40000});
-    // The wall's edge stands .1 of its surfels' spacing out: .001 of a cap's radius of .2.
+    // The edge of the wall extends .1 of its surfels' spacing too far: .001 of a cap's radius of .2.
     EXPECT_NEAR(mean.mean, .5 * .5 / M_PI * 10, .01 * .8 + 5 * mean.standard_error);
 }
 
-/// Radiance of a glossy surface at the origin, by even sampling of the hemisphere.
+/// Returns the radiance of a glossy surface at the origin, by even sampling of the hemisphere.
 double by_even_directions(const Reflectance& surface, const glm::vec3& out, const auto& radiance) {
     double sum = 0;
     const int count = 4'000'000;
@@ -145,7 +145,7 @@ TEST(LightSampling, WhatIsDrawnHasTheDensityThatIsClaimed) {
         Random random(3, static_cast<uint64_t>(i));
         const Incident drawn = sampler.sample(random), again = sampler.along(drawn.direction);
         EXPECT_NEAR(glm::length(drawn.direction), 1, 1e-5);
-        // At a texel's edge rounding may name its neighbour.
+        // At the edge of a texel rounding may select its neighbour.
         if (again.radiance == drawn.radiance) {
             EXPECT_FLOAT_EQ(again.pdf, drawn.pdf);
         }
@@ -160,7 +160,7 @@ TEST(LightSampling, WhatIsDrawnHasTheDensityThatIsClaimed) {
             mean_inverse[k + 1] += 1 / in->pdf / count;
         }
     }
-    // The mean of 1 / density is the solid angle that is drawn from: of five texels, and of the cap.
+    // The mean of 1 / density must be the solid angle that is sampled: that of five texels, and of the cap.
     double solid_angle = 0;
     for (const int row : {0, 0, 2, 3, 7})
         solid_angle += 2 * M_PI / 16 * (std::cos(row * M_PI / 8) - std::cos((row + 1) * M_PI / 8));

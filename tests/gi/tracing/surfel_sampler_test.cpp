@@ -16,7 +16,8 @@ float gauss(Random& random) {
                               std::cos(2 * M_PI * random.uniform()));
 }
 
-/// A room 4 m wide whose points are `noise` spacings off their walls and whose normals are bent.
+/// A room 4 m wide. Points are off their walls by Gaussian noise of `noise` spacings, and normals are bent
+/// by `bend`.
 std::vector<Surfel> room(float noise, float bend, float coverage) {
     auto surfels = scenes::closed_box(4, 100, glm::vec3(.6f));
     Random random(3);
@@ -36,13 +37,13 @@ struct Compared {
     MeanLuminance led, by_brdf;
     double difference() const { return led.mean / by_brdf.mean - 1; }
     double noise() const { return std::hypot(led.standard_error, by_brdf.standard_error) / by_brdf.mean; }
-    /// Of a path's variances.
+    /// The variance of a path of the BRDF alone over that of a path that samples lit surfels.
     double gain(uint32_t more) const {
         return more * std::pow(by_brdf.standard_error / led.standard_error, 2);
     }
 };
 
-/// Paths led to lit surfels against `more` times as many that the BRDF alone leads.
+/// Compares paths that sample lit surfels with `more` times as many paths of the BRDF alone.
 Compared compare(const Illumination& light, PathSettings settings, uint32_t more) {
     Compared result;
     result.led = traced(light, on_its_floor(24), settings);
@@ -77,7 +78,7 @@ TEST(SurfelSampler, NoisyDiscsAndBentNormalsLeaveTheMeanAsItIs) {
 
 TEST(SurfelSampler, SeveralLightsOfAllSharpKindsOnGlossyWallsKeepTheirMean) {
     auto surfels = room(.25f, .05f, 4);
-    std::erase_if(surfels, [](const Surfel& s) { return s.position.z > 3.5f; });  // for the sun
+    std::erase_if(surfels, [](const Surfel& s) { return s.position.z > 3.5f; });  // lets sun in
     const auto tracer = tracer_of(surfels);
     const Illumination light(
         *tracer, {material(1, .3f, 30, 0)},
@@ -92,13 +93,14 @@ TEST(SurfelSampler, SeveralLightsOfAllSharpKindsOnGlossyWallsKeepTheirMean) {
 }
 
 TEST(SurfelSampler, DensityIsThatOfTheDirectionsDrawn) {
-    // Directions that count, in a cone about an axis: their share against the integral of the density.
+    // For directions in a cone about an axis, compares the share of draws that count with the integral of
+    // the density.
     const auto tracer = tracer_of(room(.25f, .1f, 4));
     std::vector<double> weights(tracer->surfels().size());
     for (size_t i = 0; i < weights.size(); ++i) weights[i] = 1 + static_cast<double>(i % 5);
     const SurfelSampler sampler(*tracer, weights);
     const glm::vec3 eye(1.2f, 1.7f, 1.9f), axis = glm::normalize(glm::vec3(.4f, .3f, -1));
-    const float end = 8, cone = .95f;  // m: longer than the room, so that all count
+    const float end = 8, cone = .95f;  // m: longer than the room, so that all discs count
     const int count = 100000;
     int within = 0, missed = 0;
     double integral = 0;

@@ -1,8 +1,8 @@
-// The estimates of all races together: any VPL of the bounce before might have put a new one here. With the density of
-// all of them, sum over k of p_k(x), the irradiance by all of them over it is the flux of each (multiple importance
-// sampling, the balance heuristic; Veach and Guibas 1995), which varies less than what its own race alone tells; and the
-// footprint is the density's inverse. One invocation a new VPL. A lobe needs one direction of light: it keeps its race's
-// flux.
+// Combines the estimates of all races; one invocation a new VPL. Any VPL of the bounce before might have placed a new
+// VPL here. The joint density is the sum over k of p_k(x). The flux of a new VPL is the irradiance by all old VPLs
+// over that density (multiple importance sampling, the balance heuristic; Veach and Guibas 1995), which varies less
+// than the estimate of its own race alone. Its footprint is the inverse of the density. A lobe needs one direction of
+// light, so it keeps the flux of its own race.
 layout(local_size_x = 16) in;
 
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
@@ -23,7 +23,7 @@ void main() {
     receiver.to_viewer = light.normal.xyz;
     receiver.reflectance = Reflectance(vec3(0.0), 0.0, 1.0);
     vec3 irradiance = vec3(0.0);
-    float density = 0.0, own = 0.0;  // 1/m^2; of all races, of its own
+    float density = 0.0, own = 0.0;  // 1/m^2: of all races, of its own race
     for (uint i = 0u; i < light_count; ++i) {
         float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
         vec3 offset = receiver.position - vpl_position(i).xyz;
@@ -37,11 +37,13 @@ void main() {
         float chance = luminance(intensity) * geometry / sum;
         density += chance;
         if (i == index) own = chance;
-        // As points, which the races draw by: what is near is bounded by the density, and discs would send less there.
+        // VPLs count as points, as in the races. Light from near VPLs is bounded by the density, and discs would send
+        // less there.
         irradiance += intensity * geometry;
     }
-    // Its own race would not come by this rule: it is of its parent's plane, which positions are too coarse to tell, and its
-    // side is a guess. On a roof that would be the one that faces a sealed room.
+    // By this rule its own race could not have placed it: it lies in the plane of its parent within the precision of
+    // positions, and the side it faces is a guess. On a roof that could be the side of a sealed room, so the VPL is
+    // discarded.
     if (!(own > 0.0)) {
         next[index] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
         return;

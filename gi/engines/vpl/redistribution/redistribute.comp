@@ -1,18 +1,19 @@
-// The next bounce's VPLs (Preiner 2010, section 4.5): every VPL's shadow map shows what its light falls on, and one of
-// the map's texels becomes the place of a new VPL. A workgroup a map.
+// Places the VPLs of the next bounce (Preiner 2010, section 4.5). The shadow map of a VPL shows what its light falls
+// on; one of the texels of the map becomes the place of a new VPL. A workgroup a map.
 //
-// The paper takes the best candidate, which has no probability and so no unbiased estimate. Here the texels race: each
-// draws a time -ln(u) / w, u even on (0, 1), and the earliest wins, with probability w / sum(w) (an exponential race;
-// Efraimidis and Spirakis 2006). w is the flux through the texel times the reflectance there, so that the winner's flux
-// times sum(w) / w has the whole flux as its mean, with little variance. kBestCandidate does what the paper does.
+// The paper takes the best candidate, which has no probability and therefore gives no unbiased estimate. Here the
+// texels race: each draws a time -ln(u) / w, u even on (0, 1), and the earliest wins, with probability w / sum(w) (an
+// exponential race; Efraimidis and Spirakis 2006). w is the flux through the texel times the reflectance there. The
+// flux of the winner times sum(w) / w then has the whole flux as its mean, with little variance.
+// LUCARNE_BEST_CANDIDATE selects the method of the paper.
 layout(local_size_x = 64) in;
 
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
 
 layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 9) writeonly buffer Next { VplLight next[]; };  // diffuse still without the flux
-layout(std430, binding = 14) writeonly buffer Odds { float odds[]; };  // sum(w) of a map, W
+layout(std430, binding = 9) writeonly buffer Next { VplLight next[]; };  // diffuse is still without the flux
+layout(std430, binding = 14) writeonly buffer Odds { float odds[]; };  // weight sum: sum(w) of a map, W
 layout(binding = 12) uniform usamplerBuffer source_texels;
 
 uniform uint seed, id_bits;
@@ -31,9 +32,10 @@ float random(uint a, uint b) {  // in (0, 1); a hash after Jarzynski and Olano 2
     return (float(v.x >> 8) + 0.5) / 16777216.0;
 }
 
+// What a texel of a shadow map shows from the VPL.
 struct Sight {
     vec3 direction;     // in the VPL's frame, unit
-    float distance_m;   // 0: nothing there
+    float distance_m;   // 0: the texel is empty
     float solid_angle;  // sr, times the cosine at the VPL
 };
 Sight look(uint map, uvec2 at) {
@@ -50,7 +52,7 @@ Sight look(uint map, uvec2 at) {
     return sight;
 }
 
-// W/sr, toward what a texel shows.
+// Returns the radiant intensity, W/sr, toward the surface that a texel shows.
 vec3 intensity_at(uint map, mat3 frame, Sight sight) {
     return raced_intensity(map, frame * sight.direction, sight.direction.z, sight.distance_m * sight.distance_m);
 }
@@ -72,8 +74,8 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
     Reflectance r = reflectance_of(item, surfel);
     float radius = cut_surfel_radius(item, surfel);
     vec3 flux = intensity_at(map, frame, sight) * sight.solid_angle * inverse_probability;
-    // It stands in the middle of the surfel, which lies on the scanned surface; where the texel's ray ends, the disc's
-    // rim may stick out, even out of a sealed room.
+    // The VPL stands in the middle of the surfel, which lies on the scanned surface. At the end of the texel's ray
+    // the rim of the disc may stick out, even out of a sealed room.
     next[map] = VplLight(vec4(surfel_position(item, surfel), cut_surfel_area(item, surfel)), vec4(normal, radius),
                          vec4(r.kd / kPi, r.exponent), vec4(flux, 1.0), vec4(-direction, r.ks));
 }
@@ -124,7 +126,7 @@ void main() {
     next[map] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     if (!(sum > 0.0) || best >= 3e38) return;
     uvec2 at = uvec2(place % map_side, place / map_side);
-    // 1 / probability of the winner. Texels that pull-push filled have no surfel: the others stand in for them.
+    // 1 / probability of the winner. Texels that pull-push filled have no surfel; the other texels stand in for them.
     Sight sight = look(map, at);
     float luminous = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
     uint item;

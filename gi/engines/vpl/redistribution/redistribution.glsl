@@ -1,13 +1,14 @@
-// What the race (redistribute.comp) and the estimates of all races together (combine.comp) share.
+// Shared by the race (redistribute.comp) and the combination of all races (combine.comp).
 #include "gi/engines/vpl/shading/gather.glsl"
 #include "gi/shared/luminance.h"
 
-// How likely light that arrives at a surface is to be worth following: its reflectance, with a floor so that nothing
-// lit has zero probability.
+// Returns how likely it is that light arriving at a surface is worth following: its reflectance, with a floor so that
+// nothing lit has zero probability.
 float reflected_share(Reflectance r) { return max(luminance(r.kd) + r.ks, 0.02); }
 
-// What VPL `index` sends, W/sr, in a unit direction in which it sees a surface under a cosine. The race cannot tell
-// directions within a texel apart (8 / side^2 sr; variance: a twelfth), nor must the lobe.
+// Returns what VPL `index` sends, W/sr, in a unit direction in which it sees a surface under `cosine`. The race
+// cannot tell directions within a texel apart (8 / side^2 sr; variance: a twelfth of that), so the lobe is widened by
+// as much.
 vec3 raced_intensity(uint index, vec3 direction, float cosine, float distance2) {
     vec4 diffuse = vpl_diffuse(index);
     vec3 intensity = diffuse.xyz;

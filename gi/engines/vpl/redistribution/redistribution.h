@@ -7,16 +7,17 @@
 
 namespace lucarne::gi::vpl {
 
-/// What redistribution needs besides the VPLs.
+/// Settings and scratch memory of redistribution.
 struct Redistribution {
-    Buffer odds;
-    bool best_candidate = false;      ///< the paper's choice: biased, for comparison
+    Buffer odds;                      ///< weight sums of the maps, W
+    bool best_candidate = false;      ///< choose as the paper does: biased, for comparison
     float footprint_variance = 6.0f;  ///< lobes.h
 };
 
-/// Makes `to` of one new VPL for every one of `from`, where its light falls by its shadow map, which was
-/// drawn with its sources. `seed` decides the races; the same every run. `glossy` says whether any of
-/// `materials` has a specular lobe. Errors: no device memory, a shader that fails.
+/// Makes `to`: one new VPL for every VPL of `from`, placed where its light falls according to its shadow
+/// map, which must have been drawn with its sources. `seed` decides the races, so the result is the same on
+/// every run. `glossy` says whether any of `materials` has a specular lobe. Errors: no device memory, a
+/// shader that fails.
 Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps& maps,
                           const Buffer& materials, bool glossy, uint32_t seed, const Seeds& from,
                           Redistribution& scratch, Seeds& to);

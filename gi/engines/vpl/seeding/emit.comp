@@ -1,5 +1,5 @@
-// VPLs on surfels that shine by themselves, drawn in proportion to their shares of the surface times their luminance.
-// Surfels shine on both sides; a VPL has one, drawn at random.
+// Places VPLs on emissive surfels, drawn in proportion to their share of the surface times the luminance of their
+// emission. Surfels emit on both sides; a VPL has one side, drawn at random.
 layout(local_size_x = 64) in;
 
 #include "gi/shared/brdf.h"
@@ -23,7 +23,8 @@ void main() {
     vec3 emission = materials[surfel_material(surfel.b)].emission.xyz;
     vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : vec3(0.0, 0.0, 1.0);
     if ((chosen[index] & 1u) != 0u) normal = -normal;
-    // The footprint is 1 / (VPLs * density), the surface counted on both sides; intensity = radiance * footprint.
+    // The footprint is 1 / (VPLs * density), with both sides of the surface counted; intensity = radiance *
+    // footprint.
     float footprint = 2.0 * weight_sum / (float(light_count) * luminance(emission));
     vec3 intensity = emission * footprint;
     lights[first_light + index] =

@@ -1,4 +1,5 @@
-// How much every surfel of the light cut shines: its share of the surface times the luminance of its emission, W/sr.
+// Computes the emission weight of every surfel of the light cut: its share of the surface times the luminance of its
+// emission, W/sr.
 layout(local_size_x = 256) in;
 
 #include "gi/shared/brdf.h"

@@ -34,10 +34,11 @@ std::vector<uint32_t> draw_emitters(std::span<const double> running, uint32_t co
     for (uint32_t i = 0; i < count; ++i) {
         const double at = (i + random.uniform()) / count * running.back();
         auto found = std::upper_bound(running.begin(), running.end(), at);
-        // Rounding may go past the end: then the last that weighs anything.
+        // Rounding may go past the end; then take the last surfel with a weight.
         if (found == running.end()) found = std::lower_bound(running.begin(), running.end(), running.back());
         const auto id = static_cast<uint32_t>(found - running.begin());
-        // Sides by multiples of the golden ratio: as many of one as of the other among any few in a row.
+        // Choose sides by multiples of the golden ratio, so that both sides are balanced among any few
+        // surfels in a row.
         const auto side = (static_cast<uint32_t>(seed) + i * 2654435769u) >> 31;
         chosen.push_back(id << 1 | side);
     }

@@ -11,7 +11,8 @@
 
 namespace lucarne::gi::vpl {
 
-/// Van der Corput's radical inverse: the digits of `index` in base `base`, mirrored at the point; in [0, 1).
+/// Returns Van der Corput's radical inverse: the digits of `index` in base `base`, mirrored at the point; in
+/// [0, 1).
 inline double radical_inverse(uint32_t base, uint64_t index) {
     double digit_weight = 1.0, value = 0.0;
     for (; index > 0; index /= base) {
@@ -21,8 +22,8 @@ inline double radical_inverse(uint32_t base, uint64_t index) {
     return value;
 }
 
-/// The place of a point of [0, 1)^2 along a Z-order curve: neighbours on the curve are neighbours in the
-/// square.
+/// Returns the position of a point of [0, 1)^2 along a Z-order curve: neighbours on the curve are neighbours
+/// in the square.
 inline uint32_t curve_position(const glm::vec2& point) {
     uint32_t position = 0;
     const auto x = static_cast<uint32_t>(point.x * 65536), y = static_cast<uint32_t>(point.y * 65536);
@@ -31,9 +32,10 @@ inline uint32_t curve_position(const glm::vec2& point) {
     return position;
 }
 
-/// `count` points of the Halton sequence in bases 2 and 3 (Halton 1960), moved on the torus by a random
-/// vector that follows from `seed` and `frame` (Cranley and Patterson 1976): every frame samples anew, every
-/// run the same. Sorted along a curve, so that runs of them are clusters and every n-th is an even sample.
+/// Returns `count` points of the Halton sequence in bases 2 and 3 (Halton 1960), shifted on the torus by a
+/// random vector that depends on `seed` and `frame` (Cranley and Patterson 1976). Every frame has other
+/// samples, every run the same. The points are sorted along a curve, so that runs of them are clusters and
+/// every n-th point is an even sample.
 inline std::vector<glm::vec2> halton_points(uint32_t count, uint64_t seed, uint64_t frame) {
     Random random(seed, frame);
     const double shift_x = random.uniform(), shift_y = random.uniform();

@@ -1,9 +1,9 @@
-// Level 0 of the importance map: how much light the surface behind a texel of the light G-buffer gives back.
+// Computes level 0 of the importance map: how much light the surface behind a texel of the light G-buffer reflects.
 //
-// weight = I(w) * solid angle of the texel * (luminance(kd) + lobe): the flux that leaves, so that diffuse VPLs come
-// out equally strong. The lobe's term makes the density follow the root mean square of the radiant intensity over
-// the hemisphere (the least variance of an unknown receiver): for the diffuse part kd/pi sqrt(2 pi / 3), for the
-// specular part ks (n+2)/(2 pi) sqrt(2 pi / (2n+3)), of which the first is taken as the unit.
+// weight = I(w) * solid angle of the texel * (luminance(kd) + lobe). This is the flux that leaves, so that diffuse
+// VPLs come out equally strong. With the term of the lobe the density follows the root mean square of the radiant
+// intensity over the hemisphere (the least variance for an unknown receiver): kd/pi sqrt(2 pi / 3) for the diffuse
+// part, ks (n+2)/(2 pi) sqrt(2 pi / (2n+3)) for the specular part, both over the factor of the diffuse part.
 layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/shared/brdf.h"
@@ -18,7 +18,7 @@ void main() {
     vec2 value = vec2(0.0);
     if (at.x < light_view.width && at.y < light_view.height) {
         GBufferTexel texel = light_texels[at.y * light_view.width + at.x];
-        // The cone's edge crosses texels: the mean of centre and corners, and lit where any of them is.
+        // The edge of the cone crosses texels: take the mean of centre and corners; a texel is lit if any of them is.
         float intensity = 0.0;
         for (uint i = 0u; i < 5u; ++i) {
             vec2 offset = i == 4u ? vec2(0.5) : vec2(i & 1u, i >> 1);

@@ -1,8 +1,8 @@
-// The importance map of the light G-buffer and its mip chain, and the warp that samples it.
+// The importance map of the light G-buffer with its mip chain, and the warp that samples it.
 //
-// A texel holds (weight, lit): what the VPLs should be proportional to, and 1 where light lands on something at all.
-// Level 0 has `importance_side` (a power of two) texels along a side; each level above sums 2 x 2 texels of the one
-// below; all levels lie one after the other in one buffer.
+// A texel holds (weight, lit): the VPLs should be proportional to weight; lit is 1 where light lands on a surface.
+// Level 0 has `importance_side` (a power of two) texels along a side. Each higher level sums 2 x 2 texels of the
+// level below. All levels lie one after the other in one buffer.
 
 #include "gi/lighting/shadow.glsl"
 #include "gi/shared/light.h"
@@ -11,27 +11,27 @@ layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
 uniform Light light;
-uniform uint face;  // of the light that light_view shows
+uniform uint face;  // the face of the light that light_view shows
 
-// The share of the VPLs that is spread evenly over all lit texels, so that nothing lit has zero probability (black
-// surfaces may still be glossy at another wavelength than the luminance sees, and the estimate stays unbiased).
+// The share of the VPLs that is spread evenly over all lit texels. No lit texel then has zero probability, and the
+// estimate stays unbiased (a surface of luminance 0 may still be glossy at some wavelength).
 const float kUniformShare = 0.05;
 
-uint importance_level(uint level) {  // where a level begins
+uint importance_level(uint level) {  // index of the first texel of a level
     uint first = 0u;
     for (uint l = 0u; l < level; ++l) first += (importance_side >> l) * (importance_side >> l);
     return first;
 }
 
-// What leaves the view's pinhole in a unit direction, W/sr, to what it meets at a squared distance there. A directional
-// light's pinhole is so far away that its irradiance is spread like the flux through the solid angle.
+// Returns what leaves the pinhole of the view in a unit direction, W/sr, toward a surface at a squared distance. The
+// pinhole of a directional light is so far away that its irradiance spreads like the flux through the solid angle.
 vec3 view_intensity(vec3 away, float distance2) {
     if (light.kind == kDirectionalLight) return light.strength.xyz * distance2;
     if (light_face(light, away) != face) return vec3(0.0);
     return light_intensity(light, away);
 }
 
-// Solid angle of one pixel of the light's view about the point `at` (pixels): dA cos^3 at unit depth, sr.
+// Returns the solid angle of one pixel of the light's view about the point `at` (pixels): dA cos^3 at unit depth, sr.
 float ray_solid_angle(vec2 at) {
     float pixels = float(light_view.width) * float(light_view.height);
     float pixel_area = 4.0 * length(light_view.right.xyz) * length(light_view.up.xyz) / pixels;
@@ -42,12 +42,12 @@ float ray_solid_angle(vec2 at) {
 
 struct WarpedPoint {
     vec2 at;            // in texels of level 0
-    float probability;  // of its texel; 0 where the map is empty
+    float probability;  // of its texel; 0 if the map is empty
 };
 
-// Hierarchical warping (Clarberg, Jarosz, Akenine-Moller, Jensen 2005, section 3.2): from the coarsest level down the
-// point is moved between the two rows of a 2 x 2 block by their sums, then between the two texels of its row; the
-// remainder is rescaled to [0, 1) and goes on to the next level.
+// Hierarchical warping (Clarberg, Jarosz, Akenine-Moller, Jensen 2005, section 3.2). From the coarsest level down the
+// point is assigned to one of the two rows of a 2 x 2 block by their sums, then to one of the two texels of that row.
+// The remainder is rescaled to [0, 1) and goes on to the next level.
 WarpedPoint warp(vec2 point) {
     WarpedPoint result;
     result.at = vec2(0.0);
@@ -55,7 +55,7 @@ WarpedPoint warp(vec2 point) {
     uint levels = uint(findMSB(importance_side));
     vec2 total = importance[importance_level(levels)];
     if (!(total.x + total.y > 0.0)) return result;
-    // Both parts as shares of their sums; a map without any weight (all black) is sampled evenly.
+    // Both parts are normalised by their sums. A map without any weight (all black) is sampled evenly.
     vec2 mix_factors = total.x > 0.0 ? vec2((1.0 - kUniformShare) / total.x, kUniformShare / total.y)
                                      : vec2(0.0, 1.0 / total.y);
     uvec2 cell = uvec2(0u);

@@ -1,9 +1,9 @@
-// One level of the importance map's mip chain from the one below: sums of 2 x 2 texels.
+// Computes one level of the mip chain of the importance map from the level below: sums of 2 x 2 texels.
 layout(local_size_x = 16, local_size_y = 16) in;
 
 #include "gi/engines/vpl/seeding/importance.glsl"
 
-uniform uint level;  // the one to write
+uniform uint level;  // the level to write
 
 void main() {
     uint side = importance_side >> level;

@@ -10,8 +10,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr size_t kLeastHeld = 6;                 // views: a point light's
-constexpr size_t kHeldBytes = size_t{64} << 20;  // where more views fit
+constexpr size_t kLeastHeld = 6;                 // views: the six of a point light
+constexpr size_t kHeldBytes = size_t{64} << 20;  // more views are held if they fit into this
 
 }  // namespace
 

@@ -10,28 +10,30 @@
 
 namespace lucarne::gi::vpl {
 
-/// Whether any material shines by itself.
+/// Returns whether any material has an emission.
 bool emits(const Frame& frame);
 
-/// What seeds VPLs: surfels that shine by themselves, and G-buffers of the lights' views. As many are held as
-/// a fixed share of memory takes; of many lights, the others are drawn again whenever they are looked at.
+/// Places VPLs on emissive surfels and on the G-buffers of the light views (a "sight" is a light view with
+/// its G-buffer). As many G-buffers are held as fit a fixed amount of memory; with more lights, the others
+/// are drawn again whenever they are needed.
 class LightSights {
  public:
-    /// The views of a new frame, `sky` of its environment. What was drawn holds where a view and its cut are
-    /// as they were.
+    /// Starts a new frame: computes its light views, `sky` being that of its environment. Held G-buffers
+    /// stay valid if the view and its cut are unchanged.
     void begin(const Frame& frame, const SkyDirections& sky);
 
     const std::vector<LightView>& views() const { return views_; }
-    /// What view `index` sees; drawn where it is not held. Errors: no device memory, a shader that fails.
+    /// Returns the G-buffer of light view `index`, and draws it if it is not held. Errors: no device memory,
+    /// a shader that fails.
     Result<const GBuffer*> look(Frame& frame, size_t index);
 
-    /// Places `count` VPLs on what the lights see, shared out among their views by the light that surfaces
-    /// there give back. The same for the same `seed`. `materials` is what upload_materials made. Errors as
-    /// above.
+    /// Places `count` VPLs on the surfaces that the lights see, and on emitters. They are shared out in
+    /// proportion to the light that leaves those surfaces. The result is the same for the same `seed`.
+    /// `materials` comes from upload_materials(). Errors as above.
     Result<void> seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed, Seeds& target);
 
  private:
-    /// A view drawn, without the scratch of rasterize().
+    /// A drawn light view, without the scratch buffers of rasterize().
     struct Held {
         CameraView view{};
         uint64_t cut = 0;

@@ -1,5 +1,5 @@
-// One VPL a Halton point: warped by the importance map to a direction of the light, with the flux of
-// Phi = I(w) / (M p(w)), p the density per solid angle (Keller 1997; importance as in Preiner 2010, section 4.2).
+// Places one VPL per Halton point. The importance map warps the point to a direction of the light; the flux is Phi =
+// I(w) / (M p(w)), p the density per solid angle (Keller 1997; importance as in Preiner 2010, section 4.2).
 layout(local_size_x = 64) in;
 
 #include "gi/shared/brdf.h"
@@ -14,14 +14,14 @@ layout(std430, binding = 9) writeonly buffer Lights { VplLight lights[]; };
 
 uniform uint first_light, light_count;
 
-// Below this cosine a footprint would grow without bound; it is a grazing angle of a twentieth of a degree.
+// Below this cosine a footprint would grow without bound; the angle to the surface is then a twentieth of a degree.
 const float kLeastCosine = 1e-3;
 
-// Infinitely far away, so that no surfel enters its shadow map.
+// A VPL infinitely far away, so that no surfel is drawn into its shadow map.
 VplLight dead_light() { return VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0)); }
 
-// Whether a surfel's centre is in the light. Where it is not, what the light sees of the surfel is the rim of a disc
-// that sticks out at an edge, perhaps out of a sealed room.
+// Returns how much of the light reaches the centre of a surfel. If it is shadowed, the light sees only the rim of a
+// disc that sticks out at an edge, perhaps out of a sealed room.
 float stands_clear(uint id, vec3 normal, float radius) {
     uint item;
     PackedSurfel surfel;
@@ -29,8 +29,8 @@ float stands_clear(uint id, vec3 normal, float radius) {
     return spot_visibility(surfel_position(item, surfel), normal, radius);
 }
 
-// The VPL stands where the texel's central ray ended: anywhere else in the texel it might be behind what hides the
-// rest of the surfel from the light, inside a sealed room say.
+// Returns the VPL of a texel. It stands where the central ray of the texel ends: elsewhere in the texel it might lie
+// behind the surface that hides the rest of the surfel from the light, for instance inside a sealed room.
 VplLight light_on(GBufferTexel texel, uvec2 pixel, float probability) {
     vec3 position = texel_position(light_view, pixel, texel);
     vec3 normal = texel_normal(texel);

@@ -13,8 +13,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-/// VPLs that do not stand clear in the light (seed.comp) give their flux to the others: the sum stays what
-/// lands.
+/// Removes VPLs that are not wholly in the light (seed.comp) and gives their flux to the others, so that the
+/// sum stays the flux that lands.
 void clear_rims(std::span<VplLight> lights) {
     double all = 0, clear = 0;
     for (const VplLight& l : lights) {
@@ -66,7 +66,7 @@ Result<double> map_importance(Device& device, const Sight& sight, Buffer& target
     }
     glm::vec2 sum;
     target.download((texels - 1) * sizeof(glm::vec2), std::as_writable_bytes(std::span(&sum, 1)));
-    // Where all is black but something is lit, VPLs stand there evenly: they may be glossy at another
+    // If all is black but something is lit, VPLs are placed there evenly: surfaces may be glossy at some
     // wavelength.
     return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
 }
@@ -95,7 +95,8 @@ std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count)
     for (const double w : weights) sum += w;
     std::vector<uint32_t> shares(weights.size(), 0);
     if (!(sum > 0)) return shares;
-    // Every light that lands any gets one; the rest goes by where the running sum crosses whole numbers.
+    // Every light with a weight gets one VPL; the rest are assigned where the running sum crosses whole
+    // numbers.
     uint32_t left = count;
     for (size_t i = 0; i < weights.size() && left > 0; ++i)
         if (weights[i] > 0) shares[i] = 1, --left;

@@ -11,14 +11,14 @@
 
 namespace lucarne::gi::vpl {
 
-/// The VPLs of one bounce and what they are made from.
+/// The VPLs of one bounce and the points that they are made from.
 struct Seeds {
-    Buffer points;                      ///< vec2 in [0, 1)^2, one a VPL
-    Buffer lights;                      ///< VplLight, one a point
-    std::vector<VplLight> host_lights;  ///< the same
+    Buffer points;                      ///< vec2 in [0, 1)^2, one per VPL
+    Buffer lights;                      ///< VplLight, one per point
+    std::vector<VplLight> host_lights;  ///< copy of `lights` on the host
 };
 
-/// What a light sees of its cut through one of its views (gi/lighting/light_view.h).
+/// A light view (gi/lighting/light_view.h) with its cut and its G-buffer.
 struct Sight {
     const Light& light;
     uint32_t face;
@@ -27,21 +27,21 @@ struct Sight {
     const GBuffer& seen;
 };
 
-/// The importance map of a sight (importance.glsl: vec2 (weight, lit), all mip levels), for materials that
-/// are bound. The sum of its weights: the flux that leaves what the light lands on, W, lobes counted as
-/// importance.comp says. Errors: no device memory, a shader that fails.
+/// Computes the importance map of a light view (importance.glsl: vec2 (weight, lit), all mip levels) for the
+/// materials that are bound. Returns the sum of its weights: the flux, W, that leaves the lit surfaces, with
+/// lobes counted as importance.comp says. Errors: no device memory, a shader that fails.
 Result<double> map_importance(Device& device, const Sight& sight, Buffer& target);
 
-/// Places one VPL a point of `points`, in [0, 1)^2, by a view's importance map, from VPL `first` of the
-/// target on. Errors as above.
+/// Places one VPL for each of `points`, in [0, 1)^2, by the importance map of a light view, starting at VPL
+/// `first` of the target. Errors as above.
 Result<void> seed_view(Device& device, const Sight& sight, const Buffer& importance, const Buffer& materials,
                        std::span<const glm::vec2> points, uint32_t first, Seeds& target);
 
-/// How many of `count` VPLs each light gets: in proportion to `weights`, at least one where there is any;
-/// their sum is `count` unless all weights are 0.
+/// Returns how many of `count` VPLs each light gets: in proportion to `weights`, at least one for a weight
+/// above 0 (while VPLs last). The sum is `count` unless all weights are 0.
 std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count);
 
-/// Takes the VPLs to the host; those that stand on rims give their flux to the others there and on the
+/// Copies the VPLs to the host and lets those on rims give their flux to the others, there and on the
 /// device.
 void settle_lights(Seeds& seeds, uint32_t count);
 

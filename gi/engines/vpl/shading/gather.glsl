@@ -1,4 +1,4 @@
-// What the VPLs send to a point: the sum that shading and the merge's repairs have in common.
+// Computes the light of the VPLs at a point, for shading and for isolated pixels.
 #include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/lights.glsl"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
@@ -18,10 +18,11 @@ struct Gathered {
     vec3 specular;    // W/(sr m^2) toward the viewer by the receiver's lobe
 };
 
-// Whether VPL `index` sees the receiver by its shadow map, `normal` being the receiver's. What the map holds in the
-// receiver's direction is a blocker if the receiver lies behind the blocker's plane, and the blocker before the
-// receiver's plane, both by more than the map can tell. A texel is coarse, and depths alone would let slanted surfaces and
-// the walls of a corner shadow each other over its whole width.
+// Returns whether VPL `index` sees the receiver according to its shadow map; `normal` is that of the receiver. The
+// surface that the map holds in the direction of the receiver is a blocker if the receiver lies behind the plane of
+// that surface, and that surface in front of the plane of the receiver, both by more than the map can resolve. A
+// texel is coarse: with depths alone, slanted surfaces and the walls of a corner would shadow each other over its
+// whole width.
 bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
     mat3 frame = frame_about(light_normal.xyz);
     vec3 receiver = (lifted - light_normal.xyz * light_normal.w) * frame;
@@ -35,13 +36,14 @@ bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
            dot(map_normal(nearest), blocker - receiver) <= tolerance;
 }
 
-// The form factor, times pi, from a point to a disc of squared radius r2 whose centre lies at -offset, that is pi times
-// what a disc of unit radiosity sends there. In the plane of the disc's normal and the offset the light's vector has
-// closed form (Howell, catalogue of radiation configuration factors, B-12 and B-13: elements parallel and perpendicular
-// to a disc), here without their cancellations far away. What of the disc lies behind the receiver's plane counts
-// partly: half as a sphere of the same solid angle is cut off there (a parabola through the ends of the exact formula,
-// at most 2 % of the whole off), and half without a loss (after Hill: (l^2 + z) / (l + 1)). For a disc that crosses
-// the plane stands for surface that ends there, and a loss of all of it makes every corner dark: README.md.
+// Returns the form factor, times pi, from a point to a disc of squared radius r2 whose centre lies at -offset: pi
+// times what a disc of unit radiosity sends to the point. In the plane of the disc's normal and the offset the light
+// vector has closed form (Howell, catalogue of radiation configuration factors, B-12 and B-13: elements parallel and
+// perpendicular to a disc), here without their cancellations far away. The part of the disc behind the receiver's
+// plane counts partly, as the mean of two rules: one cuts it off like a sphere of the same solid angle (a parabola
+// through the ends of the exact formula, off by at most 2 % of the whole), the other loses nothing (after Hill: (l^2
+// + z) / (l + 1)). The reason: a disc that crosses the plane stands for surface that ends there, and losing all of
+// that part would darken every corner (README.md).
 float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
     float height = dot(light_normal, offset);
     vec3 lateral = offset - height * light_normal;
@@ -60,18 +62,19 @@ float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
     return kPi * 0.5 * (cut + max((size * size + facing) / (size + 1.0), 0.0));
 }
 
-// What VPL `i` sends to a receiver where nothing is in between. Each VPL is a disc of its footprint A: as one, it sends
-// what its surface would to what is near, where a point would be without bounds. Lobes: lobes.glsl.
+// What an unoccluded VPL sends to a receiver. Each VPL is a disc of its footprint A: it sends what its surface would
+// send to a near receiver, where a point would be unbounded. Lobes: lobes.glsl.
 //
-// Points of one plane do not light each other, whichever side they are on: positions are rounded, and the G-buffer lets
-// the rim of a disc stick out of what hides it by a share of its radius (kRimPush). A lamp on the roof would shine at
-// the ceiling under it.
+// Points of one plane do not light each other, whichever side they face. Positions are rounded, and the G-buffer lets
+// the rim of a disc stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a
+// roof would light the ceiling under it.
 struct Arriving {
     Gathered light;
     bool any;
 };
 
-// cos cos' / d^2 of two points, 1/m^2; 0 where they are of one plane, `offset` being the way from the VPL; also for the dead.
+// Returns cos cos' / d^2 of two points, 1/m^2; `offset` leads from the VPL to the receiver. Returns 0 if they lie in
+// one plane, and for dead VPLs.
 float point_geometry(vec3 light_normal, vec3 offset, Receiver receiver) {
     float cosines = -dot(receiver.normal, offset);
     float light_cosine = dot(light_normal, offset);
@@ -81,8 +84,8 @@ float point_geometry(vec3 light_normal, vec3 offset, Receiver receiver) {
 }
 
 #ifdef LUCARNE_GLOSSY
-// The same with lobes: what the receiver's sees of the VPL, and what the VPL's sends (a receiver's lobe sees the VPL's in
-// those directions alone that it reflects).
+// The same with lobes: the light that the receiver's lobe sees of the VPL, and the light of the VPL's lobe (which the
+// receiver's lobe sees only in the directions that it reflects).
 Gathered with_lobes(uint i, Receiver receiver, vec3 light_normal, vec3 offset, float form_factor) {
     vec4 diffuse = vpl_diffuse(i);
     vec4 incident = vpl_incident(i);
@@ -114,7 +117,7 @@ Arriving from_vpl(uint i, Receiver receiver) {
     vec3 offset = receiver.position - position.xyz;
     float cosines = -dot(receiver.normal, offset);
     float light_cosine = dot(light_normal.xyz, offset);
-    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also the dead
+    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also for dead VPLs
     result.any = true;
     float r2 = max(position.w / kPi, 1e-12);
     float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
@@ -127,7 +130,7 @@ Arriving from_vpl(uint i, Receiver receiver) {
     return result;
 }
 
-// Every `stride`-th VPL from `first` on.
+// Sums the light of every `stride`-th VPL from `first` on.
 Gathered gather(Receiver receiver, uint first, uint stride, uint count) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     for (uint i = first; i < count; i += stride) {

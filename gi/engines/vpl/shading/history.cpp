@@ -9,8 +9,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-// Frames that the average remembers: what differs between them is which panes a point is lit by and from
-// where, and, where cuts changed, the VPLs. Old light has to go within a blink of the eye.
+// Number of frames in the average. Frames differ in the interleaved tile and the position from which a point
+// is lit and, if cuts changed, in the VPLs. Old light must disappear within a blink.
 constexpr float kMostFrames = 8;
 
 }  // namespace
@@ -26,7 +26,7 @@ Result<void> History::begin(const Frame& frame, const SceneRevisions& scene) {
 }
 
 void History::bind(const Frame& frame, const Program& merge) const {
-    const Side& last = camera_.width ? last_ : next_;  // never read where there is none
+    const Side& last = camera_.width ? last_ : next_;  // not read if there is no last frame
     last.light.bind_texels(kUnitHistory, TexelView::four_floats);
     last.surfaces.bind_texels(kUnitHistorySurfaces, TexelView::two_words);
     next_.light.bind(kBindHistory);

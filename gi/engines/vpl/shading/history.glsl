@@ -1,20 +1,20 @@
-// Temporal reuse: the irradiance of a pixel is averaged with what the last frame knew of the same point, found by
-// projecting it there (reverse reprojection: Nehab, Sander, Lawrence, Tatarchuk, Isidoro 2007). Nothing of irradiance
-// depends on the viewer or on textures. Of the four pixels around the point those count that show its surface; where none
-// does, the light is this frame's alone. While the VPLs hold the average is one over positions of the camera, in which
-// the patterns of panes cancel.
-layout(binding = 14) uniform samplerBuffer last_light;      // irradiance, W/m^2; frames in it
+// Temporal reuse: averages the irradiance of a pixel with that of the same point in the last frame, which is found by
+// projection (reverse reprojection: Nehab, Sander, Lawrence, Tatarchuk, Isidoro 2007). Irradiance depends neither on
+// the viewer nor on textures. Of the four pixels around the projected point those count that show its surface; if
+// none does, only the light of this frame is used. While the VPLs are kept, the average is over camera positions, in
+// which the patterns of interleaved tiles cancel.
+layout(binding = 14) uniform samplerBuffer last_light;      // irradiance, W/m^2; w: number of frames
 layout(binding = 15) uniform usamplerBuffer last_surfaces;  // depth, normal
 layout(std430, binding = 8) writeonly buffer NextLight { vec4 next_light[]; };
 layout(std430, binding = 9) writeonly buffer NextSurfaces { uvec2 next_surfaces[]; };
 
 uniform CameraView last_camera;
-uniform float most_frames;  // that an average takes of the past; 0: there is none
+uniform float most_frames;  // largest number of frames in an average; 0: there is no last frame
 
 const float kSameNormal = 0.9;  // cosine of 25 degrees
 const float kSamePlane = 1.0;   // pixel widths
 
-// Light and frames of a point in the last frame; no frames where it did not see it.
+// Returns irradiance and number of frames of a point in the last frame; 0 frames if it did not see the point.
 vec4 last_known(vec3 position, vec3 normal) {
     float depth;
     vec2 size = vec2(last_camera.width, last_camera.height);
@@ -41,7 +41,7 @@ vec4 last_known(vec3 position, vec3 normal) {
         sum += weight * texelFetch(last_light, index);
         weights += weight;
     }
-    // A sliver of one pixel says too little of the point.
+    // A small weight of one pixel is too little evidence.
     return weights > 0.05 ? sum / weights : vec4(0.0);
 }
 

@@ -7,25 +7,25 @@
 
 namespace lucarne::gi::vpl {
 
-/// The indirect irradiance of the last moving frame, to be blended with the next one's where both show the
-/// same surface (history.glsl). It holds while lights, materials and settings do.
+/// The indirect irradiance of the last moving frame, to be averaged with that of the next frame where both
+/// show the same surface (history.glsl). It is valid while lights, materials and settings stay the same.
 class History {
  public:
-    /// Readies it for a frame whose panes are to be merged by a program with LUCARNE_HISTORY. Errors: no
-    /// device memory.
+    /// Prepares for a frame that merge.comp with LUCARNE_HISTORY will write. Errors: no device memory.
     Result<void> begin(const Frame& frame, const SceneRevisions& scene);
     void bind(const Frame& frame, const Program& merge) const;
-    /// The frame was merged: it is the last one now.
+    /// Makes the frame, which has been merged, the last one.
     void end(const Frame& frame);
 
  private:
     struct Side {
-        Buffer light;     ///< vec4 a pixel: irradiance, W/m^2; frames in it
-        Buffer surfaces;  ///< uvec2 a pixel: depth (0: nothing), normal
+        Buffer light;     ///< vec4 per pixel: irradiance, W/m^2; w: number of frames
+        Buffer surfaces;  ///< uvec2 per pixel: depth (0: no surface), normal
     };
     Side last_, next_;
-    SceneRevisions last_scene_, scene_;  ///< of last_ and next_
-    CameraView camera_{};                ///< of last_; its width is 0 where there is no last frame
+    SceneRevisions last_scene_,
+        scene_;            ///< of last_ and next_; light may be reused only while they are equal
+    CameraView camera_{};  ///< of last_; width 0: there is no last frame
 };
 
 }  // namespace lucarne::gi::vpl

@@ -1,16 +1,16 @@
-// The geometry-aware filter's choice: see join.glsl.
+// Decides the geometry-aware gather: see join.glsl.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shading/join.glsl"
 
-layout(std430, binding = 11) buffer Lonely {  // pixels that lack panes
+layout(std430, binding = 11) buffer Lonely {  // isolated pixels, which lack too many interleaved tiles
     uint lonely_count;
     uint lonely_pixels[];
 };
 
-// Whether two pixels' surfaces are alike: max(0, n.n')^32 exp(-plane distance / (sigma z)) at least 1/e, one standard
-// width. sigma z is the extent of an n x n window at the receiver's depth: as far as a plane would rise that is tilted
-// by 45 degrees.
+// Returns whether the surfaces of two pixels are alike: max(0, n.n')^32 exp(-plane distance / (sigma z)) is at least
+// 1/e, one standard width. sigma z is the extent of an n x n window at the depth of the receiver, which is the height
+// that a plane tilted by 45 degrees gains over it.
 bool alike(vec3 position, vec3 normal, float sigma_z, uvec2 pixel, GBufferTexel texel) {
     vec3 offset = texel_position(camera, pixel, texel) - position;
     float normals = max(dot(normal, texel_normal(texel)), 1e-6);

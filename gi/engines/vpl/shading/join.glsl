@@ -1,11 +1,12 @@
-// Which pixels' panes a pixel's light is joined from (Preiner 2010, section 4.4): join.comp decides it once a frame,
-// from geometry alone; shading and merging of every bounce follow it.
+// The geometry-aware gather (Preiner 2010, section 4.4): from which pixels of the interleaved tiles (panes) the light
+// of a pixel is gathered. join.comp decides it once a frame, from geometry alone; shading and merging of every bounce
+// follow it.
 #include "gi/engines/vpl/shading/pixel.glsl"
 
-layout(std430, binding = 15) buffer Joints { uvec2 joints[]; };  // a pixel: candidates, 2 bits a pane | panes missing
+layout(std430, binding = 15) buffer Joints { uvec2 joints[]; };  // candidates, 2 bits per pane | mask of missing panes
 
-// The window about a pixel holds one pixel a pane. Where pane i's is of another surface, its neighbours of the same pane
-// n pixels away, candidates 1 to 3, may do.
+// The window about a pixel holds one pixel of every pane. If the pixel of pane i shows another surface, its
+// neighbours of the same pane n pixels away, candidates 1 to 3, may replace it.
 ivec2 window_pixel(ivec2 pixel, int n, int i, int candidate) {
     ivec2 nearest = pixel + ivec2(i % n, i / n) - (n - 1) / 2;
     ivec2 outward = n * ivec2(nearest.x < pixel.x ? 1 : -1, nearest.y < pixel.y ? 1 : -1);
@@ -16,8 +17,9 @@ uint window_pane(ivec2 pixel, int n, int i) {
     return uint(pane.y * n + pane.x);
 }
 
-// Every pane alone estimates the whole light, but a VPL close by counts n^2 times in its own: a pixel that finds fewer
-// than half of the panes is shaded anew by all that it lacks.
+// Each pane alone estimates the whole light, but a VPL close by counts n^2 times in its own pane. So a pixel that
+// finds fewer than half of the panes is isolated and is shaded with the VPLs of all panes that it lacks. Returns the
+// number of those panes; 0 for other pixels.
 int panes_lacking(int n, uint missing) {
     int found = n * n - bitCount(missing);
     return 2 * found < n * n ? n * n - found : 0;

@@ -1,5 +1,5 @@
-// The indirect light of every pixel: the mean of its panes, so that every VPL counts alike, times the receiver's
-// reflectance, plus its specular light.
+// Writes the indirect light of every pixel: the mean over its interleaved tiles (panes), so that every VPL counts
+// alike, times the reflectance of the receiver, plus its specular light.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shading/join.glsl"
@@ -23,7 +23,7 @@ void main() {
         int n = int(interleave);
         uvec2 joint = joints[index];
         int lacking = panes_lacking(n, joint.y);
-        // What a lonely pixel shaded itself; elsewhere these are 0.
+        // The light that shade_lonely.comp added for isolated pixels; 0 for all others.
         vec3 irradiance = texelFetch(own_diffuse, int(index)).xyz;
         vec3 specular = vec3(0.0);
 #ifdef LUCARNE_GLOSSY

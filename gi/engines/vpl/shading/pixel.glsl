@@ -1,4 +1,4 @@
-// A pixel of the camera's G-buffer as shading and merging see it.
+// A pixel of the camera's G-buffer as a receiver, for shading and merging.
 #include "gi/shared/gbuffer.glsl"
 #include "gi/engines/vpl/shading/gather.glsl"
 
@@ -24,7 +24,7 @@ Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     return receiver;
 }
 
-// One pane's estimate of the light from all VPLs.
+// Returns the estimate of the light of all VPLs by one pane.
 Gathered gather_pane(Receiver receiver, uint pane) {
     uint panes = interleave * interleave;
     Gathered gathered = gather(receiver, pane, panes, light_count);

@@ -1,7 +1,7 @@
-// Interleaved shading (Keller and Heidrich 2001; Preiner 2010, section 4.4): pixel (x, y) belongs to pane
-// (x mod n, y mod n) and is lit by that pane's share of the VPLs alone, n^2 times as strong, so that every n has
-// the same mean. VPLs lie in the order of a curve through the light's view, of which every n^2-th is an even sample.
-// A workgroup shades pixels of one pane, so its invocations read the same VPLs at the same time.
+// Interleaved shading (Keller and Heidrich 2001; Preiner 2010, section 4.4). Pixel (x, y) belongs to the interleaved
+// tile (pane) (x mod n, y mod n) and is lit by the share of the VPLs of that pane alone, n^2 times as strong, so that
+// every n has the same mean. VPLs lie in the order of a curve through the light view; every n^2-th of them is an even
+// sample. A workgroup shades pixels of one pane, so its invocations read the same VPLs at the same time.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shading/pixel.glsl"

@@ -1,4 +1,5 @@
-// Shades pixels that have too few neighbours of their own surface by the panes that they lack.
+// Shades isolated pixels, which have too few neighbours of their own surface, with the VPLs of the panes that they
+// lack.
 layout(local_size_x = 64) in;
 #include "gi/shared/many_threads.glsl"
 #include "gi/engines/vpl/shading/join.glsl"

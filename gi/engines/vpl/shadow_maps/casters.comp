@@ -1,4 +1,4 @@
-// Decodes the surfels of the light cut for the passes that draw them into the shadow maps.
+// Decodes the surfels of the light cut to casters for the passes that draw them into the shadow maps.
 layout(local_size_x = 256) in;
 
 #include "gi/shared/cut.glsl"

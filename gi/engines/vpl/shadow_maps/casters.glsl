@@ -1,17 +1,17 @@
-// The light cut's surfels as the shadow maps' splatting reads them, once decoded: 16 bytes each, by their id.
+// Casters: the surfels of the light cut, decoded once for splatting into the shadow maps; 16 bytes each, by id.
 #include "gi/shared/surfel_code.h"
 
-uniform float cut_size;  // m, side of the cut's root: radii and areas are coded relative to it
+uniform float cut_size;  // side of the root of the cut, m; radii and areas are coded relative to it
 
 struct Caster {
     vec3 position;
     vec3 normal;     // unit; zero: the surfel has none
-    float radius;    // of its disc; 0: there is no surfel of this id
-    float lod_area;  // m^2, what it stands for where no finer surfels are drawn; at least its area in the cut
+    float radius;    // of its disc, m; 0: no surfel has this id
+    float lod_area;  // m^2, the area it stands for if no finer surfels are drawn; at least its area in the cut
 };
 
-// w: normal as two 9-bit octahedral coordinates (.3 degrees; 0: none) | radius, 7 bits of 2^(1/6) | lod_area, 7 bits of
-// 2^(1/4).
+// xyz: position. w: normal as two 9-bit octahedral coordinates (.3 degrees; 0: none) | radius, 7 bits in steps of
+// 2^(1/6) | lod_area, 7 bits in steps of 2^(1/4).
 uvec4 encode_caster(Caster caster) {
     uint radius = 0u, normal = 0u;
     if (caster.radius > 0.0) radius = uint(clamp(6.0 * log2(caster.radius / cut_size) + 127.5, 1.0, 127.0));

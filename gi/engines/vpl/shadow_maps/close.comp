@@ -1,6 +1,6 @@
-// Closes the holes between the cores of the splats by their fringes: a texel takes its fringe where cores at two
-// opposite sides of it, a texel or two away, are of the fringe's sheet or before it. Below the horizon nothing is drawn:
-// surfaces are taken to go on there. The result replaces the fringe.
+// Closes the holes between the cores of splats with their fringes. A texel takes its fringe if, at two opposite sides
+// a texel or two away, there are cores that belong to the sheet of the fringe or lie in front of it. Nothing is drawn
+// below the horizon; surfaces are assumed to continue there. The result replaces the fringe buffer.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shadow_maps/fringe.glsl"
@@ -11,7 +11,8 @@ layout(binding = 5) uniform usamplerBuffer cores;  // the atlas
 layout(std430, binding = 8) readonly buffer Sources { uint sources[]; };  // sources.glsl
 #endif
 
-// Of the sine between the normals of a texel and of the surface: their code is off by up to 2 degrees.
+// Tolerance for the sine of the angle between the coded normal and that of the surface: the code is off by up to 2
+// degrees.
 const float kNormalError = 0.05;
 
 vec3 map_point(ivec2 at, uint texel) {
@@ -19,8 +20,8 @@ vec3 map_point(ivec2 at, uint texel) {
     return map_ray(uv) * (map_distance(texel) / (1.0 + dot(uv, uv)));
 }
 
-// Whether the texel at `other`, inside the map, goes on with the sheet of a fringe at `point`: it is as near, or on the
-// fringe's plane, which near the horizon recedes by its distance within a texel.
+// Returns whether the texel at `other`, inside the map, continues the sheet of a fringe at `point`: it is as near, or
+// it lies on the plane of the fringe (near the horizon that plane recedes by its own distance within a texel).
 bool goes_on(uint map, ivec2 other, uint own, vec3 point) {
     uint texel = texelFetch(cores, int(texel_index(map, uvec2(other)))).x;
     if (texel == kNothing) return false;

@@ -1,7 +1,7 @@
-// A surfel as a disc in a VPL's shadow map, and how it takes the map's texels.
+// A surfel as a disc in the shadow map of a VPL, and how it takes texels of the map.
 //
-// Per texel the texel's central ray is intersected with the disc's plane: one flat depth a splat would shadow its own
-// surface.
+// For each texel the plane of the disc is intersected with the central ray of the texel. With a single depth per
+// splat, a surface would shadow itself.
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 #include "gi/engines/vpl/shadow_maps/fringe.glsl"
 #include "gi/engines/vpl/lights.glsl"
@@ -10,15 +10,15 @@
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
 
 struct Disc {
-    vec3 centre;  // in the VPL's frame, the VPL at the origin
+    vec3 centre;  // in the frame of the VPL, relative to the centre of its map
     vec3 normal;
     float radius;
     float surfel_radius;
-    float core;  // what of the radius is surface for sure; the rest is the fringe
-    float lowest;  // hits up to this height over the VPL's tangent plane do not count
+    float core;  // radius within which there is certainly surface; the rest is the fringe
+    float lowest;  // hits up to this height over the tangent plane of the VPL do not count
 };
 
-// The disc that `caster` becomes in the map of VPL `map`; false where none of it can be hit.
+// Computes the disc of `caster` in the map of VPL `map`. Returns false if no part of it can be hit.
 bool disc_over(uint map, Caster caster, out Disc disc) {
     vec3 light_normal = vpl_normal(map).xyz;
     vec3 offset = caster.position - vpl_map_centre(map);
@@ -27,7 +27,8 @@ bool disc_over(uint map, Caster caster, out Disc disc) {
     if (caster.normal == vec3(0.0)) caster.normal = -offset / distance_m;
     float radius = thinned_radius(caster.radius, distance_m, abs(dot(caster.normal, offset)) / distance_m);
     float cosine = dot(light_normal, caster.normal);
-    // What is nearly parallel to the VPL's surface and hardly above the map's centre is the VPL's own sheet.
+    // A disc nearly parallel to the surface of the VPL and hardly above the centre of the map is part of the VPL's
+    // own sheet.
     float lowest = abs(cosine) > 0.5 ? kSheetTolerance * radius : 0.0;
     float top = dot(light_normal, offset) + radius * sqrt(max(1.0 - cosine * cosine, 0.0));
     mat3 frame = frame_about(light_normal);
@@ -36,12 +37,12 @@ bool disc_over(uint map, Caster caster, out Disc disc) {
     return top > lowest;
 }
 
-// The texels whose centres the disc may cover, first to last; none where first exceeds last. The cone about the disc's
-// bounding sphere becomes a circle in the map, for the projection is stereographic.
+// Computes the texels whose centres the disc may cover, first to last; there are none if first exceeds last. The cone
+// about the bounding sphere of the disc becomes a circle in the map, because the projection is stereographic.
 void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
     float inverse = inversesqrt(dot(disc.centre, disc.centre));
     float sine = min(disc.radius * inverse, 1.0);
-    // 0 where the cone holds the map's pole at infinity: then the circle is the whole map.
+    // 0 if the cone contains the pole of the map at infinity; then the circle is the whole map.
     float opposite = disc.centre.z * inverse + sqrt(1.0 - sine * sine);
     vec2 low = vec2(-1.0), high = vec2(1.0);
     if (opposite > 0.0 && sine < 1.0) {
@@ -58,9 +59,9 @@ void disc_box(Disc disc, out ivec2 first, out ivec2 last) {
 #include "gi/engines/vpl/shadow_maps/sources.glsl"
 #endif
 
-// Where the central ray of a texel meets the disc.
+// The intersection of the central ray of a texel with the disc.
 struct Hit {
-    float t;  // along the ray, times (1 + u^2 + v^2); 0 where it is not met
+    float t;  // distance along the ray over (1 + u^2 + v^2); 0 if the ray misses the disc
     bool core;
 };
 Hit disc_hit(Disc disc, float offset, vec2 uv) {
@@ -86,7 +87,7 @@ void take_fringe(uvec2 pair, uint index, float distance_m, uint surface) {
 #endif
 }
 
-// What all texels of a disc share: dot(normal, centre), and the code of its surface.
+// Values that all texels of a disc share: dot(normal, centre), and the code of the surface.
 float disc_offset(Disc disc) { return dot(disc.normal, disc.centre); }
 uint disc_surface(Disc disc) {
     return map_surface(disc.surfel_radius, disc_offset(disc) > 0.0 ? -disc.normal : disc.normal);

@@ -1,5 +1,6 @@
-// Queues the pairs of surfel and map that are to be drawn: a workgroup a block, an invocation a surfel, which is held
-// against the maps that meet.comp found. Splatting at once would leave most lanes idle.
+// Enqueues the pairs of surfel and map that have to be drawn: a workgroup a block, an invocation a surfel. Each
+// surfel is tested against the maps for which meet.comp did not cull its block. Splatting without a queue would leave
+// most lanes idle.
 layout(local_size_x = 256) in;
 
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
@@ -8,7 +9,7 @@ layout(local_size_x = 256) in;
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
 
 uniform uint first_block, first_map;
-uniform uint places;  // of pairs[]: drivers differ in the length of a runtime array behind a header
+uniform uint places;  // length of pairs[]: drivers disagree on the length of a runtime array behind a header
 
 void queue_pairs(uint id, uint first, uint entered) {
     if (entered == 0u) return;
@@ -20,7 +21,8 @@ void queue_pairs(uint id, uint first, uint entered) {
     } while (entered != 0u);
 }
 
-// Most words are empty: a loop of its own passes over them, since llvmpipe does not skip what no lane enters.
+// Returns the next word that is not empty. Most are empty, and llvmpipe does not skip a loop body that no lane
+// enters, so this loop is separate.
 uint next_word(uint block, uint word) {
     while (word < kRunWords && meetings[block * kRunWords + word] == 0u) ++word;
     return word;
@@ -30,10 +32,11 @@ void main() {
     uint block = first_block + gl_WorkGroupID.x;
     uint id = block * 256u + gl_LocalInvocationID.x;
     Caster caster = read_caster(id);
-    // A surfel without a normal faces every VPL; of no surfel nothing is large enough.
+    // A surfel without a normal faces every VPL. An id without a surfel fails every test, because its scale is
+    // negative.
     float least_slant = caster.normal == vec3(0.0) ? 1.0 : kLeastSlant;
     float largest_splat = kLargestSplat * splat_angle;
-    // needed_area() <= lod_area, multiplied by the cube of the distance.
+    // The test is needed_area() <= lod_area, multiplied by the cube of the distance.
     float scale = caster.radius > 0.0 ? caster.lod_area / needed_area(1.0, 1.0) : -1.0;
     uint word = next_word(block, 0u);
     while (word < kRunWords) {
@@ -47,7 +50,7 @@ void main() {
             float distance2 = dot(offset, offset);
             float distance_m = sqrt(distance2);
             float along = max(abs(dot(caster.normal, offset)), least_slant * distance_m);
-            // What lies wholly behind the VPL's tangent plane is of no use.
+            // Surfels wholly behind the tangent plane of the VPL are not needed.
             bool over = dot(normal.xyz, offset) > -caster.radius - largest_splat * distance_m;
             entered |= over && scale * along >= distance2 * distance_m ? 1u << bit : 0u;
         }

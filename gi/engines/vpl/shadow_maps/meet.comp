@@ -1,5 +1,6 @@
-// Which blocks of the cut may have surfels for which maps: one invocation a block and 32 maps of the run. Nearly all
-// pairs end here: a block of fine surfels matters to the VPLs around it alone.
+// Culls blocks of the cut against maps: one invocation a block and 32 maps of the run. It sets a bit for each map
+// into which the block may have to be drawn. Nearly all pairs are culled here: a block of fine surfels only matters
+// to the VPLs around it.
 layout(local_size_x = 64) in;
 
 #include "gi/engines/vpl/lights.glsl"

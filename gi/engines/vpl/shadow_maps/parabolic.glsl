@@ -1,17 +1,18 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
 
-// The parabolic map of a VPL's hemisphere (Brabec, Annen, Seidel 2002) and the layout of the atlas of them.
+// The parabolic map of the hemisphere of a VPL (Brabec, Annen, Seidel 2002), and the layout of the atlas of all maps.
 //
-// In the VPL's frame (z its normal) direction w has the map coordinates (u, v) = w.xy / (1 + w.z): the stereographic
-// projection, conformal, the hemisphere is the unit disc; d_omega = 4 / (1 + u^2 + v^2)^2 du dv.
+// In the frame of the VPL (z is its normal) a direction w has the map coordinates (u, v) = w.xy / (1 + w.z). This is
+// the stereographic projection: it is conformal, the hemisphere is the unit disc, and d_omega = 4 / (1 + u^2 + v^2)^2
+// du dv.
 
 layout(std430, binding = 10) buffer Atlas { uint atlas[]; };
 
-uniform uint map_side;  // texels along a side of one VPL's map; maps lie one after the other
+uniform uint map_side;  // texels along a side of a map; maps lie one after the other
 
-// An atlas texel: distance along the texel's central ray | radius of the surfel | normal of its disc, 16 + 4 + 12 bits,
-// so that the least one is the nearest.
+// An atlas texel: distance along the texel's central ray | radius of the surfel | normal of its disc, 16 + 4 + 12
+// bits. The smallest code is the nearest.
 //   distance: a float from 2^-16 to 2^16 m with 11 bits of mantissa (steps of .05 %)
 //   radius:   2^(code - 11) m
 //   normal:   octahedral, 2 x 6 bits (off by up to 2 degrees), in the VPL's frame, toward the VPL
@@ -35,17 +36,18 @@ vec3 map_normal(uint texel) {
 
 float splat_radius(float surfel_radius, float distance_m) { return max(surfel_radius, splat_angle * distance_m); }
 
-// How far the disc of a splat that grew to stand for its neighbours may lie off their surface, over its radius: .05
-// for a normal that errs by 3 degrees, .05 for a surface curved with ten times its radius.
+// How far the disc of a splat that grew to stand in for its neighbours may deviate from their surface, over its
+// radius: .05 for a normal that is wrong by 3 degrees, .05 for a surface with a radius of curvature of ten times its
+// radius.
 const float kSheetTolerance = 0.1;
 
-// Surfaces nearer to each other than this are one to a map: as far as a splat errs, and as a texel is wide (2 pi sr
-// in pi/4 side^2 texels).
+// Returns the distance below which a map cannot separate two surfaces: the error of a splat plus the width of a texel
+// (2 pi sr in pi/4 side^2 texels).
 float map_tolerance(float surfel_radius, float distance_m) {
     return kSheetTolerance * splat_radius(surfel_radius, distance_m) + sqrt(8.0) / float(map_side) * distance_m;
 }
 
-// An orthonormal frame about a unit vector (Duff et al. 2017); columns: tangent, bitangent, normal.
+// Returns an orthonormal frame about a unit vector (Duff et al. 2017); columns: tangent, bitangent, normal.
 mat3 frame_about(vec3 n) {
     float s = n.z >= 0.0 ? 1.0 : -1.0;
     float a = -1.0 / (s + n.z);
@@ -53,7 +55,8 @@ mat3 frame_about(vec3 n) {
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
-// The direction through map coordinates, times (1 + u^2 + v^2): cheaper than unit, and all that a ray needs.
+// Returns the direction of map coordinates, times (1 + u^2 + v^2): cheaper than a unit vector, and sufficient for a
+// ray.
 vec3 map_ray(vec2 uv) { return vec3(2.0 * uv, 1.0 - dot(uv, uv)); }
 vec2 map_coordinates(vec3 unit_direction) { return unit_direction.xy / (1.0 + unit_direction.z); }
 

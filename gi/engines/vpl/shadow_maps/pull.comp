@@ -1,8 +1,10 @@
-// Pull: one level of every map's pyramid from the level below (after Marroquim, Kraus, Cavalcanti 2007).
+// Pull: computes one level of the pyramid of every map from the level below (after Marroquim, Kraus, Cavalcanti
+// 2007).
 //
-// A coarse texel stands for the nearest sheet among its 2 x 2 children if at least three of them lie within the depth
-// interval [d, d + 2 r] of the nearest: then a fourth that is empty or deeper is a hole between splats. Two and two
-// is the edge of a real opening: the coarse texel is open and fills nothing. Children belong to one map always.
+// A coarse texel represents the nearest sheet among its 2 x 2 children if at least three of them lie within the depth
+// interval [d, d + 2 r] of the nearest. A fourth child that is empty or deeper is then a hole between splats. Two
+// against two is the edge of a real opening: the coarse texel is open and fills nothing. All children belong to one
+// map.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shadow_maps/pyramid.glsl"

@@ -1,8 +1,8 @@
 // Push: fills the holes of one level from the level above (after Marroquim, Kraus, Cavalcanti 2007).
 //
-// A texel that is empty, or lies behind the depth interval of the sheet around it, takes the mean of the four coarse
-// texels nearest to it, weighted 9-3-3-1, if all four stand for the same sheet. Nothing is read across the border of
-// a map. A door stays open: around a texel inside it the coarse texels are open or as deep as itself.
+// A texel that is empty, or lies behind the depth interval of the sheet around it, takes the mean of the four nearest
+// coarse texels, weighted 9-3-3-1, if all four belong to the same sheet. Nothing is read across the border of a map.
+// A door stays open: around a texel inside it the coarse texels are open or as deep as the texel itself.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/shadow_maps/pyramid.glsl"
@@ -19,7 +19,7 @@ void main() {
     if (nearest >= kOpen) return;  // most texels end here or at the next line
     if (own < kOpen && map_distance(own) <= sheet_end(nearest)) return;
 
-    // The next parents on the side where the texel lies within its own.
+    // The neighbours of its parent on the side where the texel lies.
     ivec2 side_step = ivec2(at & 1u) * 2 - 1;
     uvec2 other = uvec2(clamp(ivec2(parent) + side_step, ivec2(0), ivec2(map_side >> (level + 1u)) - 1));
     uint around[4] = uint[4](nearest, pyramid_texel(level + 1u, map, uvec2(other.x, parent.y)),

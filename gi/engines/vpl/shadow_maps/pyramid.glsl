@@ -1,15 +1,15 @@
-// The pyramid over every map of the atlas that pull and push walk: level 0 is the atlas itself.
+// The pyramid over every map of the atlas, for pull and push; level 0 is the atlas itself.
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
 layout(std430, binding = 11) buffer Coarse { uint coarse[]; };  // levels 1, 2, ... one after the other
 
-uniform uint level;  // the one to write
+uniform uint level;  // the level to write
 uniform uint maps;
 
-// A coarse texel over the edge of an opening: no sheet, and not a hole either.
+// A coarse texel at the edge of an opening: neither a sheet nor a hole.
 const uint kOpen = 0xfffffffeu;
 
-// The end of the depth interval [d, d + 2 r] that a splat's sheet may span inside a texel's neighbourhood.
+// Returns the end of the depth interval [d, d + 2 r] of a sheet in the neighbourhood of a texel.
 float sheet_end(uint texel) {
     float distance_m = map_distance(texel);
     return distance_m + 2.0 * splat_radius(map_radius(texel), distance_m);

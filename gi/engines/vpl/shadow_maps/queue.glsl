@@ -1,15 +1,16 @@
-// What meet.comp, enter.comp, splat.comp and splat_large.comp hand on to each other.
+// The queues between meet.comp (culling), enter.comp (enqueueing), splat.comp and splat_large.comp.
 layout(std430, binding = 11) buffer Queue {
-    uint pair_count;   // that asked for a place; more than there is room for: the range is drawn in halves
-    uint large_count;  // of them too large for splat.comp; as many places as pairs
+    uint pair_count;   // pairs found; if they exceed the room, the range is drawn in halves
+    uint large_count;  // pairs too large for splat.comp; there is room for all pairs
     uint queue_unused[2];
-    uvec2 pairs[];     // surfel's id, map
+    uvec2 pairs[];     // id of the surfel, map
 };
-layout(std430, binding = 6) buffer Large { uint large_places[]; };    // of pairs
-layout(std430, binding = 7) buffer Meetings { uint meetings[]; };     // kRunWords a block, a bit a map of the run
+layout(std430, binding = 6) buffer Large { uint large_places[]; };    // indices into pairs[]
+// kRunWords words a block; a bit is set unless the block is culled for that map of the run.
+layout(std430, binding = 7) buffer Meetings { uint meetings[]; };
 
 const uint kRunWords = 8u;
 
-// A block's bounds: least position and largest lod_area of its casters; greatest position and largest radius.
+// Bounds of a block: least position and largest lod_area of its casters; greatest position and largest radius.
 layout(binding = 7) uniform usamplerBuffer block_bounds;
 

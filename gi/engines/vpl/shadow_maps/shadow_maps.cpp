@@ -16,18 +16,18 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr uint32_t kSideStep = 8;           // so that three levels of 2 x 2 blocks never cross a map's border
-constexpr double kSplatTexels = 1.6;        // radius of the thinned splats
-constexpr uint32_t kNothing = 0xffffffffu;  // parabolic.glsl
+constexpr uint32_t kSideStep = 8;     // so that 2 x 2 blocks of three levels never cross the border of a map
+constexpr double kSplatTexels = 1.6;  // radius of the thinned splats
+constexpr uint32_t kNothing = 0xffffffffu;             // parabolic.glsl
 constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
-constexpr size_t kBoundsBytes = 8 * sizeof(float);     // queue.glsl, and the next three
+constexpr size_t kBoundsBytes = 8 * sizeof(float);     // queue.glsl, as the next three
 constexpr uint32_t kRunMaps = 256;
 constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
-// Places of the queue: an atlas of 2048 x 2048 has some 2M pairs; the least are what one block may need. On a
-// device with little memory it takes no more than this share.
+// Room of the queue: an atlas of 2048 x 2048 has some 2M pairs. The least room is what one block may need.
+// On a device with little memory the queue takes no more than this share of it.
 constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 16;
-constexpr uint32_t kLargeGroups = 65535;  // the most that OpenGL promises; they share out the large discs
+constexpr uint32_t kLargeGroups = 65535;  // workgroups that OpenGL guarantees; they share the large discs
 constexpr uint32_t kLargeGroup = 16;      // local size of splat_large.comp
 
 struct Range {
@@ -56,7 +56,7 @@ Defines source_defines(const ShadowMaps& maps) {
     return maps.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
 }
 
-/// The cores that were drawn, and of the fringes what closes holes between them: the atlas (fringe.glsl).
+/// Completes the atlas: the drawn cores, plus the fringes that close holes between them (fringe.glsl).
 Result<void> close(Device& device, ShadowMaps& maps) {
     LUCARNE_ASSIGN(const Program* close,
                    device.program("gi/engines/vpl/shadow_maps/close.comp", source_defines(maps)));
@@ -82,8 +82,9 @@ struct SplatPrograms {
     const Program *meet, *enter, *draw, *draw_large;
 };
 
-/// Draws the surfels of some blocks into some maps. A range with more pairs than the queue holds (large maps
-/// among many surfaces) is drawn in halves; a single block has kBlockSurfels a map at most.
+/// Draws the surfels of a range of blocks into a range of maps. If the range has more pairs than the queue
+/// holds (large maps among many surfaces), it is drawn in halves; a single block has at most kBlockSurfels
+/// pairs per map.
 void splat_range(const SplatPrograms& splat, Range blocks, Range maps, uint32_t places, ShadowMaps& target) {
     target.queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
     splat.meet->set("first_block", blocks.first);
@@ -167,7 +168,7 @@ Result<AtlasLayout> atlas_layout(uint32_t atlas, uint32_t maps) {
         return bad_arguments(
             "vpl", fmt::format("an atlas of {0} x {0} texels is too small for {1} VPLs", atlas, maps),
             "raise --atlas or lower --vpls");
-    // A map shows 2 pi sr in pi/4 side^2 texels: the mean texel is as wide as a square of that solid angle.
+    // A map shows 2 pi sr in pi/4 side^2 texels: the mean texel is as wide as a square of its solid angle.
     const double texel_angle = std::sqrt(8.0) / layout.side;
     layout.splat_angle = static_cast<float>(kSplatTexels * texel_angle);
     layout.levels = 1;

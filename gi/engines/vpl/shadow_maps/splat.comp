@@ -1,12 +1,12 @@
-// Splats the queued pairs of surfel and map into the VPLs' imperfect shadow maps (Ritschel et al. 2008): one
-// invocation a pair; large discs go to splat_large.comp.
+// Splats the queued pairs of surfel and map into the imperfect shadow maps of the VPLs (Ritschel et al. 2008): one
+// invocation a pair. Large discs go to splat_large.comp.
 layout(local_size_x = 256) in;
 
 #include "gi/engines/vpl/shadow_maps/disc.glsl"
 
-const int kLargeTexels = 32;  // a bit each
+const int kLargeTexels = 32;  // one bit each
 
-// The texel of the lowest bit of a box from `first` on.
+// Returns the texel of the lowest bit, in a box that begins at `first`.
 uvec2 first_of(uint bits, ivec2 first, int width) {
     int i = findLSB(bits);
     int row = int((float(i) + 0.5) / float(width));
@@ -34,8 +34,9 @@ void main() {
     }
     float offset = disc_offset(disc);
     uint surface = disc_surface(disc);
-    // First all texels are tested, then those that are met are written: llvmpipe writes one lane after the other, and few
-    // lanes meet theirs in the same step. Loops test at their end, for it runs a body that no lane enters.
+    // First all texels are tested, then those that the disc covers are written: llvmpipe writes one lane after the
+    // other, and few lanes cover a texel in the same step. Loops test at their end, because llvmpipe runs a loop body
+    // even if no lane enters it.
     uint core = 0u, rest = 0u, bit = 1u;
     ivec2 at = first;
     do {

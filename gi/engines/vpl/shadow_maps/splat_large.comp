@@ -1,4 +1,4 @@
-// Large discs: a workgroup each, whose invocations share out the texels.
+// Splats large discs: a workgroup each, whose invocations share the texels.
 layout(local_size_x = 16) in;
 
 #include "gi/engines/vpl/shadow_maps/disc.glsl"

@@ -1,28 +1,29 @@
-// Which surfels enter which maps.
+// Decides which surfels are drawn into which maps.
 //
-// Every splat of a map shall take about the same solid angle, pi splat_angle^2, however far and slanted its surface is:
-// then none is finer than the map can show and none coarser. A surfel that much smaller is left out with its whole level
-// of detail: it enters where the area that it stands for without finer surfels, lod_area, is at least what a splat
-// should cover there. Levels of detail are even samples (octree/convert), so the few that enter close the surface far
-// better than as many chosen by chance would; they are drawn larger, for those that did not.
+// Every splat of a map shall cover about the same solid angle, pi splat_angle^2, however far and slanted its surface
+// is: then no splat is finer than the map can show, and none is coarser. Surfels that are much smaller are left out
+// together with their whole level of detail. A surfel is drawn if lod_area, the area that it stands for without finer
+// surfels, is at least what a splat should cover there. Levels of detail are even samples (octree/convert), so the
+// few surfels that are drawn close the surface far better than as many chosen at random; they are drawn larger, to
+// stand in for the others.
 #include "gi/shared/brdf.h"
 
 uniform float splat_angle;
 
-// Discs seen edge-on grow no further than by the root of this.
+// Lower bound of the slant: discs seen edge-on grow by at most 1 over its root.
 const float kLeastSlant = 0.1;
 const float kLargestSplat = 3.1623;  // 1 / sqrt(kLeastSlant), in splat_angle * distance
 
-// Splats over each direction where a map is thinned. Even patterns leave 1 % open at 3, holes of a texel that
-// pull-push closes.
+// Number of splats over each direction where a map is thinned. At 3 even patterns leave 1 % open, holes of a texel
+// that pull-push closes.
 const float kThinnedCover = 4.0;
 
-// m^2 of its surface that a splat at this distance stands for.
+// Returns the area of its surface, m^2, that a splat at this distance stands for.
 float needed_area(float distance2, float slant) {
     return kPi / kThinnedCover * splat_angle * splat_angle * distance2 / max(slant, kLeastSlant);
 }
 
-// Radius of the disc that is drawn, of one that enters: its own or, where others were left out, a splat's.
+// Returns the radius of the disc that is drawn for a surfel: its own or, where others are left out, that of a splat.
 float thinned_radius(float radius, float distance_m, float slant) {
     return max(radius, splat_angle * distance_m * inversesqrt(max(slant, kLeastSlant)));
 }

@@ -1,4 +1,4 @@
-// OpenCL beside OpenGL: surfels of a frame go there by copy and give the same sums.
+// OpenCL beside OpenGL: the surfels of a frame are copied there and give the same sums.
 #include "gi/device/cl/cl_device.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr const char* kSum = R"(#include "gi/shared/flat_surfel.h"
-// Sums of `run` surfels an item, in their order.
+// Sums `run` surfels per item, in order.
 kernel void sum(global const FlatSurfel* surfels, uint count, uint run, global float* areas) {
     uint part = get_global_id(0);
     uint first = part * run;
@@ -32,7 +32,7 @@ kernel void sum(global const FlatSurfel* surfels, uint count, uint run, global f
 }
 )";
 
-/// The program's own texts and one more.
+/// The embedded texts and one more.
 std::vector<ShaderText> texts_with(const char* text) {
     std::vector<ShaderText> texts = shader_texts();
     texts.push_back({"test.cl", text});
@@ -93,7 +93,7 @@ TEST_F(ClDeviceTest, SumsTheSurfelsOfAFrameToTheValueOfTheHost) {
         ASSERT_EQ(sums[part], expected) << part;
         all += expected;
     }
-    // And both are the surface: six faces of 4 m by 4 m, as the pool's own decoding has them.
+    // Both sums are the surface: six faces of 4 m by 4 m, as the pool itself decodes it.
     const auto decoded = (*scene)->pool.download(cut);
     const double truth =
         std::accumulate(decoded.begin(), decoded.end(), 0.0,
@@ -145,7 +145,7 @@ TEST_F(ClDeviceTest, MemoryCountsUnderTheCapOfBoth) {
     EXPECT_EQ(device->memory_used(), before);
 }
 
-/// What OpenGL draws is the same before and after OpenCL has started in the same process: both use LLVM on
+/// OpenGL draws the same before and after OpenCL has started in the same process: both use LLVM on
 /// processors.
 using OpenClBesideOpenGl = OnDevice;
 TEST_F(OpenClBesideOpenGl, ChangesNoPicture) {

@@ -40,7 +40,7 @@ TEST(LossPlan, GivesTheNumbersOfAListOneAContextAndThenNone) {
     EXPECT_EQ(LossPlan("99999999999").next(), std::nullopt) << "no number that there is";
 }
 
-/// A folder with one shader file of its own.
+/// A shader folder with one file.
 class ShaderFiles : public OnDevice {
  protected:
     void SetUp() override {
@@ -54,7 +54,7 @@ class ShaderFiles : public OnDevice {
         std::error_code ignored;
         if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
     }
-    /// Fills the eight words of a buffer at binding 0.
+    /// Writes a shader that runs `statement` in eight invocations, with a buffer of words at binding 0.
     void write(const std::string& statement) const {
         std::ofstream(folder_ / kPath) << "layout(local_size_x = 8) in;\n"
                                           "layout(std430, binding = 0) buffer Words { uint words[]; };\n"

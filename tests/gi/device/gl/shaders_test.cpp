@@ -1,4 +1,4 @@
-// Every compute shader, with every combination of its switches, is accepted by Khronos' own compiler.
+// Checks every compute shader, with every combination of its switches, with Khronos' own compiler.
 #include <algorithm>
 #include <fstream>
 #include <regex>
@@ -16,7 +16,7 @@
 namespace lucarne::gi {
 namespace {
 
-/// The macros that a source tests with #if and #ifdef, without include guards.
+/// Returns the macros that a source tests with #if and #ifdef, without include guards.
 std::vector<std::string> switches_of(const std::string& text) {
     static const std::regex conditional("^\\s*#\\s*(?:el)?if(?:def)?\\b.*$", std::regex::multiline);
     static const std::regex name("LUCARNE_[A-Z_]+");
@@ -29,10 +29,10 @@ std::vector<std::string> switches_of(const std::string& text) {
     return {names.begin(), names.end()};
 }
 
-/// Constants that shaders are given in any case; those that do not use one ignore it.
+/// Constants that every shader gets; shaders that do not use one ignore it.
 const Defines kConstants = {{"RAMP", "16"}};
 
-/// The sources with every subset of their switches, by a file name each.
+/// Returns the sources with every subset of their switches, under a file name each.
 std::vector<std::pair<std::string, ShaderSource>> variants(std::string_view path) {
     std::vector<std::pair<std::string, ShaderSource>> made;
     const auto plain = shader_source(path, {}, shader_texts());

@@ -1,4 +1,4 @@
-// Direct light of every kind that a shadow map can hold, against the path tracer.
+// Direct light of every kind of light that a shadow map can represent, compared with the path tracer.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -34,7 +34,7 @@ Light sharp_sun(const glm::vec3& direction, float irradiance) {
     return light;
 }
 
-/// A floor and two walls, and a block that stands before them and casts shadows on all three.
+/// A floor and two walls with a block in front of them that casts shadows on all three.
 AnalyticScene corner_with_block() {
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0.0f), grey(.5f);
     AnalyticScene scene;
@@ -55,7 +55,7 @@ AnalyticScene corner_with_block() {
 }
 
 struct Agreement {
-    double mean_error;   ///< of the luminance, relative
+    double mean_error;   ///< relative error of the mean luminance
     double share_apart;  ///< of the pixels that differ by more than a tenth of the mean
     double lit;          ///< share of the pixels that the reference lights
 };
@@ -88,7 +88,7 @@ void expect_agreement(Device& device, const AnalyticScene& scene, const char* wh
 
 TEST_F(DirectLights, PointLightAgreesWithTheReferenceAllAroundIt) {
     AnalyticScene scene = corner_with_block();
-    // Beside the block: surfaces in five of the six directions, shadows across faces of the cube.
+    // Beside the block, with surfaces in five of the six directions and shadows across faces of the cube.
     for (const glm::vec3& place :
          {glm::vec3(1.4f, 1.3f, .6f), glm::vec3(.8f, .4f, .5f), glm::vec3(1, 1, 1.6f)}) {
         scene.lights = {point_light(place, 5)};

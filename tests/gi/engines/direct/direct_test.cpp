@@ -38,7 +38,7 @@ TEST_F(DirectTest, PlaneUnderASpotReflectsWhatTheFormulaSays) {
     for (uint32_t y = 20; y < 100; y += 7)
         for (uint32_t x = 30; x < 130; x += 7) {
             const glm::vec3 p = lit.position(x, y), to_light = glm::vec3(0.5f, 0.2f, 2) - p;
-            if (glm::length(glm::vec2(p.x, p.y)) > 0.8f) continue;  // the cone's edge is another test
+            if (glm::length(glm::vec2(p.x, p.y)) > 0.8f) continue;  // another test: the edge
             const float d2 = glm::dot(to_light, to_light);
             const float albedo = decode_albedo(lit.texels[y * 160 + x].albedo).x;
             EXPECT_NEAR(albedo, 0.5f, 2e-3f);
@@ -52,7 +52,7 @@ TEST_F(DirectTest, GlossyLobeIsAddedInTheMirrorDirection) {
     options.lights = {make_spot({0, 2, 2}, {0, 0, 0}, 0.3f, 30)};
     options.materials = {make_material(1, 0.3f, 50)};
     const Lit lit = light(plate(1, 0, 100), look({0, -2, 2}, {0, 0, 0}, 101, 101, 0.2f), options);
-    // In the middle the eye is in the mirror direction: cos^n = 1.
+    // In the middle the eye is in the mirror direction, so cos^n = 1.
     const float expected = (0.5f / kPi + 0.3f * 52 / (2 * kPi)) * 30 * std::sqrt(0.5f) / 8;
     EXPECT_NEAR(lit.at(50, 50).x, expected, expected * 0.01f);
 }
@@ -94,11 +94,11 @@ TEST_F(DirectTest, SquareOccluderThrowsItsShadowWhereGeometrySays) {
     LitOptions options;
     options.lights = {make_spot({0, 0, kLight}, {0, 0, 0}, 0.5f, 30)};
     options.settings.set(kLightResolution, 512);
-    // From aside, so that the occluder does not hide its shadow.
+    // Seen from the side, so that the occluder does not hide its shadow.
     const Lit lit = light(surfels, look({0, -4, 1.5f}, {0, 0, 0}, 320, 240, 0.5f), options);
     const float shadow = kHalf * kLight / (kLight - kAt);
-    // A disc's radius at the occluder's edge, thrown on the floor; the floor's own lifting; a texel of the
-    // map.
+    // The tolerance: the radius of a disc at the edge of the occluder, projected on the floor; the lift of
+    // the floor's points; a texel of the map.
     const float margin = (2 * 0.02f + 0.02f) * 1.5f + 0.02f;
     size_t dark = 0, bright = 0;
     for (uint32_t y = 0; y < 240; ++y)
@@ -140,13 +140,14 @@ TEST_F(DirectTest, CurvedNoisySurfaceHasNoAcneInTheLight) {
     for (uint32_t y = 0; y < 240; ++y)
         for (uint32_t x = 0; x < 240; ++x) {
             const GBufferTexel& texel = lit.texels[y * 240 + x];
-            // At the limb the camera sees the backs of discs that turn away from it; their light is shadowed.
+            // At the limb the camera sees the backs of discs that turn away from it, whose light is
+            // shadowed.
             if (texel.depth == 0 || glm::dot(decode_octahedral(texel.normal), lit.position(x, y)) < 0)
                 continue;
             const glm::vec3 to_light = glm::vec3(0, -4, 0) - lit.position(x, y);
             const float d2 = glm::dot(to_light, to_light);
             const float cosine = glm::dot(decode_octahedral(texel.normal), to_light) / std::sqrt(d2);
-            if (cosine < 0.2f) continue;  // at the terminator half a disc's shadow is right
+            if (cosine < 0.2f) continue;  // at the terminator the shadow of half a disc is correct
             const float expected = 0.5f / kPi * 30 * cosine / d2;
             ASSERT_NEAR(lit.at(x, y).x, expected, expected * 0.01f) << x << " " << y << " cosine " << cosine;
             ++seen;
@@ -218,7 +219,7 @@ TEST_F(DirectTest, BadSceneNeverGivesANumberThatIsNone) {
     surfels[6].material = 255;  // no such material
     LitOptions options;
     options.materials = {make_material(5, 2, 0)};                  // kd + ks far above 1, no exponent
-    options.lights = {make_spot({0, 0, 0}, {0, 0, -1}, 1.2f, 30),  // in the wall itself
+    options.lights = {make_spot({0, 0, 0}, {0, 0, -1}, 1.2f, 30),  // in the plane of the wall
                       make_spot({0, 0, 1}, {0, 0, 0}, 1.7f, 30),   // wider than a half space
                       make_spot({0, 0, 1}, {0, 0, 0}, 0.5f, 0)};   // dark
     const Lit lit = light(surfels, look({0, -2, 2}, {0, 0, 0}, 80, 60, 1.0f), options);

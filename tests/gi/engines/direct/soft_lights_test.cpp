@@ -1,5 +1,5 @@
-// Direct light from what has a size, by its samples of a frame and of many frames, against the path tracer
-// and against formulas.
+// Direct light of lights with a size, from the samples of one frame and of many frames, compared with the
+// path tracer and with formulas.
 #include <cmath>
 #include <vector>
 
@@ -93,11 +93,12 @@ TEST_F(SoftLights, SkyShadesAsTheReferencesDoesWhenAveraged) {
     expect_like_the_reference(*device, scene, "sky");
 }
 
-/// Mean irradiance of a unit square under a light, of unit radiance or so, over pi: a form factor.
+/// Returns the mean irradiance of a unit square under a light of about unit radiance, over pi: a form
+/// factor.
 double form_factor(Device& device, const Light& light) {
     AnalyticScene scene;
     scenes::add_rectangle(scene.surfels, kO, kX, kY, 60, glm::vec3(.5f));
-    // From far away, so that every part of the receiver counts alike.
+    // Seen from far away, so that every part of the receiver counts alike.
     scene.camera = scenes::look(glm::vec3(.5f, .5f, 40), glm::vec3(.5f, .5f, 0), .02f, 96);
     scene.settings.set(kOnlyBounce, 0);
     scene.settings.set(kLightSamples, 64);
@@ -122,7 +123,8 @@ TEST_F(SoftLights, RectanglesSendTheirFormFactorsToASquare) {
     EXPECT_NEAR(form_factor(*device, over(1)) / .199825, 1, .02);
     EXPECT_NEAR(form_factor(*device, over(.5f)) / .415253, 1, .02);
     const Light wall = scenes::rectangle_light({0, .5f, .5f}, .5f * kY, .5f, kX, 1);
-    // Much of it comes from the foot of the wall, less than a surfel's radius high, where all is shade.
+    // Much of the light comes from the foot of the wall, less than a surfel's radius high, where everything
+    // is in shadow.
     EXPECT_NEAR(form_factor(*device, wall) / .200044, 1, .1);
 }
 

@@ -9,7 +9,7 @@
 namespace lucarne::gi::reference {
 namespace {
 
-/// A square of randomly placed discs at z = 1, its normal downwards, whose discs cover it `coverage` times.
+/// A square of randomly placed discs at z = 1, normals downwards, covered `coverage` times by the discs.
 std::vector<Surfel> random_square(int count, float coverage) {
     std::vector<Surfel> surfels;
     Random random(11);
@@ -35,7 +35,7 @@ TEST(Emitters, OverlapRadiusAndAreaChangeTheNoiseAndNotTheLight) {
             const auto sampled = one_bounce(emitter, receiver, 512);
             for (size_t i = 0; i < emitter.size(); ++i) emitter[i].area *= i % 3 ? .2f : 4;
             const auto uneven = one_bounce(emitter, receiver, 512);
-            for (Surfel& s : emitter) s.area = 0;  // none is ever drawn: chance alone finds them
+            for (Surfel& s : emitter) s.area = 0;  // never drawn: only chance finds them
             const auto chance = one_bounce(emitter, receiver, 512);
             for (const auto& other : {sampled, uneven})
                 EXPECT_NEAR(other.mean, chance.mean,

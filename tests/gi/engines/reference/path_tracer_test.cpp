@@ -31,8 +31,8 @@ TEST(Reference, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
 }
 
 TEST(Reference, OpenFurnaceUnderAUniformEnvironmentIsOneEverywhere) {
-    // A sphere reflects its albedo of it at once; a box without a lid that emits what it does not reflect is
-    // as bright as the sky it stands under.
+    // Under a uniform sky a surface by itself reflects its albedo of the sky's radiance. An open box that
+    // emits what it does not reflect is as bright as the sky above it.
     const float rho = 0.6f;
     const auto floor_starts = [&](float radius) { return starts_on(kO, kX, kY, 24, radius, glm::vec3(rho)); };
     const auto nothing = tracer_of({});
@@ -160,7 +160,7 @@ TEST(Reference, SealedDarkRoomIsBlackHoweverBrightTheLightOutside) {
     for (const PathSums& e : estimates) ASSERT_EQ(e.radiance(), kO);
 }
 
-// A wall that is lit and one that sees only it: the light of one bounce, integrated by hand.
+// A wall that is lit and one that sees only the first: the light of one bounce, integrated numerically.
 TEST(Reference, OneBounceFromALitWallMatchesQuadrature) {
     std::vector<Surfel> wall;
     scenes::add_rectangle(wall, kO, kY, kZ, 200, glm::vec3(0.6f));
@@ -247,7 +247,7 @@ TEST(Reference, StandardErrorIsThatOfRepeatedRuns) {
         sum += mean.mean, squares += mean.mean * mean.mean, claimed += mean.standard_error;
     }
     const double spread = std::sqrt((squares - sum * sum / runs) / (runs - 1));
-    EXPECT_NEAR(claimed / runs / spread, 1.0, 0.25);  // 200 runs know their spread to 5 %: five times that
+    EXPECT_NEAR(claimed / runs / spread, 1.0, 0.25);  // 5 times the error of 200 runs
 }
 
 TEST(Reference, SurfelsWithoutNormalOrSizeAreNoObstacle) {

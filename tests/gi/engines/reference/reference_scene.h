@@ -1,4 +1,4 @@
-// What the tests of the path tracer share.
+// Shared by the tests of the path tracer.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ inline std::unique_ptr<SurfelTracer> tracer_of(std::vector<Surfel> surfels) {
     return std::move(*tracer);
 }
 
-/// n x n starts on a parallelogram, seen along its normal.
+/// Returns n x n starts on a parallelogram, seen along its normal.
 inline std::vector<Start> starts_on(const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, int n,
                                     float radius, const glm::vec3& albedo) {
     std::vector<Start> starts;
@@ -72,7 +72,7 @@ inline std::shared_ptr<const Environment> uniform_environment(float radiance) {
     return environment;
 }
 
-/// Mean luminance of what the tracer finds on some starts.
+/// Returns the mean luminance that the tracer finds on some starts.
 inline MeanLuminance traced(const Illumination& light, const std::vector<Start>& starts,
                             const PathSettings& settings) {
     return mean_luminance(PathTracer(light, settings).trace(starts));

@@ -1,4 +1,4 @@
-// The engine without light, and clips as every engine meets them.
+// The engine without light, and clips, which every engine uses.
 #include <algorithm>
 #include <random>
 
@@ -106,7 +106,8 @@ TEST_F(UnlitTest, OcclusionDarkensACornerAndLeavesAnOpenFloorBright) {
     }
 }
 
-/// Onto the crease, which is seen 2 m high, from a distance; orthographic or from an eye.
+/// A camera that looks at the crease from a distance, orthographic or perspective; its view is 2 m high
+/// there.
 CameraView onto_crease(float distance, bool orthographic) {
     const glm::vec3 along = glm::normalize(glm::vec3(0, 1, -0.7f)), middle(0, 2, -1);
     CameraView view = look(middle - distance * along, middle, kWidth, kHeight);
@@ -122,7 +123,7 @@ TEST_F(UnlitTest, AnOrthographicViewIsShadedTheSameHoweverFarBackItStands) {
         for (const Shading shading : {Shading::occlusion, Shading::eye_dome}) {
             SCOPED_TRACE(fmt::format("shading {}, normals {}", static_cast<int>(shading), normals));
             std::vector<Surfel> surfels = crease(normals);
-            // A plate that floats before the floor has an edge.
+            // A plate that floats above the floor has an edge.
             scenes::add_rectangle(surfels, {-1, 0.8f, -0.7f}, 2.0f * kX, 0.4f * kY, 60, glm::vec3(0.5f));
             LitOptions options;
             options.unlit.occlusion_reach = 12;
@@ -145,7 +146,7 @@ TEST_F(UnlitTest, AnOrthographicCornerIsAsDarkAsFromAnEyeThatSeesItAsLarge) {
     options.unlit.occlusion_reach = 12;
     const Lit parallel = draw(surfels, onto_crease(50, true), Shading::occlusion, options),
               eye = draw(surfels, onto_crease(2, false), Shading::occlusion, options);
-    // Across the crease, which lies in the middle of both pictures.
+    // Compares pixels across the crease, which lies in the middle of both pictures.
     for (uint32_t y = kHeight / 2 - 12; y < kHeight / 2 + 12; ++y) {
         float mean[2] = {};
         for (uint32_t x = kWidth / 2 - 16; x < kWidth / 2 + 16; ++x) {
@@ -187,7 +188,7 @@ Clip random_clip(std::mt19937& random) {
     return clip;
 }
 
-/// As data/README.md says it, in doubles.
+/// The rule of data/README.md, computed in doubles.
 bool keeps(const Clip& clip, const glm::dvec3& p) {
     bool asked = false, inside_one = false;
     for (const ClipBox& box : clip.boxes) {
@@ -204,7 +205,7 @@ bool keeps(const Clip& clip, const glm::dvec3& p) {
     return !asked || inside_one;
 }
 
-/// Whether a point is kept within `slack` of it.
+/// Returns whether the rule keeps any point within `slack` of a point.
 bool keeps_near(const Clip& clip, const glm::dvec3& p, double slack) {
     bool close = keeps(clip, p);
     for (int corner = 0; corner < 8 && !close; ++corner)
@@ -242,7 +243,7 @@ TEST_F(UnlitTest, NoPixelShowsAClippedPointAndEveryKeptPointStays) {
             const glm::dvec3 p = glm::dvec3(s.position) + origin;
             EXPECT_TRUE(keeps_near(clip, p, 1e-5)) << "but for a float's rounding";
         }
-        // The device holds to the same rule: the depths seen are those of kept points.
+        // The device follows the same rule: the depths seen are those of kept points.
         GBuffer seen;
         const CameraView camera = look({-0.25f, -7.5f, -0.125f}, {0, 0, 0}, 160, 120);
         PointSize pixels;

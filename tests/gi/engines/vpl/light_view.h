@@ -1,4 +1,4 @@
-// Light G-buffers made by hand, for tests of what is seeded on them.
+// Light G-buffers made by hand, for tests of seeding.
 #pragma once
 
 #include <functional>
@@ -48,7 +48,7 @@ inline uint32_t encode_grey(float albedo) {
     return code | code << 10 | code << 20;
 }
 
-/// A texel of the plane z = -height, facing the light.
+/// Returns a texel of the plane z = -height, facing the light.
 inline GBufferTexel floor_texel(float height, float albedo) {
     return {height, encode_octahedral(glm::vec3(0, 0, 1)), encode_grey(albedo), 0};
 }

@@ -1,4 +1,4 @@
-// What the vpl engine claims beyond the table of tests/gi/engines/engines_test.cpp.
+// Tests of the vpl engine beyond the table of tests/gi/engines/engines_test.cpp.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST_F(VplEngineTest, everyInterleaveGivesTheSameMeanLuminance) {
     const double whole = mean(scene);
     for (const uint32_t n : {2u, 4u}) {
         scene.settings.set(vpl::kInterleave, n);
-        EXPECT_NEAR(mean(scene) / whole, 1, .01) << n;  // without the factor n^2 it is 1/4 or 1/16
+        EXPECT_NEAR(mean(scene) / whole, 1, .01) << n;  // without the factor n^2 this would be 1/4 or 1/16
     }
 }
 
@@ -142,7 +142,7 @@ TEST_F(VplEngineTest, surfelsThatShineLightTheRoomAsInTheReference) {
     for (Surfel& s : scene.surfels)  // a lamp in the ceiling
         if (s.position.z > 1.99f && std::abs(s.position.x - 1) < .3f && std::abs(s.position.y - 1) < .3f)
             s.material = 1;
-    // Half of the VPLs shine at the outside and light nothing, of all bounces.
+    // Half of the VPLs light the outside, where nothing is, in every bounce.
     for (const int bounce : {1, 2}) {
         scene.settings.set(kOnlyBounce, bounce);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .08) << bounce;
@@ -179,7 +179,7 @@ TEST_F(VplEngineTest, framesSampleAnewAndTheirMeanIsNearerToTheReference) {
 }
 
 TEST_F(VplEngineTest, glossyLobesAgreeWithTheReference) {
-    // Lobes that reflect the lit floor to the walls and the camera; diffuse light beside them.
+    // Glossy lobes reflect the lit floor to the walls and the camera, beside diffuse light.
     AnalyticScene scene = box_with_a_block();
     for (const float exponent : {10.0f, 100.0f}) {
         scene.materials = {material(.5f, .4f, exponent, 0)};
@@ -189,7 +189,7 @@ TEST_F(VplEngineTest, glossyLobesAgreeWithTheReference) {
     }
 }
 
-/// Two rooms of 2 m with walls of their own .2 m apart, light in the left one; the camera is in the right
+/// Two rooms of 2 m, each with walls of its own, .2 m apart. The left one is lit; the camera is in the right
 /// one.
 AnalyticScene two_rooms(bool open) {
     AnalyticScene scene;
@@ -214,8 +214,8 @@ TEST_F(VplEngineTest, lightPassesAnOpenDoorAndNoClosedOne) {
     lit.camera = look(glm::vec3(.2f, .2f, 1), glm::vec3(2, 1.4f, .8f), .8f, 64);
     EXPECT_NEAR(open / mean(two_rooms(true), "reference"), 1, .15);
     EXPECT_LT(closed, .005 * open);
-    // Not 0: floors and walls of both rooms lie in one plane, and of the wall between them a map does not see
-    // what is within a texel of that plane.
+    // Not 0, because floors and walls of both rooms lie in one plane, and a map does not see the part of the
+    // wall between them that is within a texel of that plane.
     EXPECT_LT(closed, 5e-4 * mean(lit));
 }
 

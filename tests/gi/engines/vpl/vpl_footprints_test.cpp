@@ -1,4 +1,4 @@
-// Footprints of VPLs cut down to what is clear of walls.
+// Footprints of VPLs are cut down to the area clear of walls.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ constexpr float kSide = 2;
 
 class VplFootprints : public OnDevice {
  protected:
-    /// The footprint that is left of `area` at (x, y) on the floor of a closed box.
+    /// Returns what is left of a footprint of `area` at (x, y) on the floor of a closed box.
     float trimmed(float x, float y, float area, float shrink) {
         VplLight light = kDeadLight;
         light.position = {x, y, 0, area};
@@ -39,7 +39,7 @@ class VplFootprints : public OnDevice {
     }
 };
 
-/// The part of a disc of that area about (x, y) that lies on the floor.
+/// Returns the part of a disc of that area about (x, y) that lies on the floor.
 double inside(double x, double y, double area) {
     const double radius = std::sqrt(area / std::numbers::pi);
     constexpr int kSteps = 4000;

@@ -1,4 +1,4 @@
-// Glossy surfaces lit by VPLs: energy, sparkles, caustics.
+// Glossy surfaces lit by VPLs: energy, fireflies, caustics.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +37,7 @@ TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
     scene.settings.set(vpl::kInterleave, 1);
     for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
         scene.materials = {material(1, .3f, exponent, 1)};
-        // All that a lobe returns, were none of it below the horizon.
+        // What a lobe would reflect if none of it were below the horizon.
         const double most = .3 + .3 * (exponent + 2) / (exponent + 1);
         double bound = 1, power = 1;
         for (const uint32_t bounces : {1u, 2u}) {
@@ -73,7 +73,7 @@ TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
         scene.settings.set(vpl::kAtlas, 1024);
         scene.settings.set(vpl::kInterleave, 4);
         scene.settings.set(reference::kSamples, 1024);
-        // Of the reference the mean over 4 x 4 pixels: a path tracer sparkles by itself.
+        // Take the mean of the reference over 4 x 4 pixels, because a path tracer has fireflies of its own.
         const auto truth = render(scene, "reference").radiance;
         constexpr size_t kPictureSide = 64, kBlock = 4;
         double brightest = 0;
@@ -99,7 +99,7 @@ TEST_F(VplGlossyTest, lobesOfAllWidthsAgreeWithTheReference) {
     }
 }
 
-/// Before a mirror of focal length 1 m stands a lamp at 1.5 m; its image is 3 m away, on a wall behind the
+/// A lamp stands 1.5 m in front of a mirror of focal length 1 m. Its image is 3 m away, on a wall behind the
 /// lamp.
 constexpr float kExponent = 1000, kMirror = .8f, kImage = 3, kWall = 1.2f;
 AnalyticScene mirror_and_wall() {
@@ -122,7 +122,8 @@ AnalyticScene mirror_and_wall() {
     return scene;
 }
 
-/// What lands on the wall that fills the picture: flux, W, its middle and its variance about that, m and m^2.
+/// The light that lands on the wall that fills the picture: flux, W, and its middle and the variance about
+/// it, m and m^2.
 struct Landed {
     double flux = 0, variance = 0;
     glm::dvec2 middle{0.0};

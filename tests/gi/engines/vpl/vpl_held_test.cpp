@@ -1,4 +1,4 @@
-// VPLs and maps hold from frame to frame: what they follow from decides, and nothing else does.
+// VPLs and maps are kept from frame to frame until something that they depend on changes.
 #include <gtest/gtest.h>
 
 #include "gi/bounce_options.h"
@@ -34,10 +34,10 @@ class VplHeld : public OnDevice {
 TEST_F(VplHeld, everyFrameIsWhatAnEngineOfItsOwnMakes) {
     auto engine = *make_engine("vpl");
     const Shot shots[] = {{},
-                          {.eye = {.5f, .4f, .5f}},  // only the camera moved
-                          {.light_x = .9f},          // the light
+                          {.eye = {.5f, .4f, .5f}},  // the camera alone moves
+                          {.light_x = .9f},          // the light moves
                           {.light_x = .9f, .eye = {.5f, .4f, .5f}},
-                          {.albedo = .7f, .light_x = .9f},  // the surfels
+                          {.albedo = .7f, .light_x = .9f},  // the surfels change
                           {.albedo = .7f, .light_x = .9f, .bounces = 1},
                           {.albedo = .7f, .light_x = .9f, .bounces = 3}};
     for (const Shot& shot : shots) EXPECT_EQ(picture(*engine, shot), anew(shot)) << (&shot - shots);

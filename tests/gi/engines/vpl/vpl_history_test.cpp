@@ -1,5 +1,4 @@
-// What frames of a motion take over from each other; that they are steadier for it is
-// tests/viewer/commands/fly_test.cpp's.
+// Reuse between frames of a motion. tests/viewer/commands/fly_test.cpp tests that it makes them steadier.
 #include <cmath>
 
 #include "gi/bounce_options.h"
@@ -35,7 +34,7 @@ class VplHistory : public OnDevice {
     }
     std::vector<glm::vec4> alone(const Shot& shot) { return picture(**make_engine("vpl"), shot); }
 
-    /// Root of the mean squared difference over the mean.
+    /// Returns the root mean squared difference over the mean.
     static double difference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
         const auto metrics = compare_images(a, b);
         EXPECT_TRUE(metrics);

@@ -1,4 +1,4 @@
-// VPLs of one bounce become those of the next.
+// Redistribution: VPLs of one bounce become those of the next.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ const glm::vec3 kIncident(.6f, 0, .8f);
 
 class VplRedistribution : public OnDevice {
  protected:
-    /// VPLs on the floor of a closed white box, and those that follow.
+    /// VPLs on the floor of a closed white box, and the VPLs of the next bounce.
     struct Step {
         std::vector<VplLight> before, after;
     };
-    /// With a lobe they reflect by that alone.
+    /// With a lobe, VPLs reflect by the lobe alone.
     Step redistributed(uint32_t seed, bool best_candidate = false, float specular = 0) {
         constexpr uint32_t kCount = 256;
         Step step;
@@ -75,8 +75,8 @@ TEST_F(VplRedistribution, inAClosedBoxAllReflectedFluxLands) {
         landed += sum_of_flux(step.after);
         for (const VplLight& l : step.after) returned += 3.14159265 * l.diffuse.x / kAlbedo;
     }
-    EXPECT_NEAR(landed / left, 1, .02);    // each by its own race
-    EXPECT_NEAR(returned / left, 1, .04);  // by all races together, and by discs instead of points
+    EXPECT_NEAR(landed / left, 1, .02);    // each VPL by its own race
+    EXPECT_NEAR(returned / left, 1, .04);  // by all races together, and with discs instead of points
 }
 
 TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
@@ -99,12 +99,12 @@ TEST_F(VplRedistribution, theLightOfALobeLandsWhereTheLobePoints) {
     const glm::vec3 mirrored(-kIncident.x, -kIncident.y, kIncident.z);
     double off = 0, far = 0;
     for (size_t i = 0; i < step.after.size(); ++i) {
-        if (step.before[i].position.x < 1) continue;  // near the wall footprints are wide
+        if (step.before[i].position.x < 1) continue;  // footprints are wide near the wall
         off += 1 - glm::dot(-glm::vec3(step.after[i].incident), mirrored);
         ++far;
     }
     EXPECT_GT(off / far, .8 / (kLobeExponent + 1));  // the mean of 1 - cos over the lobe is 1 / (n + 1)
-    EXPECT_LT(off / far, 3 / (kLobeExponent + 1));   // and footprints and texels widen it
+    EXPECT_LT(off / far, 3 / (kLobeExponent + 1));   // footprints and texels widen the lobe
 }
 
 TEST_F(VplRedistribution, footprintsShareOutTheSurfaceThatIsLit) {
@@ -126,7 +126,8 @@ TEST_F(VplRedistribution, theSameEveryRunAndAnotherForAnotherSeed) {
 }
 
 TEST_F(VplRedistribution, theBestCandidateClumpsWhereTheRaceSpreads) {
-    // All lights look at the middle of the ceiling at its strongest: the paper's choice puts them all there.
+    // All VPLs see the middle of the ceiling most strongly, and the choice of the paper puts all new VPLs
+    // there.
     const auto spread = [](const Step& step) {
         double sum = 0;
         for (const VplLight& l : step.after)

@@ -32,7 +32,8 @@ class VplSeeding : public ::testing::Test {
     std::unique_ptr<Device> device;
 };
 
-/// The mean luminance intensity over a texel as the importance map takes it: centre and corners.
+/// Returns the mean luminous intensity over a texel as the importance map computes it: the mean of centre
+/// and corners.
 double texel_intensity(const SpotSight& light, uint32_t x, uint32_t y) {
     double sum = 0;
     for (const auto& [dx, dy] :
@@ -52,7 +53,7 @@ double texel_solid_angle(const SpotSight& light, uint32_t x, uint32_t y) {
            std::pow(glm::length(ray), 3);
 }
 
-double full_flux(const SpotSight& light) {  // of the whole cone: the edge's smoothstep has a mean of 1/2
+double full_flux(const SpotSight& light) {  // of the whole cone; the smoothstep at the edge has a mean of 1/2
     const double inner = light.spot.direction.w, outer = light.spot.position.w;
     return 2 * std::numbers::pi * light.spot.strength.x * (1 - inner + (inner - outer) / 2);
 }
@@ -90,18 +91,18 @@ TEST(VplHalton, everyCellOfAGridGetsItsShareForAnySeedAndFrame) {
             ++counts[static_cast<size_t>(p.x * 4) + 4 * static_cast<size_t>(p.y * 4)];
         }
         for (const int count : counts)
-            EXPECT_NEAR(count, 64, 8);  // a random set strays by 8 in one of three cells
+            EXPECT_NEAR(count, 64, 8);  // a random set deviates by 8 in one of three cells
     }
     EXPECT_NE(halton_points(4, 7, 0)[3], halton_points(4, 7, 1)[3]);
     EXPECT_NE(halton_points(4, 7, 0)[3], halton_points(4, 8, 0)[3]);
     EXPECT_EQ(halton_points(4, 7, 3)[3], halton_points(4, 7, 3)[3]);
 }
 
-/// Pearson's statistic as a deviate of the normal distribution (Wilson and Hilferty 1931).
+/// Returns Pearson's statistic as a deviate of the normal distribution (Wilson and Hilferty 1931).
 double chi_square_deviate(const std::vector<double>& expected, const std::vector<int>& counts) {
     double statistic = 0, degrees = -1, rest_expected = 0, rest_count = 0;
     for (size_t i = 0; i < expected.size(); ++i) {
-        if (expected[i] < 10) {  // too few for the statistic: pooled
+        if (expected[i] < 10) {  // too few for the statistic: pool them
             rest_expected += expected[i];
             rest_count += counts[i];
             continue;
@@ -155,7 +156,7 @@ TEST_F(VplSeeding, warpedIndependentPointsFollowTheImportanceByChiSquare) {
     }
     EXPECT_LT(std::abs(chi_square_deviate(expected, counts)), 4);
 
-    // The test can fail: a density without the even share is told apart.
+    // The test is sensitive: it rejects a density without the even share.
     for (size_t i = 0; i < weights.size(); ++i) expected[i] = kPoints * weights[i] / sum;
     EXPECT_GT(chi_square_deviate(expected, counts), 10);
 }
@@ -177,7 +178,8 @@ TEST_F(VplSeeding, incidentFluxOverManySeedsIsTheFluxThatLands) {
         whole_sum += total_flux(seed(light, whole, points)) / kSeeds;
         half_sum += total_flux(seed(light, half, points)) / kSeeds;
     }
-    // Each seed's sum has a deviation of some 10 % (the albedo is noise), their mean an eighth of that.
+    // The sum of each seed has a standard deviation of some 10 % (the albedo is noise), their mean an eighth
+    // of that.
     EXPECT_NEAR(whole_sum, full_flux(light), .02 * full_flux(light));
     EXPECT_NEAR(half_sum, full_flux(light) / 2, .02 * full_flux(light));
 }
@@ -197,7 +199,7 @@ TEST_F(VplSeeding, lightsLieOnTheSurfaceFaceTheSpotAndStandForTheirShareOfIt) {
     }
     const double disc = std::numbers::pi * std::pow(2 * std::tan(.5), 2);
     EXPECT_NEAR(footprints, disc,
-                .1 * disc);  // the faint rim is sampled seldom, by footprints that are large
+                .1 * disc);  // the faint rim has few samples, with large footprints
 }
 
 TEST_F(VplSeeding, shinySurfacesGetMoreLightsThanDullOnesOfTheSameReflectance) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kEmpty = 0xffffffffu;
 
-/// The maps on the host, read as parabolic.glsl writes them.
+/// The maps on the host, decoded as parabolic.glsl encodes them.
 struct Maps {
     AtlasLayout layout;
     std::vector<uint32_t> texels;
@@ -28,8 +28,8 @@ struct Maps {
         std::memcpy(&value, &bits, sizeof value);
         return value;
     }
-    /// The unit direction of a texel's central ray, for a VPL that looks along +z; zero outside the
-    /// hemisphere.
+    /// Returns the unit direction of the central ray of a texel, for a VPL that looks along +z; zero outside
+    /// the hemisphere.
     glm::vec3 ray(uint32_t x, uint32_t y) const {
         const auto coordinate = [&](uint32_t i) {
             return (2 * static_cast<float>(i) + 1) / static_cast<float>(layout.side) - 1;
@@ -46,7 +46,7 @@ struct Maps {
     }
 };
 
-/// A VPL at the origin that looks along +z: there the map's frame is the world's.
+/// A VPL at the origin that looks along +z, so that the frame of its map is that of the world.
 VplLight upward() {
     VplLight light = kDeadLight;
     light.position = {0, 0, 0, 0.01f};
@@ -56,7 +56,7 @@ VplLight upward() {
 
 class VplShadowMaps : public OnDevice {
  protected:
-    /// `atlas` texels along a side, shared out among the lights.
+    /// Draws maps in an atlas of `atlas` texels along a side, shared by the lights.
     Maps draw(const std::vector<Surfel>& surfels, const std::vector<VplLight>& lights, uint32_t atlas) {
         Maps maps;
         const auto layout = atlas_layout(atlas, static_cast<uint32_t>(lights.size()));
@@ -88,8 +88,8 @@ std::vector<Surfel> ceiling(float z, float half, int n) {
 }
 
 TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
-    // A slanted wall: depths differ by half over one splat, which one depth a splat would get wrong by as
-    // much.
+    // A slanted wall: depths differ by half over one splat, which a single depth per splat would get wrong
+    // by as much.
     std::vector<Surfel> wall;
     scenes::add_rectangle(wall, glm::vec3(-4, -4, 0), glm::vec3(8, 0, 4), glm::vec3(0, 8, 0), 400,
                           glm::vec3(0.5f));
@@ -100,7 +100,7 @@ TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
         if (texel == kEmpty) return;
         const float truth = glm::dot(normal, glm::vec3(0, 0, 2)) / glm::dot(normal, ray);
         const glm::vec3 hit = truth * ray;
-        if (std::max(std::abs(hit.x), std::abs(hit.y)) > 3.7f) return;  // rims
+        if (std::max(std::abs(hit.x), std::abs(hit.y)) > 3.7f) return;  // skip the rims
         ++hits;
         EXPECT_NEAR(Maps::distance(texel) / truth, 1, .01) << ray.x << " " << ray.y;
     });
@@ -108,7 +108,7 @@ TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
 }
 
 TEST_F(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
-    // Far finer than the map, so that all but a few surfels in a hundred are left out of it.
+    // The surfels are far finer than the map, so that all but a few in a hundred are left out of it.
     std::vector<Surfel> walls = ceiling(1, 3, 500);
     const auto behind = ceiling(2, 6, 500);
     walls.insert(walls.end(), behind.begin(), behind.end());
@@ -116,7 +116,7 @@ TEST_F(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
     size_t rays = 0, through = 0;
     for (uint32_t map = 0; map < 16; ++map)
         maps.each(map, [&](const glm::vec3& ray, uint32_t texel) {
-            if (ray.z < .4f) return;  // the white wall ends at 18 degrees over the horizon
+            if (ray.z < .4f) return;  // the white wall ends 18 degrees above the horizon
             ++rays;
             if (texel == kEmpty || Maps::distance(texel) * ray.z > 1.5f) ++through;
         });
@@ -165,7 +165,7 @@ TEST_F(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
 }
 
 TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
-    // Every second VPL is dead: its map stays empty whatever its neighbours in the buffer hold.
+    // Every second VPL is dead. Its map must stay empty, whatever its neighbours in the buffer hold.
     std::vector<VplLight> lights;
     for (int i = 0; i < 16; ++i) lights.push_back(i % 2 ? kDeadLight : upward());
     const Maps maps = draw(ceiling(1, 60, 1000), lights, 256);
@@ -176,7 +176,7 @@ TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
                 EXPECT_EQ(texel, kEmpty) << map;
                 return;
             }
-            if (ray.z < .12f) return;  // splats are thinner than a texel there
+            if (ray.z < .12f) return;  // splats are thinner than a texel here
             ++rays;
             filled += texel != kEmpty;
         });

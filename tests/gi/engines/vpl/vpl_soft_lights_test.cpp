@@ -1,4 +1,4 @@
-// Bounces of light from what has a size.
+// Bounced light of lights with a size.
 #include <cmath>
 #include <vector>
 
@@ -22,7 +22,7 @@ namespace {
 using scenes::AnalyticScene;
 using VplSoftLights = OnDevice;
 
-/// A room of 2 m, without its ceiling where the sky shall come in, with a block in it, seen from within.
+/// A room of 2 m with a block in it, seen from within; without its ceiling if the sky shall light it.
 AnalyticScene room(bool open) {
     AnalyticScene scene;
     const auto walls = scenes::closed_box(2, 40, glm::vec3(.6f));
@@ -75,13 +75,14 @@ TEST_F(VplSoftLights, DiscAndSpotTogetherLightARoomAsInTheReference) {
     expect_the_references_energy(*device, scene, "disc and spot");
 }
 
-// Under a sky of 1 everything that returns rho and shines 1 - rho is 1: nothing can be told from anything.
+// Under a sky of 1 every surface that reflects rho and emits 1 - rho has the radiance 1, so nothing can be
+// distinguished.
 TEST_F(VplSoftLights, OpenFurnaceUnderAnEvenSkyIsOneEverywhere) {
     AnalyticScene scene = room(true);
     for (Surfel& s : scene.surfels) s.albedo = glm::vec3(.5f);
     scene.environment = scenes::even_sky(1);
     scene.materials = {scenes::material(1, 0, 1, .5f)};
-    scene.settings.set(kBounces, 5);  // what is left is under .5^6
+    scene.settings.set(kBounces, 5);  // the remaining bounces are below .5^6
     EXPECT_NEAR(mean(*device, "vpl", scene, 2), 1, .025);
 }
 
@@ -98,7 +99,7 @@ TEST_F(VplSoftLights, LightsWithoutSizeOrLightInsideWallsAndBlackSkiesAreDefined
         scene.lights = {light};
         EXPECT_EQ(mean(*device, "vpl", scene, 1), 0) << &light - nothing;
     }
-    // In the plane of a wall, and a hair's breadth before and behind it.
+    // A light in the plane of a wall, slightly in front of it and slightly behind it.
     for (const float x : {0.0f, 1e-4f, -1e-4f}) {
         scene.lights = {scenes::rectangle_light({x, 1, 1}, .2f * kY, .2f, kX, 1)};
         EXPECT_GE(mean(*device, "vpl", scene, 1), 0) << x;
