@@ -18,7 +18,7 @@ inline constexpr size_t kPrefixSteps = 4;  ///< prefixes of 1, 1/2, 1/4, 1/8
 struct NodeInfo {
     NodeKey key;
     uint32_t parent = kNoNode;
-    uint32_t first_child = kNoNode;  ///< children stand together in the directory, in octant order
+    uint32_t first_child = kNoNode;  ///< children are contiguous in the directory, in octant order
     uint8_t child_mask = 0;          ///< bit i: the child in octant i exists
     uint32_t count = 0;              ///< points in this node itself
     uint64_t subtree_count = 0;      ///< points with all descendants
