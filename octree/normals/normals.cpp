@@ -22,7 +22,7 @@ constexpr double kGrazing = 0.05;
 /// to a pier covers some degrees of its curve.
 constexpr double kSilhouette = 0.1;
 
-/// A halo takes 1/kHaloMemory of the memory, because at least two chunks may be processed at a time.
+/// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
 
 /// What is known of one chunk before the components of all chunks are joined.

@@ -112,7 +112,7 @@ void SurfaceStore::limit_strays() {
     for (const auto& [bin, count] : areas_) {
         below += count;
         if (2 * below < known) continue;
-        // KMostStray of the median.
+        // The limit is kMostStray of the median.
         most_stray_area_ = kMostStray * std::exp2(static_cast<float>(bin) / kAreaBins);
         return;
     }

@@ -13,7 +13,7 @@
 namespace lucarne::octree {
 namespace {
 
-/// What an input holds besides the points that were passed to `visit`.
+/// The contents of an input that are not among the points passed to `visit`.
 struct LeftOut {
     uint64_t dropped = 0;
     io::Losses losses;

@@ -34,8 +34,8 @@ class PointIndex {
     virtual bool gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const = 0;
 };
 
-/// Makes an index of the given kind; `points` may be empty. `points` must be scaled as ChunkCache does,
-/// outlive the index, and be in the order of morton_order().
+/// Makes an index of the given kind; returns null if there are no points. `points` must be scaled as
+/// ChunkCache does, outlive the index, and be in the order of morton_order().
 std::unique_ptr<PointIndex> make_index(NeighbourSearch search, const PointArrays& points);
 /// Makes PCL's default index: FLANN's single kd-tree. The points may be in any order.
 std::unique_ptr<PointIndex> make_flann_index(const PointArrays& points);

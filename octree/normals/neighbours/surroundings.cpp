@@ -77,7 +77,7 @@ const Patch& ChunkNeighbours::Surroundings::visit(uint32_t site, size_t k) {
 bool ChunkNeighbours::Surroundings::find_shared(size_t k) {
     constexpr int kMostTries = 12;
     const glm::dvec3 at = of_.sites_[site_];
-    // The k nearest can be no farther than the previous site's k nearest, seen from here.
+    // An upper bound: the distance to the previous site plus that of the previous site's k-th nearest.
     const double bound = previous_reach_ >= 0
                              ? (glm::distance(at, previous_) + previous_reach_) * kMoreThanRounding
                              : kInfinity;

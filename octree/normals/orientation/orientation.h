@@ -65,12 +65,14 @@ class OrientationMerger {
         Shell shell;
         bool anchored = false;
     };
+    /// Turns the messages for this chunk into votes.
     void hear(const ChunkNeighbours& neighbours, const ChunkSurface& surface,
               const ChunkOrientation& orientation);
+    /// Sends the chunk's border edges as messages to the chunks that come later.
     void tell(const ChunkSurface& surface, const ChunkOrientation& orientation);
 
-    std::vector<std::vector<Message>> inboxes_;
-    std::vector<uint32_t> first_component_;  ///< of each chunk added so far, and the end
+    std::vector<std::vector<Message>> inboxes_;  ///< messages to each chunk that is not yet added
+    std::vector<uint32_t> first_component_;      ///< of each chunk added so far, and the end
     std::vector<Component> components_;
     SignVotes votes_;  ///< between components
 };
