@@ -8,14 +8,14 @@
 
 namespace lucarne::octree {
 
-/// What a file is that is an octree by itself.
+/// Kinds of file that are octrees by themselves.
 enum class OctreeKind { none, cache, copc };
-/// By its first bytes; none where they cannot be read.
+/// Decides by the file's first bytes; `none` where they cannot be read.
 OctreeKind octree_kind(const ByteSource& file);
 /// Whether the file is an octree; false for anything else, unreadable files included.
 bool is_octree(const std::filesystem::path& path);
 
-/// Opens it. Errors: those of open_cache and open_copc.
+/// Opens an octree file of either kind. Errors: those of open_cache and open_copc.
 Result<std::unique_ptr<NodeSource>> open_octree(std::shared_ptr<const ByteSource> file);
 Result<std::unique_ptr<NodeSource>> open_octree(const std::filesystem::path& path);
 

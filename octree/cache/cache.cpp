@@ -21,7 +21,7 @@ auto damaged(const ByteSource& file, std::string why) {
     return rejected(file.path().string(), std::move(why), kAgain);
 }
 
-/// Whether [offset, offset + bytes) lies behind the superblocks and before `end`.
+/// Whether [offset, offset + bytes) lies after the superblocks and before `end`.
 bool inside(uint64_t offset, uint64_t bytes, uint64_t end) {
     return offset >= format::kFirstPayload && offset <= end && bytes <= end - offset;
 }
@@ -42,8 +42,8 @@ Result<Superblock> newest_superblock(const ByteSource& file) {
     return block;
 }
 
-/// Reads a checksummed range, and leaves `behind` zeros behind it. Its size was checked against the file
-/// before.
+/// Reads a range, checks it against the checksum `sum`, and appends `behind` zeros. The range must have been
+/// checked against the file's size.
 Result<std::vector<std::byte>> read_checked(const ByteSource& file, uint64_t offset, uint64_t bytes,
                                             uint64_t sum, const std::string& what, size_t behind = 0) {
     std::vector<std::byte> data(bytes + behind);
@@ -116,15 +116,16 @@ Result<void> CacheFile::read_directory() {
     layouts_.push_back({header_.schema.stride, std::make_unique<codec::DecoderPool>(header_.schema), {}});
     for (const auto& layout : header_.layouts) {
         if (!RecordMap::fits(layout, header_.schema))
-            return damaged(*file_, "it has a layout whose records its schema cannot hold");
+            return damaged(*file_, "it has a layout that does not fit into its schema");
         layouts_.push_back(
             {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header_.schema)});
     }
     return {};
 }
 
-/// Breadth first and Morton sorted means: walking the nodes in order, their children follow each other
-/// without a gap. That makes parents exist, keys consistent and unique, and the order right, all at once.
+/// Walks the nodes in order: because the directory is breadth-first and in Morton order, the nodes' children
+/// must follow each other without a gap. This one rule checks that parents exist, that keys are consistent
+/// and unique, and that the order is right.
 Result<void> CacheFile::check_structure() {
     if (nodes_.empty() || nodes_[0].key != NodeKey{}) return damaged(*file_, "it has no root node");
     size_t next = 1;

@@ -9,10 +9,10 @@
 
 namespace lucarne::octree {
 
-/// Whether the file starts like a cache; false where it cannot be read.
+/// Whether the file starts like a cache; false if it cannot be read.
 bool is_cache(const ByteSource& file);
 
-/// Opens a cache: reads superblock, metadata and directory and checks everything that can be checked without
+/// Opens a cache. Reads superblock, metadata and directory, and checks everything that can be checked without
 /// the points (sizes against the file, keys, counts, offsets, overlaps). Errors: ErrorKind::input_rejected.
 Result<std::unique_ptr<NodeSource>> open_cache(std::shared_ptr<const ByteSource> file);
 Result<std::unique_ptr<NodeSource>> open_cache(const std::filesystem::path& path);
@@ -24,7 +24,7 @@ struct VerifyReport {
 };
 
 /// Reads the whole cache and checks every checksum and invariant: both superblocks, every point inside its
-/// node's cube, the bounds, the counts. `progress` is told the bytes of each node checked.
+/// node's cube, the bounds, the counts. Calls `progress` with the bytes of each checked node.
 Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
                                   const std::function<void(uint64_t)>& progress);
 Result<VerifyReport> verify_cache(const std::filesystem::path& path,

@@ -15,20 +15,20 @@
 
 namespace lucarne::octree {
 
-/// Both superblocks of a file; empty where damaged.
+/// Returns both superblocks of a file; a damaged one is empty.
 Result<std::array<std::optional<format::Superblock>, 2>> read_superblocks(const ByteSource& file);
 
-/// Where a node's points are, and how.
+/// Where a node's points are stored, and how.
 struct StoredPayload {
     uint64_t offset = 0, checksum = 0;
     uint8_t codec = format::kCodecRaw, layout = 0;
 };
-/// Reads, checks and decodes a node's points, in the layout that they are stored in. Its sizes were checked
-/// against the file before.
+/// Reads, checks and decodes a node's points, in the layout in which they are stored. The node's sizes must
+/// have been checked against the file.
 Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
 
-/// A cache: its directory in memory, its points where they are.
+/// An open cache. Its directory is in memory, its points are in the file.
 class CacheFile final : public NodeSource {
  public:
     static Result<std::unique_ptr<CacheFile>> open(std::shared_ptr<const ByteSource> file);
@@ -38,7 +38,7 @@ class CacheFile final : public NodeSource {
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t node) const override;
 
-    /// A node's directory entry.
+    /// Returns a node's directory entry.
     format::Entry entry(uint32_t node) const;
     const ByteSource& file() const { return *file_; }
     const format::Superblock& superblock() const { return block_; }
@@ -59,7 +59,7 @@ class CacheFile final : public NodeSource {
     struct Layout {
         uint32_t stride = 0;
         std::unique_ptr<codec::DecoderPool> decoders;
-        std::optional<RecordMap> to_schema;  ///< empty for the cache's own
+        std::optional<RecordMap> to_schema;  ///< empty for the cache's own schema
     };
     std::vector<Layout> layouts_;
 };

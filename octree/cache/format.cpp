@@ -7,7 +7,7 @@
 namespace lucarne::octree::format {
 namespace {
 
-constexpr size_t kChecked = 80;  // the superblock's bytes under its own checksum, which follows them
+constexpr size_t kChecked = 80;  // bytes of the superblock under its own checksum, which follows them
 
 using io::load;
 using io::store;

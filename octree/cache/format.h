@@ -9,7 +9,7 @@
 
 #include "octree/tree/source.h"
 
-/// The bytes of a cache file, as octree/FORMAT.md defines them; shared by the reader and the writer.
+/// The bytes of a cache file as octree/FORMAT.md defines them, for the reader and the writer.
 namespace lucarne::octree::format {
 
 static_assert(std::endian::native == std::endian::little,
@@ -20,7 +20,7 @@ inline constexpr uint32_t kVersion = 2;
 inline constexpr size_t kSuperblockBytes = 4096;
 inline constexpr uint64_t kFirstPayload = 2 * kSuperblockBytes;
 inline constexpr size_t kEntryBytes = 64;
-inline constexpr uint8_t kCodecRaw = 0;      ///< the payload is the node's records as they are
+inline constexpr uint8_t kCodecRaw = 0;      ///< the payload is the node's records, unchanged
 inline constexpr uint8_t kCodecColumns = 1;  ///< compressed: octree/codec
 inline constexpr uint64_t kMaxMetadata = uint64_t{64} << 20;
 inline constexpr uint32_t kMaxStride = 1 << 16;
@@ -32,20 +32,20 @@ struct Superblock {
     uint64_t generation = 0;
     uint64_t directory_offset = 0, directory_bytes = 0, directory_checksum = 0;
     uint64_t metadata_offset = 0, metadata_bytes = 0, metadata_checksum = 0;
-    uint64_t file_bytes = 0;  ///< everything this state needs lies before here
+    uint64_t file_bytes = 0;  ///< everything that this state needs lies before this offset
     bool operator==(const Superblock&) const = default;
 };
 using SuperblockBytes = std::array<std::byte, kSuperblockBytes>;
 SuperblockBytes encode(const Superblock& block);
-/// Empty where magic, version or checksum do not fit.
+/// Empty unless magic, version, entry size and checksum are right.
 std::optional<Superblock> decode(std::span<const std::byte, kSuperblockBytes> bytes);
 
-/// One node in the directory.
+/// One node's entry in the directory.
 struct Entry {
     NodeKey key;
     uint8_t child_mask = 0;
     uint8_t codec = kCodecRaw;
-    uint8_t layout = 0;  ///< 0: stored in the cache's schema; i: in that of layouts[i - 1]
+    uint8_t layout = 0;  ///< 0: stored in the cache's schema; i: in the schema layouts[i - 1]
     uint32_t count = 0;
     uint32_t payload_bytes = 0;
     uint64_t payload_offset = 0;

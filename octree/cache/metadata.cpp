@@ -16,9 +16,9 @@ using nlohmann::json;
 
 constexpr int kMaxNesting = 32;
 constexpr uint32_t kMostDoublings = 20;
-constexpr double kFarthest = 1e31;  // readers drop coordinates over 1e30: nothing overflows when squared
+constexpr double kFarthest = 1e31;  // readers drop coordinates above 1e30: no square overflows
 
-/// Thrown and caught in this file only: nlohmann's accessors throw as well, so one handler serves both.
+/// Thrown and caught in this file only. nlohmann's accessors throw as well, so one handler catches both.
 struct Mistake : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -142,14 +142,14 @@ json root_json(const Cube& root) {
     return result;
 }
 
-/// Whether places in the cube can be counted (Cube::place).
+/// Whether places in the cube can be computed (Cube::place).
 bool has_places(const Cube& root) {
     return root.size <= kFarthest && root.first_size() > 0 && std::isfinite(0x1p32 / root.first_size());
 }
 
 Cube root_of(const json& value) {
     Cube root{vector_of(value.at("min")), number(value.at("size"))};
-    require(has_places(root), "a root cube without or beyond any size");
+    require(has_places(root), "a root cube of an impossible size");
     if (!value.contains("first")) return root;
     const json& first = value.at("first");
     root.first_min = vector_of(first.at("min"));
@@ -164,9 +164,9 @@ Cube root_of(const json& value) {
                 "a first cube outside the root cube");
         root.first_cell[axis] = cell[axis].get<uint32_t>();
         require(std::abs(root.first_min[static_cast<int>(axis)]) <= kFarthest,
-                "a first cube without a place");
+                "a first cube too far from the origin");
     }
-    require(has_places(root), "a root cube without or beyond any size");
+    require(has_places(root), "a root cube of an impossible size");
     return root;
 }
 
@@ -185,7 +185,7 @@ std::string metadata_text(const SourceHeader& header) {
               {"scans", std::move(scans)}};
     if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
-    // File names are bytes, not always UTF-8: what is not becomes U+FFFD instead of an exception.
+    // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -200,7 +200,7 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         header.schema = schema_of(root.at("schema"));
         if (root.contains("layouts"))
             for (const auto& layout : root.at("layouts")) header.layouts.push_back(schema_of(layout));
-        require(header.layouts.size() <= kMostLayouts, "more layouts than a node can name");
+        require(header.layouts.size() <= kMostLayouts, "more layouts than a node can refer to");
         header.root = root_of(root.at("root"));
         header.min = vector_of(root.at("bounds").at("min"));
         header.max = vector_of(root.at("bounds").at("max"));
@@ -209,7 +209,7 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
                     "impossible bounds");
         header.points = root.at("points").get<uint64_t>();
         header.metres_per_unit = number(root.at("metres_per_unit"));
-        require(header.metres_per_unit > 0, "a unit without length");
+        require(header.metres_per_unit > 0, "a unit whose length is not positive");
         header.options = root.value("options", std::string());
         for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
         return header;

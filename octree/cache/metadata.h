@@ -9,9 +9,11 @@ namespace lucarne::octree {
 
 inline constexpr size_t kMostLayouts = 255;
 
-/// The cache's metadata as JSON (octree/FORMAT.md) and back. Doubles survive bit by bit.
+/// Writes a cache's metadata as JSON (octree/FORMAT.md). Doubles are written so that they read back bit by
+/// bit.
 std::string metadata_text(const SourceHeader& header);
-/// Everything is checked: types, ranges, nesting, the schema's layout. `file` names the cache in errors.
+/// Parses metadata and checks all of it: types, ranges, nesting, the schema's layout. `file` names the cache
+/// in errors.
 Result<SourceHeader> parse_metadata(const std::string& file, std::string_view text);
 
 }  // namespace lucarne::octree

@@ -35,7 +35,7 @@ RecordMap::RecordMap(const io::Schema& from, const io::Schema& to, const Rename&
             auto* last = steps_.empty() ? nullptr : &steps_.back();
             if (last && last->components == 0 && last->from + last->bytes == attribute.offset &&
                 last->to + last->bytes == target->offset)
-                last->bytes += bytes;  // one copy for neighbours
+                last->bytes += bytes;  // adjacent attributes take one copy
             else
                 steps_.push_back({.from = attribute.offset, .to = target->offset, .bytes = bytes});
             continue;

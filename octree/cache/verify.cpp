@@ -10,22 +10,23 @@
 namespace lucarne::octree {
 namespace {
 
-/// A fresh cache has two equal superblocks; after an append the older state stays valid in the other one.
+/// Checks both superblocks. A new cache has two equal ones; after an append the older state stays valid in
+/// the other one.
 Result<void> check_superblocks(const CacheFile& cache) {
     const auto& file = cache.file();
     LUCARNE_ASSIGN(const auto blocks, read_superblocks(file));
     for (size_t i = 0; i < blocks.size(); ++i) {
         format::SuperblockBytes stored;
         LUCARNE_TRY(file.read_at(i * format::kSuperblockBytes, stored));
-        // What its own checksum leaves out is zeros.
+        // The bytes outside the superblock's own checksum must be zero: encode() writes them so.
         if (!blocks[i] || stored != format::encode(*blocks[i]))
             return rejected(file.path().string(), fmt::format("superblock {} is damaged", i),
-                            "lucarne compact writes both anew, if an interrupted update did it");
+                            "if an interrupted update did it, lucarne compact writes both again");
     }
     return {};
 }
 
-/// Checks a node's points against its cube and grows the bounds by them.
+/// Checks that a node's points lie in its cube, and extends the bounds by them.
 Result<void> check_points(const CacheFile& cache, uint32_t index, glm::dvec3& least, glm::dvec3& most) {
     LUCARNE_ASSIGN(const NodeData data, cache.load(index));
     const auto& header = cache.header();
@@ -62,11 +63,11 @@ Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
         progress(nodes[i].payload_bytes);
     }
     if (report.points && (least != cache->header().min || most != cache->header().max))
-        return rejected(name, "its bounds are not those of its points");
+        return rejected(name, "its stored bounds differ from those of its points");
     report.nodes = nodes.size();
     report.bytes = cache->file().size();
     report.bytes_behind_end =
-        report.bytes - cache->superblock().file_bytes;  // the reader checked that it fits
+        report.bytes - cache->superblock().file_bytes;  // open() checked that this is not negative
     return report;
 }
 

@@ -24,7 +24,7 @@ Result<CacheWriter> CacheWriter::create(const std::filesystem::path& path, bool 
     LUCARNE_ASSIGN(ScratchFile entries, ScratchFile::create(temp_folder));
     CacheWriter writer(std::move(entries));
     writer.output_ = std::move(output);
-    // Room for the superblocks: zeros until finish, so that an unfinished file is no cache.
+    // Room for the superblocks. They are zeros until finish(), so that an unfinished file is not a cache.
     LUCARNE_TRY(writer.append(std::vector<std::byte>(format::kFirstPayload)));
     return writer;
 }
@@ -71,7 +71,7 @@ Result<void> CacheWriter::flush_entries() {
     return {};
 }
 
-/// Deals the entries out to their levels' places at the end of the file; returns the directory's checksum.
+/// Distributes the entries to their levels' ranges at the end of the file. Returns the directory's checksum.
 Result<uint64_t> CacheWriter::write_directory() {
     LUCARNE_TRY(flush_entries());
     const uint64_t begin = end_, bytes = nodes_ * kEntryBytes;
@@ -112,7 +112,7 @@ Result<void> CacheWriter::finish(const SourceHeader& header) {
     block.generation = generation_;
     const std::string metadata = metadata_text(header);
     if (metadata.size() > format::kMaxMetadata)
-        return failed("metadata", fmt::format("{} bytes are more than a cache holds", metadata.size()));
+        return failed("metadata", fmt::format("{} bytes are more than a cache can hold", metadata.size()));
     const auto text = std::as_bytes(std::span(metadata));
     block.metadata_bytes = metadata.size();
     block.metadata_checksum = format::checksum(text);
@@ -125,11 +125,12 @@ Result<void> CacheWriter::finish(const SourceHeader& header) {
 }
 
 void CacheWriter::abandon() {
-    if (update_ && !switching_) (void)update_->truncate(begin_);  // what stays there does no harm
+    // Errors do not matter: what stays there does no harm.
+    if (update_ && !switching_) (void)update_->truncate(begin_);
 }
 
-/// A fresh cache gets its name, and both superblocks; an update overwrites the older one when all that it
-/// speaks of is on the disk.
+/// A new cache gets both superblocks and its name. An update overwrites the older superblock once all data
+/// that the new one refers to is on the disk.
 Result<void> CacheWriter::commit(format::Superblock block) {
     const auto bytes = format::encode(block);
     if (output_) {

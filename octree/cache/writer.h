@@ -11,28 +11,29 @@
 
 namespace lucarne::octree {
 
-/// Writes a fresh cache. Payloads and nodes come in the order in which a depth-first build finishes them: the
-/// children of a node together in octant order, subtrees along the Morton curve, the root last. Nodes of one
-/// level then come sorted, so the directory needs no sort and memory does not grow with the number of nodes.
+/// Writes a new cache. Payloads and nodes must come in the order in which a depth-first build finishes them:
+/// the children of a node together in octant order, subtrees along the Morton curve, the root last. The nodes
+/// of one level then come sorted, so the directory needs no sort and memory does not grow with the number of
+/// nodes.
 class CacheWriter {
  public:
     static Result<CacheWriter> create(const std::filesystem::path& path, bool overwrite,
                                       const std::filesystem::path& temp_folder);
-    /// Writes a new state behind that of an existing cache, whose superblock number `newest` is `before`;
-    /// what an interrupted update left there is cut off. Until `finish` switches, and whatever happens before
-    /// it, the file shows the old state.
+    /// Writes a new state behind that of an existing cache, whose newest superblock is `before`, at index
+    /// `newest`. Cuts off what an interrupted update left there. Until `finish` switches to the new state,
+    /// the file shows the old one, whatever happens.
     static Result<CacheWriter> update(UpdateFile file, const format::Superblock& before, size_t newest,
                                       const std::filesystem::path& temp_folder);
 
-    /// Appends payload bytes and returns where they begin.
+    /// Appends a payload and returns its offset.
     Result<uint64_t> append(std::span<const std::byte> payload);
     Result<void> add(const format::Entry& entry);
-    /// Writes directory, metadata and superblocks, syncs, and gives the file its name.
+    /// Writes directory, metadata and superblocks, syncs, and gives a new file its name.
     Result<void> finish(const SourceHeader& header);
-    /// An update that failed: cuts off what it wrote, unless the switch may have happened.
+    /// Call when an update has failed: cuts off what it wrote, unless the switch may have happened.
     void abandon();
 
-    /// What is appended so far to a fresh cache.
+    /// Opens what has been appended to a new cache so far.
     Result<InputFile> reader() const { return output_->reader(end_); }
 
     uint64_t nodes() const { return nodes_; }
@@ -46,13 +47,13 @@ class CacheWriter {
     Result<void> flush_entries();
     Result<uint64_t> write_directory();
 
-    std::optional<OutputFile> output_;  ///< a fresh cache...
-    std::optional<UpdateFile> update_;  ///< ...or one that grows
-    size_t next_block_ = 0;             ///< of the superblocks, the one to be written by an update
+    std::optional<OutputFile> output_;  ///< of a new cache...
+    std::optional<UpdateFile> update_;  ///< ...or of one that is updated
+    size_t next_block_ = 0;             ///< index of the superblock that an update writes
     uint64_t generation_ = 1, begin_ = 0;
     bool switching_ = false;
-    uint64_t end_ = 0;     ///< of what was appended
-    ScratchFile entries_;  ///< the nodes as they came
+    uint64_t end_ = 0;     ///< end of what was appended
+    ScratchFile entries_;  ///< the nodes in the order of add()
     uint64_t nodes_ = 0, entries_written_ = 0;
     std::array<uint64_t, kMostLevel + 1> per_level_{};
     std::vector<std::byte> buffer_;

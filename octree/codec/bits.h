@@ -9,11 +9,11 @@
 
 namespace lucarne::octree::codec {
 
-/// Bits one after the other, each number's lowest first, from the lowest bit of each byte up.
+/// Writes numbers as consecutive bits: each number's lowest bit first, into the lowest free bit of the bytes.
 class BitWriter {
  public:
     explicit BitWriter(std::vector<std::byte>& out) : out_(out) {}
-    /// The lower `bits` bits of `value`, whose others are 0; up to 64.
+    /// Appends the lower `bits` bits of `value`; its other bits must be 0. At most 64.
     void put(uint64_t value, uint32_t bits) {
         held_ |= value << used_;
         if (used_ + bits < 64) {
@@ -24,7 +24,7 @@ class BitWriter {
         held_ = used_ ? value >> (64 - used_) : 0;
         used_ = used_ + bits - 64;
     }
-    /// Whole bytes from here on.
+    /// Pads the last byte with zeros: the next number starts a new byte.
     void flush() {
         append(held_, (used_ + 7) / 8);
         held_ = used_ = 0;
@@ -41,9 +41,9 @@ class BitWriter {
     uint32_t used_ = 0;  ///< bits of `held_`, below 64
 };
 
-inline constexpr size_t kReadAhead = 16;  ///< readable bytes that a BitReader needs behind its own
+inline constexpr size_t kReadAhead = 16;  ///< readable bytes that a BitReader needs after its own
 
-/// Reads what a BitWriter wrote. Whoever makes one has checked that all its bits are there.
+/// Reads what a BitWriter wrote. The caller must have checked that all of the bits are there.
 class BitReader {
  public:
     explicit BitReader(const std::byte* at) : at_(at) {}

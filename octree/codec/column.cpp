@@ -13,17 +13,19 @@
 namespace lucarne::octree::codec {
 namespace {
 
-constexpr int kZstdLevel = 1;  // tokens of noise have no matches to look for; its Huffman coder does the work
-/// Plain bits are read three times as fast as tokens: taken unless tokens save more than this share.
+// Zstandard's fastest level: tokens of noise have no matches to find; its Huffman coder does the work.
+constexpr int kZstdLevel = 1;
+/// Packed bits are read three times as fast as tokens, so they are used unless tokens take less than this
+/// share of their size.
 constexpr double kPackedBonus = 0.98;
 
-/// LEB128: seven bits a byte, lowest first, the top bit set in all but the last.
+/// Appends a number in LEB128: seven bits a byte, lowest first, the top bit set in all bytes but the last.
 void put_number(uint64_t value, std::vector<std::byte>& out) {
     for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::byte>(value | 0x80));
     out.push_back(static_cast<std::byte>(value));
 }
 
-/// The greatest common divisor of all numbers; 0 where all are 0.
+/// The greatest common divisor of all numbers; 0 if all are 0.
 uint64_t common_step(std::span<const uint64_t> values) {
     uint64_t step = 0;
     for (const uint64_t v : values) {
@@ -35,7 +37,7 @@ uint64_t common_step(std::span<const uint64_t> values) {
     return step;
 }
 
-/// What tokens would take: Shannon's bound for the tokens, and the extra bits.
+/// Estimates the bits that tokens would take: Shannon's bound for the tokens, and the extra bits.
 double token_cost(std::span<const uint64_t> values, bool differences) {
     std::array<uint32_t, 256> count{};
     uint64_t before = 0;

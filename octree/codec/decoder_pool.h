@@ -8,15 +8,15 @@
 
 namespace lucarne::octree::codec {
 
-/// Decoders for any number of threads, kept with their buffers: to make those anew for each node would take
-/// as long as to decode it. As many are kept as ever worked at once.
+/// Decoders for any number of threads. They are kept together with their buffers, because making new ones for
+/// each node would take as long as decoding it. The pool keeps as many as have ever worked at once.
 class DecoderPool {
  public:
     explicit DecoderPool(const io::Schema& schema) : columns_(columns_of(schema)), stride_(schema.stride) {}
     DecoderPool(const DecoderPool&) = delete;
     DecoderPool& operator=(const DecoderPool&) = delete;
 
-    /// As PayloadDecoder::decode. Thread-safe.
+    /// Does what PayloadDecoder::decode does. Thread-safe.
     bool decode(std::span<const std::byte> payload, std::span<std::byte> records) {
         auto decoder = take();
         const bool whole = decoder->decode(payload, records);

@@ -26,12 +26,12 @@ void with_type(uint32_t bytes, const Use& use) {
 template <class T>
 constexpr T kTop = static_cast<T>(T{1} << (8 * sizeof(T) - 1));
 
-/// The three bytes of normal_oct as one number.
+/// Returns the three bytes of normal_oct as one number.
 uint32_t normal_word(const std::byte* at) {
     return load<uint16_t>(at) | static_cast<uint32_t>(load<uint8_t>(at + 2)) << 16;
 }
 
-/// The stored number as an unsigned one that keeps its order, and back.
+/// Converts a stored number to an unsigned one of the same order, and back.
 template <class T>
 T to_ordered(Kind kind, bool is_signed, T bits) {
     if (kind == Kind::real) return static_cast<T>(bits & kTop<T> ? ~bits : bits | kTop<T>);

@@ -7,7 +7,8 @@
 namespace lucarne::octree::codec {
 namespace {
 
-/// Two records may be copied by overlapping halves: faster than a memcpy whose size is not known.
+/// Copies a record. Sizes from 16 to 32 bytes take two overlapping copies of 16, which is faster than a
+/// memcpy of a size unknown to the compiler.
 void copy_record(std::byte* to, const std::byte* from, size_t bytes) {
     if (bytes >= 16 && bytes <= 32) {
         std::memcpy(to, from, 16);
@@ -67,7 +68,7 @@ bool PayloadDecoder::decode(std::span<const std::byte> payload, std::span<std::b
 
 bool PayloadDecoder::decode_columns(std::span<const std::byte> bodies, std::span<const ColumnHead> heads) {
     const size_t count = curve_.size() / stride_;
-    // Columns that are the same everywhere are part of a record that is laid down first.
+    // Constant columns are written once, into a stamp that is copied into every record first.
     const auto stamped = [&](size_t i) {
         const auto kind = columns_[i].kind;
         return heads[i].method == Method::constant &&

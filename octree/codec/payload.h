@@ -8,17 +8,19 @@
 
 namespace lucarne::octree::codec {
 
-/// The largest node that is compressed, bytes of its records: what a reader must be ready to give for one.
+/// The largest node that is compressed, in bytes of its records. It limits the memory that a reader allocates
+/// for one.
 inline constexpr uint64_t kMostRecordBytes = uint64_t{16} << 20;
 
-/// Compressed payloads: codec 1 of octree/FORMAT.md. Not thread-safe: one for each thread.
+/// Encodes compressed payloads: codec 1 of octree/FORMAT.md. Not thread-safe: use one per thread.
 class PayloadEncoder {
  public:
     explicit PayloadEncoder(const io::Schema& schema)
         : columns_(columns_of(schema)), stride_(schema.stride) {}
 
-    /// Appends the payload of a node whose records come in an order where neighbours are near (along the
-    /// Morton curve), each with its pass, from which the prefix order follows (append_prefix_order).
+    /// Appends the payload of a node. Its records must be ordered so that neighbours are near each other
+    /// (along the Morton curve). Each has its pass, from which the prefix order follows
+    /// (append_prefix_order).
     void encode(std::span<const std::byte> records, std::span<const uint8_t> passes,
                 std::vector<std::byte>& payload);
 
@@ -30,14 +32,14 @@ class PayloadEncoder {
     std::vector<std::byte> bodies_;
 };
 
-/// Decodes payloads into records in prefix order. Not thread-safe: one for each thread.
+/// Decodes payloads into records in prefix order. Not thread-safe: use one per thread.
 class PayloadDecoder {
  public:
     explicit PayloadDecoder(std::span<const Column> columns, uint32_t stride)
         : columns_(columns), stride_(stride) {}
 
-    /// `payload` is followed by kReadAhead readable bytes; `records` has room for all and is at most
-    /// kMostRecordBytes. False where the payload is damaged.
+    /// `payload` must be followed by kReadAhead readable bytes. `records` has room for all records of the
+    /// node, at most kMostRecordBytes. Returns false if the payload is damaged.
     bool decode(std::span<const std::byte> payload, std::span<std::byte> records);
 
  private:

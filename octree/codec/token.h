@@ -6,9 +6,9 @@
 
 namespace lucarne::octree::codec {
 
-/// Any 64-bit number as a token of one byte, for the entropy coder, and lower bits that are stored as they
-/// are: numbers below 16 are their own token, above there are four tokens an octave. After: Alakuijala et
-/// al., "JPEG XL next-generation image compression architecture and coding tools", 2019 (hybrid integers).
+/// Splits any 64-bit number into a token of one byte for the entropy coder and lower bits that are stored
+/// plainly. Numbers below 16 are their own token; above, there are four tokens per octave. After: Alakuijala
+/// et al., "JPEG XL next-generation image compression architecture and coding tools", 2019 (hybrid integers).
 constexpr uint32_t kDirect = 16;
 
 constexpr uint32_t token_of(uint64_t value) {
@@ -36,7 +36,7 @@ struct TokenTable {
 };
 inline constexpr TokenTable kTokens;
 
-/// Small numbers of either sign as small numbers: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+/// Maps numbers of small magnitude to small numbers: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 constexpr uint64_t fold_sign(uint64_t difference) {
     return difference << 1 ^ (0 - (difference >> 63));
 }

@@ -32,8 +32,8 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Runs one stage and writes down what it took. What it freed goes back to the system: else the allocator
-/// keeps it in pools of each thread, where the next stage's memory comes on top.
+/// Runs one stage and records its time. Returns the memory that it freed to the system; otherwise the
+/// allocator keeps it in pools of each thread, and the next stage's memory is added to it.
 template <class Stage>
 auto timed(BuildReport& report, const char* name, const Stage& stage) {
     const auto wall = std::chrono::steady_clock::now();
@@ -46,20 +46,21 @@ auto timed(BuildReport& report, const char* name, const Stage& stage) {
     return result;
 }
 
-/// A stage's outcome: as an interrupted build wrote it down, else by `run`, and then written down.
+/// Returns a stage's outcome: restored from an interrupted build's record, else from `run`, which is then
+/// recorded.
 template <class Restore, class Run>
 auto resumable(Workspace& work, const char* stage, const Restore& restore, const Run& run)
     -> decltype(run()) {
     if (const auto* record = work.finished(stage)) {
         if (auto before = restore(*record)) return before;
-        log::warn("what is left of '{}' is damaged; it is done again", stage);
+        log::warn("the stored result of stage '{}' is damaged; the stage is run again", stage);
     }
     auto outcome = run();
     if (outcome) LUCARNE_TRY(work.finish(stage, outcome->save()));
     return outcome;
 }
 
-/// How far a stage is, for the terminal and for the listener.
+/// Reports the progress of a stage to the terminal and the listener.
 class Steps {
  public:
     Steps(BuildListener* listener, std::string stage, uint64_t points)
@@ -68,7 +69,7 @@ class Steps {
           points_(points),
           progress_(stage_, points, "points") {}
 
-    /// Error: the build is to stop.
+    /// Counts finished points. Error: the build is to stop.
     Result<void> add(uint64_t points) {
         progress_.add(points);
         if (!listener_) return {};
@@ -122,8 +123,8 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
     return SurfaceStore::restore(store, std::move(file), record);
 }
 
-/// Chunks are built side by side and put together in order; no more than `workers` are in memory. `keep`: a
-/// resumed build may want the chunks again, so their place is not given back.
+/// Builds chunks in parallel and assembles them in order. At most `workers` are in memory. `keep`: a resumed
+/// build may need the chunks again, so their space on disk is not freed.
 Result<void> build_chunks(ChunkStore& store, const RecordLoader& loader, const NodeLimits& limits,
                           const MemoryPlan& memory, bool keep, Assembler& assembler, Steps& steps) {
     const auto chunks = store.chunks();

@@ -13,9 +13,9 @@
 namespace lucarne::octree {
 
 enum class NormalsMode {
-    automatic,  ///< keep where every input has them, else estimate
-    keep,       ///< the inputs' own; areas are estimated
-    estimate,   ///< in place of the inputs' own, which stay as an attribute of another name
+    automatic,  ///< keep the inputs' own where every input has them, else estimate
+    keep,       ///< keep the inputs' own; only areas are estimated
+    estimate,   ///< estimate; the inputs' own stay as an attribute of another name
     none        ///< neither normals nor areas
 };
 
@@ -25,35 +25,35 @@ struct BuildOptions {
     std::vector<const io::PointSource*> inputs;
     std::filesystem::path output;
     NormalsMode normals = NormalsMode::automatic;
-    uint64_t memory = uint64_t{2} << 30;  ///< cap on what the build holds, bytes
+    uint64_t memory = uint64_t{2} << 30;  ///< cap on the build's memory, bytes
     unsigned threads = 0;                 ///< 0: all cores
     std::filesystem::path temp_folder;    ///< for scratch files; empty: the output's folder
     bool overwrite = false;
     Resume resume = Resume::never;
-    std::string read_options;  ///< how the inputs were opened (io::options_text), to be kept with the cache
-    uint32_t neighbours = 16;  ///< for normals and areas
+    std::string read_options;  ///< how the inputs were opened (io::options_text); stored in the cache
+    uint32_t neighbours = 16;  ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
-    BuildListener* listener = nullptr;  ///< told how it goes on (build_listener.h); outlives the build
+    BuildListener* listener = nullptr;  ///< told about the progress (build_listener.h); outlives the build
 };
 
 struct StageTime {
     std::string name;
-    double wall_seconds = 0, cpu_seconds = 0;  ///< wall 0: ran within the stage before
+    double wall_seconds = 0, cpu_seconds = 0;  ///< wall 0: the stage ran within the previous one
 };
 
 struct BuildReport {
     uint64_t points = 0;
-    /// Points that were read and left out: those without a number for a coordinate, invalid ones.
+    /// Points that were read but left out: invalid ones and those with a coordinate that is not a number.
     uint64_t dropped = 0;
     std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
     std::vector<StageTime> stages;
 };
 
-/// Builds a cache from scans: scan, chunk, normals, then build chunk by chunk while the levels above are put
-/// together. The file is the same for any number of threads and any memory cap. Errors: unreadable inputs, no
-/// points, an output that exists or cannot be written, a full disk; nothing is left behind, but for what
-/// `resume` asks for. A resumed build gives the same bytes.
+/// Builds a cache from scans. Scans them, sorts the points into chunks, estimates normals, then builds chunk
+/// by chunk while the levels above are assembled. The file is the same for any number of threads and any
+/// memory cap. Errors: unreadable inputs, no points, an output that exists or cannot be written, a full disk.
+/// A failed build leaves nothing behind, except what `resume` asks for. A resumed build gives the same bytes.
 Result<BuildReport> build_cache(const BuildOptions& options);
 
 }  // namespace lucarne::octree

@@ -13,7 +13,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// Files without points decide nothing: some programs write them with a header of defaults.
+/// Whether a scan states its unit. Files without points do not count: some programs write them with a default
+/// header.
 bool in_stated_unit(const io::ScanInfo& scan) {
     return scan.declared_points > 0 && scan.unit_stated;
 }
@@ -47,12 +48,13 @@ double common_unit(const Unifier& inputs) {
         if (const auto& scan = inputs.source(i).info(); in_stated_unit(scan))
             stated.push_back(scan.metres_per_unit);
     std::map<double, size_t> counts;
-    const auto count = [&](double unit) -> size_t& {  // programs write the digits of a foot as they like
+    // Programs write a foot with different numbers of digits.
+    const auto count = [&](double unit) -> size_t& {
         const auto near = counts.lower_bound(unit * (1 - io::kSameUnit));
         return near != counts.end() && io::same_unit(near->first, unit) ? near->second : counts[unit];
     };
     for (const double unit : stated) ++count(unit);
-    // The first of several largest.
+    // The first of the most frequent ones.
     const auto most = std::ranges::max_element(stated, {}, count);
     return most == stated.end() ? 1.0 : *most;
 }
@@ -69,12 +71,12 @@ Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::s
     return rejected(
         scan.path,
         fmt::format("has a unit of {} m, {} one of {} m", scan.metres_per_unit, who, metres_per_unit),
-        "convert it on its own, or say the unit of all with --unit where a file is wrong");
+        "convert it on its own, or set the unit of all with --unit if a file is wrong");
 }
 
 void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit) {
     if (metres_per_unit != 1.0 && scan.declared_points > 0 && !scan.unit_stated)
-        log::warn("{}: does not say its unit; that of the others is assumed, {} m (--unit can say otherwise)",
+        log::warn("{}: does not say its unit; that of the others is assumed, {} m (--unit overrides it)",
                   scan.path, metres_per_unit);
 }
 

@@ -9,29 +9,29 @@
 
 namespace lucarne::octree {
 
-/// Which normals to estimate: empty for no estimation at all, else whether normals are wanted besides areas.
+/// Decides what to estimate: empty for nothing, true for normals and areas, false for areas only.
 Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs);
 
-/// Metres per unit of all inputs: the unit that most of those with points state, the first of these where as
-/// many state another; metres where none does.
+/// Returns the metres per unit of all inputs: the unit that most inputs with points state, the first of these
+/// in a tie, and metres if none states one.
 double common_unit(const Unifier& inputs);
-/// Errors: an input with points states another.
+/// Errors: an input with points states another unit than common_unit().
 Result<void> check_units(const Unifier& inputs);
-/// The same of one scan. `who`: "the cache has".
+/// Does the same for one scan. `who` begins the other half of the message, for example "the cache has".
 Result<void> check_unit(const io::ScanInfo& scan, double metres_per_unit, std::string_view who);
-/// Where a scan does not state its unit and will not be taken as metres.
+/// Warns if a scan does not state its unit and is not taken as metres.
 void warn_of_assumed_unit(const io::ScanInfo& scan, double metres_per_unit);
 
-/// Says which scans are in different coordinate systems, and whose extra bytes are scaled otherwise: their
-/// points are put together as they are.
+/// Warns about scans in different coordinate systems and about extra bytes with different scales: their
+/// points are joined without conversion.
 void warn_of_differences(const Unifier& inputs);
 void warn_of_differences(std::span<const io::ScanInfo> scans);
 
-/// What a cache with records of `schema` says of a scan with records of `own`: where colours of 8 bits became
-/// 16, as of another scan, they are spread over these (RecordMap).
+/// Adjusts a scan's description to the records of a cache. `own` is the scan's schema, `schema` the cache's.
+/// Where 8-bit colours became 16-bit ones because of another scan, they span all 16 bits (RecordMap).
 void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema);
 
-/// Of a cache of these inputs with records of `schema`.
+/// Returns the header of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);
 
 }  // namespace lucarne::octree

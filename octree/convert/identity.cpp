@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kHeadBytes = 64 << 10;
 
-/// Empty for sources that are no files.
+/// Empty for sources that are not files.
 std::string file_identity(const std::filesystem::path& path) {
     const auto file = InputFile::open(path);
     std::error_code error;

@@ -6,8 +6,8 @@
 
 namespace lucarne::octree {
 
-/// What a build's result depends on, as lines of text: options, and of each input its path, size, time of the
-/// last change, the checksum of its beginning, and what its header says.
+/// Returns what a build's result depends on, as lines of text: options, and for each input its path, size,
+/// time of the last change, the checksum of its beginning, and what its header says.
 std::string build_identity(const BuildOptions& options);
 
 }  // namespace lucarne::octree

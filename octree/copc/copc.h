@@ -7,11 +7,11 @@
 
 namespace lucarne::octree {
 
-/// Opens a COPC file as the octree that it is (io/formats/copc/copc.h): nothing is converted. Its voxel keys
-/// are our node keys; a node's points are put into prefix order when it is loaded, with unsigned normals
-/// estimated among them where the file has none. There are no areas: the floors say what a point stands for,
-/// by a sample of the top of the tree and the counts of nodes. Errors: those of io::copc::File::open; nodes
-/// that are there twice or have no parent.
+/// Opens a COPC file as an octree (io/formats/copc/copc.h); nothing is converted. Its voxel keys are used as
+/// node keys. When a node is loaded, its points are put into prefix order, and unsigned normals are estimated
+/// among them if the file has none. There are no areas: the floors say how much surface a point represents,
+/// from a sample of the top of the tree and the counts of nodes. Errors: those of io::copc::File::open; nodes
+/// that occur twice or have no parent.
 Result<std::unique_ptr<NodeSource>> open_copc(std::shared_ptr<const ByteSource> input);
 
 }  // namespace lucarne::octree

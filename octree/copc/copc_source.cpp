@@ -15,7 +15,7 @@
 namespace lucarne::octree {
 namespace {
 
-/// Points of the topmost nodes that are read to see how much surface there is.
+/// The number of points of the topmost nodes that are read to measure the surface.
 constexpr uint64_t kMeasuredPoints = 200'000;
 
 class CopcSource final : public NodeSource {
@@ -46,14 +46,16 @@ class CopcSource final : public NodeSource {
     io::copc::File file_;
     SourceHeader header_;
     uint32_t file_stride_ = 0;
-    const io::Attribute* normal_ = nullptr;  ///< where the estimated ones go; null: the file has its own
+    /// Where estimated normals are stored; null: the file has its own.
+    const io::Attribute* normal_ = nullptr;
     std::vector<NodeInfo> nodes_;
-    std::vector<uint32_t> in_file_;  ///< a node's number there
+    std::vector<uint32_t> in_file_;  ///< index of each node in the file
 };
 
 Result<void> CopcSource::describe() {
     const io::PointSource& scan = file_.scan();
-    LUCARNE_ASSIGN(const Unifier names, Unifier::create({&scan}));  // names that are ours are taken
+    // Renames attributes whose names are reserved.
+    LUCARNE_ASSIGN(const Unifier names, Unifier::create({&scan}));
     header_.schema = names.schema();
     file_stride_ = header_.schema.stride;
     if (!names.has_normals(0)) {
@@ -71,7 +73,8 @@ Result<void> CopcSource::describe() {
     return {};
 }
 
-/// In the order of a directory the nodes of a level are in the order of their parents: one walk finds both.
+/// Sorts the nodes into the order of a directory. In it the nodes of a level are in the order of their
+/// parents, so one walk finds the links of both.
 Result<void> CopcSource::link() {
     const auto all = file_.nodes();
     const auto key = [&](uint32_t i) {
@@ -94,7 +97,7 @@ Result<void> CopcSource::link() {
                       .count = static_cast<uint32_t>(chunk.points),
                       .subtree_count = chunk.points,
                       .payload_bytes = static_cast<uint32_t>(chunk.bytes)};
-        if (i > 0 && nodes_.back().key == node.key) return refused(node.key, "is there twice");
+        if (i > 0 && nodes_.back().key == node.key) return refused(node.key, "occurs twice");
         if (node.key.level > 0) {
             const NodeKey above = node.key.parent();
             while (parent < i && nodes_[parent].key < above) ++parent;

@@ -12,7 +12,7 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kNeighbours = 12;  ///< besides the point itself
+constexpr size_t kNeighbours = 12;  ///< without the point itself
 constexpr size_t kFewest = 4;
 
 glm::vec3 upward(const glm::vec3& n) {

@@ -9,9 +9,9 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kEnough = 64;  ///< codes that show a surface
+constexpr size_t kEnough = 64;  ///< number of codes that show a surface
 
-/// Those in the node's cube.
+/// Returns the codes in the node's cube.
 std::span<const uint64_t> codes_in(std::span<const uint64_t> codes, const NodeKey& node) {
     const NodeKey cell = node.cell();
     const uint32_t shift = 3 * (kMaxLevel - cell.level);
@@ -20,9 +20,9 @@ std::span<const uint64_t> codes_in(std::span<const uint64_t> codes, const NodeKe
     return {begin, end};
 }
 
-/// The surface that points (sorted codes) in a node's cube show. They fill cells, four points or more each,
-/// and what blocks of 4 x 4 x 4 cells cover of the three planes is the projections of the surface in them,
-/// whose squares add up to its own (as those of a plane's area do).
+/// Returns the surface that points (sorted codes) in a node's cube show. They fill cells, with four points or
+/// more each. The projections of a block of 4 x 4 x 4 cells onto the three planes give the areas of the
+/// surface's projections, whose squares add up to the square of its area (as they do for a plane).
 double surface_shown(std::span<const uint64_t> codes, uint32_t level, double root_size) {
     constexpr uint32_t kBlockLevels = 2, kFewestPoints = 4;
     const auto shift_of = [](uint32_t depth) { return 3 * (kMaxLevel - depth); };
@@ -35,7 +35,7 @@ double surface_shown(std::span<const uint64_t> codes, uint32_t level, double roo
     uint32_t depth = std::clamp(level + 1, kBlockLevels, kMaxLevel);
     while (depth < kMaxLevel && kFewestPoints * cells_at(depth + 1) <= codes.size()) ++depth;
     const uint32_t shift = shift_of(depth), block_shift = shift_of(depth - kBlockLevels);
-    double faces = 0;  // of a cell
+    double faces = 0;  // in faces of a cell
     for (size_t i = 0; i < codes.size();) {
         const uint64_t block = codes[i] >> block_shift;
         uint16_t covered[3] = {};

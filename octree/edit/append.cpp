@@ -15,8 +15,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// The cache among the inputs whose schemas are unified: first, and without points, which stay where they
-/// are.
+/// Represents the cache among the inputs whose schemas are unified. It is the first input, and has no points,
+/// because the cache's points stay where they are.
 class CacheSchema final : public io::PointSource {
  public:
     explicit CacheSchema(const CacheFile& cache) {
@@ -43,7 +43,7 @@ class CacheSchema final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-/// The unified schema with what the cache's build added.
+/// Returns the unified schema with the attributes that the cache's build added.
 io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache) {
     io::Schema schema = inputs.schema();
     for (const auto name : {io::names::normal_oct, io::names::area})
@@ -51,7 +51,8 @@ io::Schema whole_schema(const Unifier& inputs, const io::Schema& cache) {
     return schema;
 }
 
-/// The new points as the cache will have them, with what is not estimated yet marked so.
+/// Returns a pass over the new points in the cache's schema. Normals and areas are marked as not yet
+/// estimated.
 Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_before,
                   uint64_t batch_bytes) {
     const RecordMap map(inputs.schema(), schema);
@@ -75,7 +76,7 @@ Pass added_points(const Unifier& inputs, const io::Schema& schema, size_t scans_
     };
 }
 
-/// How many points come, by the deepest old node that they are in.
+/// Counts the added points by the deepest old node that contains them.
 Result<std::vector<uint64_t>> count_by_node(const CacheFile& cache, const SourceHeader& header,
                                             const Pass& added) {
     const auto nodes = cache.nodes();
@@ -98,7 +99,7 @@ Result<std::vector<uint64_t>> count_by_node(const CacheFile& cache, const Source
     return counts;
 }
 
-/// Header of the state with the new scans.
+/// Returns the header of the state with the new scans.
 Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, const ScanFacts& facts) {
     const auto& before = cache.header();
     SourceHeader header = before;
@@ -128,7 +129,7 @@ std::string file_name(const io::ScanInfo& scan) {
 Result<bool> has_points_of(const CacheFile& cache, size_t scan) {
     const auto& schema = cache.header().schema;
     const auto* number = schema.find(io::names::scan);
-    if (!number) return true;  // of its only scan
+    if (!number) return true;  // all points are of its only scan
     for (uint32_t node = 0; node < cache.nodes().size(); ++node) {
         LUCARNE_ASSIGN(const NodeData data, cache.load(node));
         for (size_t i = 0; i < data.count; ++i)
@@ -137,17 +138,17 @@ Result<bool> has_points_of(const CacheFile& cache, size_t scan) {
     return false;
 }
 
-/// Whether the cache holds this file, in this state, already; says so, and where it may hold another state of
-/// it.
+/// Whether the cache already contains this file in this state. Logs that, and also if the cache may contain
+/// another state of the file.
 Result<bool> holds_already(const CacheFile& cache, const io::ScanInfo& scan) {
     const auto& scans = cache.header().scans;
-    if (scan.file_bytes == 0) return false;  // no file
+    if (scan.file_bytes == 0) return false;  // not a file
     for (size_t i = 0; i < scans.size(); ++i) {
         if (file_name(scans[i]) != file_name(scan)) continue;
         const bool same = scans[i].file_bytes == scan.file_bytes && scans[i].modified == scan.modified;
         if (!same && scans[i].path != scan.path) continue;
         LUCARNE_ASSIGN(const bool there, has_points_of(cache, i));
-        if (!there) continue;  // deleted
+        if (!there) continue;  // its points were deleted
         const std::string cache_name = cache.file().path().string();
         if (same) {
             log::warn("{}: is in {} already, as scan {}; it is left out", scan.path, cache_name, i);
@@ -191,7 +192,7 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     warn_of_differences(all);
     LUCARNE_ASSIGN(const Unifier inputs, Unifier::create(sources, replaces_normals(before.schema)));
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes, 1));
-    sources.erase(sources.begin());  // the cache
+    sources.erase(sources.begin());  // removes the cache
     for (const auto* scan : sources) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));

@@ -4,8 +4,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// Copies nodes as they are stored, in the order of a build: the children of a node after all that is below
-/// them.
+/// Copies nodes as they are stored, in the order of a build: the children of a node after all of their
+/// descendants.
 class Copier {
  public:
     Copier(const CacheFile& cache, CacheWriter& writer) : cache_(cache), writer_(writer) {}
@@ -36,7 +36,7 @@ class Copier {
     std::vector<std::byte> payload_;
 };
 
-/// What of the file the newest state needs.
+/// Returns how many bytes of the file the newest state needs.
 uint64_t live_bytes(const CacheFile& cache) {
     const auto& block = cache.superblock();
     uint64_t bytes = format::kFirstPayload + block.metadata_bytes + block.directory_bytes;
@@ -58,7 +58,7 @@ Result<CompactReport> compact(const OpenedCache& opened, const std::filesystem::
 
 Result<CompactReport> compact_cache(const std::filesystem::path& path,
                                     const std::filesystem::path& temp_folder) {
-    LUCARNE_ASSIGN(const OpenedCache opened, OpenedCache::open(path));  // keeps the lock
+    LUCARNE_ASSIGN(const OpenedCache opened, OpenedCache::open(path));  // holds the lock
     return compact(opened, temp_folder);
 }
 

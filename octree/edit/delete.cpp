@@ -14,7 +14,7 @@ bool inside(const Box& box, const glm::dvec3& p) {
     return glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThanEqual(p, box.max));
 }
 
-/// Decides over one record of the cache.
+/// Decides for each record of the cache whether it is selected.
 class Selector {
  public:
     Selector(const Selection& selection, const io::Schema& schema)
@@ -39,7 +39,7 @@ struct Found {
     glm::dvec3 min{std::numeric_limits<double>::infinity()}, max{-std::numeric_limits<double>::infinity()};
 };
 
-/// Reads every point: what goes, and the bounds of what stays.
+/// Reads every point. Counts the selected ones and finds the bounds of the others.
 Result<Found> find_points(const CacheFile& cache, const Selector& selected) {
     const auto& header = cache.header();
     Found found;

@@ -8,7 +8,8 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint32_t kMostDoublings = 20;  // as many as metadata may have
-/// A cube is built as a whole where one point in so many changes, else looked into: first the smallest share.
+/// A cube is built as a whole if at least one point in this many changes, otherwise its children are
+/// examined. The first value that gives few enough cubes is used.
 constexpr std::array<uint64_t, 3> kWorthwhile = {8, 64, UINT64_MAX};
 
 class Planner {
@@ -29,7 +30,7 @@ class Planner {
         }
     }
 
-    /// From the new root down to the old one there are no nodes yet.
+    /// Handles the levels from the new root down to the old one, where there are no nodes yet.
     void above(const NodeKey& key) {
         const NodeKey old = shift_.root();
         if (key.level == old.level) return key == old ? visit(0) : plan_.rebuilt.push_back({key, kNoNode});
@@ -47,7 +48,7 @@ class Planner {
         const NodeInfo& node = nodes_[index];
         const NodeKey key = shift_(node.key);
         const uint64_t changes = below_[index];
-        // What cannot go as deep as growing would push it is built again, above.
+        // Nodes whose level would exceed kMostLevel in the grown tree are built again, from higher up.
         const bool sinks = deepest_[index] + shift_.levels() > kMostLevel;
         if (changes == 0 && !sinks) return plan_.kept.push_back({key, index});
         const uint64_t points = node.subtree_count;
@@ -68,8 +69,8 @@ class Planner {
     const Shift& shift_;
     const EditLimits& limits_;
     uint64_t worthwhile_;
-    std::vector<uint64_t> below_;    ///< changes in the node and all below it
-    std::vector<uint32_t> deepest_;  ///< level
+    std::vector<uint64_t> below_;    ///< changes in the node and its descendants
+    std::vector<uint32_t> deepest_;  ///< deepest level in the node's subtree
     EditPlan plan_;
 };
 
@@ -80,7 +81,7 @@ Result<Cube> grown_root(const Cube& root, const glm::dvec3& min, const glm::dvec
     if (cube.doublings == 0) cube.first_min = cube.min;
     const double scale = 0x1p32 / cube.first_size();
     const auto lattice = [&](const glm::dvec3& p, int axis) {
-        return std::floor((p[axis] - cube.first_min[axis]) * scale * 0x1p-32);  // in first cubes
+        return std::floor((p[axis] - cube.first_min[axis]) * scale * 0x1p-32);  // in edges of the first cube
     };
     for (;;) {
         const auto edge = static_cast<double>(uint64_t{1} << cube.doublings);
@@ -93,7 +94,7 @@ Result<Cube> grown_root(const Cube& root, const glm::dvec3& min, const glm::dvec
         }
         if (inside) return cube.doublings == 0 ? root : cube;
         if (cube.doublings == kMostDoublings)
-            return rejected("points", "lie too far from those of the cache for one tree of both",
+            return rejected("points", "are too far from those of the cache for a common tree",
                             "convert all scans together");
         for (size_t axis = 0; axis < 3; ++axis) {
             if (!down[axis]) continue;

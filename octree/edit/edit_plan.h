@@ -8,10 +8,11 @@
 
 namespace lucarne::octree {
 
-/// The cube that holds `root` and the box: doubled toward it as often as it takes. Errors: too far away.
+/// Returns the cube that contains `root` and the box: `root`, doubled toward the box as often as necessary.
+/// Errors: too far away.
 Result<Cube> grown_root(const Cube& root, const glm::dvec3& min, const glm::dvec3& max);
 
-/// Where an older tree's nodes are in one whose root cube has grown.
+/// Maps the nodes of an old tree to one whose root cube has grown.
 class Shift {
  public:
     Shift(const Cube& before, const Cube& after);
@@ -28,26 +29,26 @@ class Shift {
     std::array<uint32_t, 3> cell_{};
 };
 
-/// What an update does with a tree: a few cubes are built again, what lies beside them stays in the file, and
-/// only the nodes above both are made anew.
+/// How an update changes a tree: a few cubes are built again, nodes beside them stay in the file, and only
+/// the nodes above both are made again.
 struct EditPlan {
     struct Item {
         NodeKey key;              ///< in the new tree
-        uint32_t node = kNoNode;  ///< the old node there
+        uint32_t node = kNoNode;  ///< the old node at that key
     };
-    std::vector<Item> rebuilt;  ///< cubes whose points all are built again; in Morton order
-    std::vector<Item> kept;     ///< nodes with nothing changed below them; in Morton order
+    std::vector<Item> rebuilt;  ///< cubes whose points are all built again; in Morton order
+    std::vector<Item> kept;     ///< nodes with no change in their subtrees; in Morton order
     std::vector<uint32_t> top;  ///< old nodes above both
 };
 
 struct EditLimits {
-    uint64_t chunk_points = 0;  ///< of a cube that is built at once
-    size_t leaf = 0;            ///< a cube of so few points is one node
-    size_t most = 0;            ///< cubes
+    uint64_t chunk_points = 0;  ///< most points of a cube that is built at once
+    size_t leaf = 0;            ///< a cube with at most this many points is one node
+    size_t most = 0;            ///< most cubes
 };
 
-/// `changed`: how many points come or go, by the deepest old node they are in. Rebuilt cubes are as small as
-/// `limits.most` allows. Errors: too many even so.
+/// Plans an update. `changed`: how many points are added or removed, by the deepest old node that contains
+/// them. Rebuilt cubes are as small as `limits.most` allows. Errors: too many cubes even so.
 Result<EditPlan> plan_edit(std::span<const NodeInfo> nodes, const Shift& shift,
                            std::span<const uint64_t> changed, uint64_t points, const EditLimits& limits);
 

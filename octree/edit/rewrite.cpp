@@ -17,9 +17,9 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr uint64_t kLeastLane = 8 << 10;  // what dealing out buffers for a cube at the least
+constexpr uint64_t kLeastLane = 8 << 10;  // least buffer per cube while points are distributed
 
-/// One update, stage by stage.
+/// Runs one update, stage by stage.
 class Rewrite {
  public:
     Rewrite(const CacheFile& cache, const Change& change, const EditOptions& options)
@@ -72,7 +72,7 @@ Result<void> Rewrite::plan() {
     return {};
 }
 
-/// The records of a node that stay, in the new schema.
+/// Visits those records of a node that stay, in the new schema.
 Result<void> Rewrite::visit_node(uint32_t node, const Visit& visit) const {
     LUCARNE_ASSIGN(NodeData data, cache_.load(node));
     std::vector<std::byte> records;
@@ -99,8 +99,9 @@ Result<void> Rewrite::visit_below(uint32_t node, const Visit& visit) const {
     return {};
 }
 
-/// Deals points out to the cubes that are built again, and the samples of what is kept: a kept node's own
-/// points and those of the nodes above it inside its cube are what it showed before its parent took some.
+/// Distributes points to the cubes that are built again, and to the samples of the kept nodes. A kept node's
+/// own points and those of the nodes above it inside its cube are the sample that it showed before its parent
+/// took some.
 Result<void> Rewrite::deal() {
     const auto keys = [](const std::vector<EditPlan::Item>& items) {
         std::vector<NodeKey> result;
@@ -141,7 +142,7 @@ Result<void> Rewrite::deal() {
     return {};
 }
 
-/// Areas of all points that are built again, and normals of those that have none.
+/// Estimates areas of all points that are built again, and normals of those that have none.
 Result<void> Rewrite::find_surface() {
     if (!schema().find(io::names::area) || rebuilt_->chunks().empty()) return {};
     const bool normals = schema().find(io::names::normal_oct) != nullptr;
@@ -156,8 +157,9 @@ Result<void> Rewrite::find_surface() {
     return normals ? align_normals() : Result<void>{};
 }
 
-/// New normals shall point to the side to which the old ones around them do, which were oriented with more of
-/// the surface in sight: each component turns as most of its old points say; those without any as all do.
+/// Aligns new normals with the old ones around them, which were oriented when more of the surface was known.
+/// Each component is flipped if most of its old points say so; components without old points follow all of
+/// them together.
 Result<void> Rewrite::align_normals() {
     const auto* attribute = schema().find(io::names::normal_oct);
     const uint64_t piece = std::max<uint64_t>(1, memory_.batch_bytes / schema().stride);
@@ -186,7 +188,7 @@ Result<void> Rewrite::align_normals() {
     return {};
 }
 
-/// The directory entries below a kept node, whose payloads stay where they are.
+/// Adds the directory entries of a kept node's descendants, whose payloads stay where they are.
 Result<void> Rewrite::add_descendants(uint32_t node, CacheWriter& writer) {
     const auto nodes = cache_.nodes();
     const bool old_layout = !widen_.identical();
@@ -210,7 +212,7 @@ Result<void> Rewrite::add_descendants(uint32_t node, CacheWriter& writer) {
     return {};
 }
 
-/// A kept node as the build had it before its parent took its sample. Its surface follows from its floor
+/// Returns a kept node as it was before its parent took its sample. Its surface follows from its floor
 /// (octree/FORMAT.md: the sum of max(area, c) over the points it shows).
 Result<Subtree> Rewrite::kept_subtree(const RecordLoader& loader, size_t item) const {
     const NodeInfo& node = cache_.nodes()[plan_.kept[item].node];

@@ -10,27 +10,29 @@
 
 namespace lucarne::octree {
 
-/// What an update changes.
+/// The changes of an update.
 struct Change {
-    SourceHeader header;            ///< of the new state
-    std::vector<uint64_t> changed;  ///< points that come or go, by the deepest old node they are in
-    Pass added;                     ///< the new points in the new schema; may be empty
-    std::function<bool(const std::byte*)> removed;  ///< of an old record in the new schema; may be empty
+    SourceHeader header;  ///< of the new state
+    /// Points that are added or removed, by the deepest old node that contains them.
+    std::vector<uint64_t> changed;
+    Pass added;  ///< the new points in the new schema; may be empty
+    /// Decides over an old record in the new schema; may be empty.
+    std::function<bool(const std::byte*)> removed;
 };
 
-/// The cache that is edited, locked until it goes.
+/// The cache that is edited; locked while this exists.
 struct OpenedCache {
     static Result<OpenedCache> open(const std::filesystem::path& path);
 
     UpdateFile file;
     std::unique_ptr<CacheFile> cache;
-    size_t newest = 0;  ///< which superblock the state is of
+    size_t newest = 0;  ///< index of the superblock of the current state
 };
 
-/// Writes the new state behind the old one and switches.
+/// Writes the new state after the old one and switches to it.
 Result<EditReport> rewrite(OpenedCache opened, const Change& change, const EditOptions& options);
 
-/// The folder for scratch files.
+/// Returns the folder for scratch files.
 std::filesystem::path scratch_folder(const std::filesystem::path& cache, const std::filesystem::path& given);
 
 }  // namespace lucarne::octree

@@ -13,9 +13,10 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kBatchPoints = 1 << 16;  // an overfull node is not copied as a whole
+constexpr size_t kBatchPoints = 1 << 16;  // so that an overfull node is not copied as a whole
 
-/// That of the integers that all scans had in their files, where they were LAS files all.
+/// Returns the common lattice of the integer positions that the scans had in their files; empty unless all
+/// were LAS files.
 std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
     std::vector<io::Lattice> lattices;
     for (const auto& scan : header.scans) {
@@ -33,8 +34,8 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     const auto& header = source.header();
     const bool estimated =
         header.schema.find(io::names::normal_oct) && (options.normals || replaces_normals(header.schema));
-    // Where another attribute is written under a name, the input's keeps its stored name, and so do longer
-    // ones.
+    // Where another attribute is written under a name, the input's attribute keeps its stored name, and so do
+    // longer names made from it.
     const auto taken = [&](std::string_view name) {
         const bool normal = name == io::names::normal;
         const bool written =

@@ -33,9 +33,9 @@ struct ShownSample {
     std::vector<QuickSurface> surface;
 };
 
-constexpr double kFace = 1;  ///< areas count in faces of the root cube
+constexpr double kFace = 1;  ///< areas are in faces of the root cube
 
-/// Its records as a cache over `root` would hold them, along that root's Morton curve.
+/// Returns the sample's records as a cache over `root` would hold them, along that root's Morton curve.
 LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const io::Schema& schema,
                         const Cube& root) {
     const size_t count = sample.points.positions.size();
@@ -66,21 +66,21 @@ struct GrowingBuild::State final : BuildListener {
     GrowingOptions options;
     std::optional<Unifier> unifier;
     ShownSample sample;
-    io::Schema schema;  ///< of the sources
+    io::Schema schema;  ///< schema of the sources
     SourceHeader header;
     std::function<void()> changed;
     std::thread thread;
     std::atomic<bool> stop{false};
-    log::Operation operation = log::Operation::current();  ///< that has opened it
+    log::Operation operation = log::Operation::current();  ///< the operation that opened the build
 
-    // Of the build's thread:
+    // Used by the build's thread:
     LoosePoints loose;
     std::vector<format::Entry> entries;
     std::vector<std::shared_ptr<const LooseNode>> roots;
     Clock::time_point published;
-    double publishing = 0;  ///< s that the last source took to make
+    double publishing = 0;  ///< seconds that the last source took to make
 
-    mutable std::mutex mutex;  ///< of what follows
+    mutable std::mutex mutex;  ///< guards the members below
     BuildState now;
 
     Result<void> take_first();
@@ -123,7 +123,7 @@ Result<void> GrowingBuild::State::take_first() {
     return {};
 }
 
-/// Makes a source of all there is.
+/// Makes a source of the current state.
 void GrowingBuild::State::publish(std::shared_ptr<const ByteSource> file) {
     const auto start = Clock::now();
     show(make_growing_source({header, entries, roots, loose, std::move(file)}));
@@ -147,7 +147,7 @@ void GrowingBuild::State::scanned(const SourceHeader& facts) {
 }
 
 void GrowingBuild::State::building(const io::Schema& records) {
-    if (records != schema) throw std::logic_error("a build's records are other than its sample's");
+    if (records != schema) throw std::logic_error("the build's records differ from the sample's");
 }
 
 void GrowingBuild::State::settled(std::span<const format::Entry> nodes) {
@@ -157,7 +157,8 @@ void GrowingBuild::State::settled(std::span<const format::Entry> nodes) {
 void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte> shown,
                                   const CacheWriter& writer) {
     if (node.key.level > kMaxLevel)
-        return;  // a part of one cell: the sample shows it until the cell is whole
+        // It is a part of one cell, which the sample shows until the cell is whole.
+        return;
     const io::Attribute* area = schema == unifier->schema() ? nullptr : schema.find(io::names::area);
     auto root = std::make_shared<LooseNode>();
     root->node = node;
@@ -172,7 +173,7 @@ void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte
            roots.back()->node.key.parent() == node.key)
         roots.pop_back();
     roots.push_back(std::move(root));
-    // A twentieth of the time at most goes into showing what is there.
+    // At most a twentieth of the time is spent on making sources.
     const double since = std::chrono::duration<double>(Clock::now() - published).count();
     if (since < std::max(options.seconds_between, 20 * publishing)) return;
     auto file = writer.reader();
@@ -187,7 +188,7 @@ void GrowingBuild::State::advanced(std::string_view stage, uint64_t points, uint
 
 Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
     options.build.listener = this;
-    // Pictures are drawn meanwhile: what they need goes first.
+    // Frames are drawn meanwhile and have priority.
     tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
     LUCARNE_TRY(arena.execute([&] { return build_cache(options.build); }));
     LUCARNE_ASSIGN(auto cache, open_cache(options.build.output));

@@ -16,14 +16,16 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kNeighbours = 10;
-constexpr size_t kWindow = 12;      ///< points looked at on each side along each curve
-constexpr double kShift = 0.3717;   ///< of the cube, between the curves: no border of cells is one of both
-constexpr float kFlatness = 0.15f;  ///< most variance across a plane by the mean of those along it
-/// Of the share, because some neighbours are missed and those found in their place are farther:
-/// measured, 1.25 times the surface of a square and a sphere of random points
-/// (tests/octree/growing/growing_build_test.cpp holds it to a tenth).
+constexpr size_t kWindow = 12;  ///< points examined on each side along each curve
+/// Offset between the curves, in cube sizes: no cell border is one of both.
+constexpr double kShift = 0.3717;
+/// Largest ratio of the variance across a plane to the mean of those along it.
+constexpr float kFlatness = 0.15f;
+/// Corrects the share, because some neighbours are missed and those found instead are farther. Without it, a
+/// square and a sphere of random points measure 1.25 times their surface
+/// (tests/octree/growing/growing_build_test.cpp checks the corrected sum to within a tenth).
 constexpr double kMissed = 0.8;
-/// A point whose share is so many times that of its neighbours hangs in the air: as octree/normals has it.
+/// A point whose share is this many times that of its neighbours is an outlier, as in octree/normals.
 constexpr float kStray = 49;
 
 /// Points in the order of a curve.
@@ -41,7 +43,7 @@ struct Curve {
     }
 };
 
-/// The nearest of what is added, each once.
+/// Keeps the nearest of the added points, each once.
 class Nearest {
  public:
     struct Found {
@@ -75,7 +77,8 @@ void add(Moments& moments, const glm::vec3& p) {
 
 std::vector<QuickSurface> quick_surface(std::span<const glm::dvec3> points, const Cube& root,
                                         std::span<const std::optional<glm::dvec3>> stations) {
-    const double scale = 1 / root.size;  // floats hold the squares of any cloud's distances in root cubes
+    // In units of the root cube, floats can represent the squares of any cloud's distances.
+    const double scale = 1 / root.size;
     const Cube shifted{root.min - glm::dvec3(kShift * root.size), root.size * (1 + 2 * kShift)};
     const std::array<Curve, 2> curves = {Curve(points, root), Curve(points, shifted)};
     std::vector<QuickSurface> surface(points.size());

@@ -15,7 +15,8 @@ namespace {
 constexpr size_t kPiece = 4096;  ///< points that one task picks
 constexpr uint64_t kLeastOfInput = 64;
 
-/// One index a run of `step` points. At a random place in it: equal steps meet a scanner's lines in stripes.
+/// Returns the index of the point of run number `rank`. It is at a random position in the run: equal steps
+/// would sample a scanner's lines in stripes.
 uint64_t index_of(uint64_t rank, uint64_t count, uint64_t wanted) {
     const auto bound = [&](uint64_t i) {
         return static_cast<uint64_t>(static_cast<unsigned __int128>(i) * count / wanted);
@@ -24,7 +25,7 @@ uint64_t index_of(uint64_t rank, uint64_t count, uint64_t wanted) {
     return first + mix64(rank) % run;
 }
 
-/// What has been read of all inputs.
+/// Counts the points read from all inputs.
 class Steps {
  public:
     Steps(const Sampling& told, uint64_t total) : told_(told), total_(total) {}
@@ -64,7 +65,8 @@ Result<std::vector<std::byte>> pick(const Unifier& inputs, size_t input, uint64_
     return all;
 }
 
-/// Every 2^k-th point of one pass, k as small as `wanted` allows: a file's length is known at its end only.
+/// Keeps every 2^k-th point of one pass. k starts at 0 and grows, because a file's length is known only at
+/// its end.
 Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input, uint64_t wanted,
                                             Steps& steps) {
     LUCARNE_ASSIGN(const auto reader, inputs.source(input).open());

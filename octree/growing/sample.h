@@ -10,22 +10,23 @@
 
 namespace lucarne::octree {
 
-/// Points of all inputs, spread over the whole of each: what can be shown before anything has been built.
+/// Points of all inputs, spread over the whole of each, to be shown before anything has been built.
 struct QuickSample {
     std::vector<std::byte> records;  ///< in the unified schema
     std::vector<glm::dvec3> positions;
-    glm::dvec3 min{0.0}, max{0.0};  ///< of the sample
-    uint64_t points = 0;            ///< in the inputs as far as their headers tell
+    glm::dvec3 min{0.0}, max{0.0};  ///< bounds of the sample
+    uint64_t points = 0;            ///< in the inputs, as far as their headers tell
 };
 
-/// Told of points read and of how many there are (0: not known); false ends the reading. Any thread.
+/// Called with the number of points read and their total (0: not known), on any thread. Returning false ends
+/// the reading.
 using Sampling = std::function<bool(uint64_t done, uint64_t total)>;
 
-/// At most `most` points (a few more where there are many inputs), from every input in proportion to its
-/// number of points. Inputs that seek give one point at a random place of each of as many equal runs of
-/// points, read side by side: the cost follows from `most`, not from the file. The others are read once from
-/// end to end, keeping every 2^k-th point. The same points for any number of threads. Errors: unreadable
-/// inputs, no points; `sampling` ended it.
+/// Takes at most `most` points (a few more if there are many inputs), from every input in proportion to its
+/// number of points. Inputs that can seek are divided into as many equal runs of points as points are wanted;
+/// one point at a random position of each run is read, in parallel, so the cost depends on `most`, not on the
+/// file. Other inputs are read once from end to end, and every 2^k-th point is kept. The points are the same
+/// for any number of threads. Errors: unreadable inputs, no points; `sampling` ended it.
 Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling = {});
 
 }  // namespace lucarne::octree

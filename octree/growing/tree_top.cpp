@@ -1,8 +1,8 @@
 // The top of an octree over finished subtrees and loose points. Taking the first point of each cell of a grid
 // is the sampling of Schuetz et al., "SimLOD: Simultaneous LOD Generation and Rendering for Point Clouds",
-// 2023, section 3.3 (a voxel keeps the first point that reaches it); along the Morton curve it needs no grid:
-// a point is the first of its cells from the level on at which its code differs from that of the point
-// before.
+// 2023, section 3.3 (a voxel keeps the first point that reaches it). Along the Morton curve it needs no grid:
+// a point is the first one in its cells of the level at which its code differs from the previous point's, and
+// of all deeper levels.
 #include "octree/growing/tree_top.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t kGridLevels = 7;  ///< 2^7 cells a side of a node
 
-/// A node's points: in memory, or in the file where there is no copy.
+/// A node's points: in memory, or in the file if `data` is null.
 struct Content {
     std::shared_ptr<const NodeData> data;
     StoredPayload stored;
@@ -43,7 +43,7 @@ class GrowingSource final : public NodeSource {
         nodes_.push_back(info);
         contents_.push_back(std::move(content));
     }
-    /// Brings the nodes into the order of a directory and links them.
+    /// Sorts the nodes into the order of a directory and links them.
     void link();
 
  private:
@@ -80,13 +80,13 @@ void GrowingSource::link() {
 struct Item {
     uint64_t code = 0;
     float area = 0;           ///< in faces of the root cube
-    uint8_t first_level = 0;  ///< the cells of this level and deeper have it as their first point
+    uint8_t first_level = 0;  ///< the point is the first one in its cells of this level and deeper
     const std::byte* record = nullptr;
 };
 
-/// What a call of build() tells the node above.
+/// What build() returns to the node above.
 struct Part {
-    uint64_t points = 0;  ///< in the cube that no ancestor shows; 0: the node is not there
+    uint64_t points = 0;  ///< points in the cube that no ancestor shows; 0: there is no node
     double surface = 0;   ///< in the cube, in faces of the root cube
 };
 
@@ -100,7 +100,7 @@ class Top {
     Part build_children(NodeInfo& info, size_t first, size_t last, size_t first_root, size_t last_root);
     void add_items(const LoosePoints& points, size_t first);
     void emit(const NodeInfo& info, size_t first, size_t last, double surface, bool all);
-    /// The level of the node that a point stands in, where nodes go that deep.
+    /// The level of the node that contains a point, if nodes go that deep.
     static uint32_t level_of(const Item& item) {
         return item.first_level > kGridLevels ? item.first_level - kGridLevels : 0;
     }
@@ -112,13 +112,13 @@ class Top {
     std::vector<Item> items_;
 };
 
-/// Behind the last code in a node's cube.
+/// The end of the codes in a node's cube.
 uint64_t codes_end(const NodeKey& node) {
     const NodeKey key = node.cell();
     return (key.code() + 1) << (3 * (kMaxLevel - key.level));
 }
 
-/// Behind the last code of what is finished.
+/// The end of the codes of the finished part.
 uint64_t finished_end(const GrowingState& state) {
     return state.roots.empty() ? 0 : codes_end(state.roots.back()->node.key);
 }
@@ -136,7 +136,7 @@ Top::Top(const GrowingState& state, GrowingSource& source)
               static_cast<size_t>(std::lower_bound(codes.begin(), codes.end(), done) - codes.begin()));
     for (size_t i = 0; i < items_.size(); ++i) {
         const uint64_t differs = i ? items_[i].code ^ items_[i - 1].code : uint64_t{1} << (3 * kMaxLevel);
-        // The highest bit that differs is one of level kMaxLevel - bit / 3; equal codes: no cell is small
+        // The highest differing bit belongs to level kMaxLevel - bit / 3. Equal codes: no cell is small
         // enough.
         const int bit = std::bit_width(differs) - 1;
         items_[i].first_level = static_cast<uint8_t>(
@@ -149,7 +149,8 @@ void Top::add_items(const LoosePoints& points, size_t first) {
         items_.push_back({points.codes[i], points.areas[i], 0, &points.records[i * stride_]});
 }
 
-/// The node's own points, in prefix order, and its floors; `all`: of every level from its own on.
+/// Adds the node with its own points, in prefix order, and its floors. `all`: the points of all levels from
+/// its own on.
 void Top::emit(const NodeInfo& node, size_t first, size_t last, double surface, bool all) {
     std::vector<float> inherited, own;
     std::vector<uint8_t> passes;
@@ -181,7 +182,7 @@ void Top::emit(const NodeInfo& node, size_t first, size_t last, double surface, 
     source_.add(info, {std::move(data), {}});
 }
 
-/// Splits [first, last) of the points and the roots among the octants.
+/// Splits the points [first, last) and the roots among the octants.
 Part Top::build_children(NodeInfo& info, size_t first, size_t last, size_t first_root, size_t last_root) {
     Part sum;
     for (uint32_t octant = 0; octant < 8; ++octant) {

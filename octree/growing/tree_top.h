@@ -13,34 +13,35 @@
 
 namespace lucarne::octree {
 
-/// Points that stand in no finished node yet, along the Morton curve.
+/// Points that are not in a finished node yet, along the Morton curve.
 struct LoosePoints {
     std::vector<std::byte> records;  ///< in the schema of the cache
     std::vector<uint64_t> codes;
     std::vector<float> areas;  ///< in faces of the root cube; 0: unknown
 };
 
-/// A node whose descendants are finished; its points stay loose until its parent is there.
+/// A node whose descendants are finished. Its points stay loose until its parent is finished.
 struct LooseNode {
     Pending node;
     LoosePoints points;
 };
 
-/// A build as it stands: what is finished, and the rest by loose points alone. The finished part is the
+/// The current state of a build: the finished part, and loose points for the rest. The finished part is the
 /// beginning of the Morton curve.
 struct GrowingState {
     SourceHeader header;
-    std::span<const format::Entry> settled;  ///< any order; what no node of `roots` stands over is left out
+    /// In any order; entries that are not below a node of `roots` are left out.
+    std::span<const format::Entry> settled;
     std::span<const std::shared_ptr<const LooseNode>> roots;  ///< along the Morton curve
     const LoosePoints& sample;                                ///< of the whole cloud
-    std::shared_ptr<const ByteSource> file;                   ///< holds what is settled
+    std::shared_ptr<const ByteSource> file;                   ///< the file that holds what is settled
 };
 
-/// The whole of it as an octree. Every point stands in it once: of the sample only what lies behind the last
-/// root is used. Above the roots and where there are none, a node takes the first point of each cell of its
-/// grid (Morton order, 128 cells a side) that none of its ancestors took; leaves take the rest. Floors follow
-/// from the areas as in a build, so a surface has its area at every level of detail while it is replaced. The
-/// source shares the state's points and file and never changes.
+/// Makes an octree of the whole state. Every point is in it once: of the sample, only the points after the
+/// last root are used. Above the roots, and where there are none, a node takes the first point of each cell
+/// of its grid (in Morton order, 128 cells a side) that none of its ancestors took; leaves take the rest.
+/// Floors follow from the areas as in a build, so a surface keeps its area at every level of detail while it
+/// is replaced. The source shares the state's points and file and never changes.
 std::shared_ptr<const NodeSource> make_growing_source(const GrowingState& state);
 
 }  // namespace lucarne::octree

@@ -15,24 +15,25 @@
 namespace lucarne::octree {
 namespace {
 
-/// A normal seen at a flatter angle than this (sine) does not tell which side the station saw.
+/// Sine of the least angle between a normal's plane and the ray to the station. At flatter angles the normal
+/// does not tell which side the station saw.
 constexpr double kGrazing = 0.05;
-/// Of a silhouette's tangent plane and the rays that graze it (sine): the plane is fitted over some degrees
-/// of a pier.
+/// Sine of the largest angle between a silhouette's tangent plane and the rays that graze it. A plane fitted
+/// to a pier covers some degrees of its curve.
 constexpr double kSilhouette = 0.1;
 
-/// A halo's share of the memory: two chunks are worked on at a time where memory is short.
+/// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
 
-/// What is known of one chunk before the components of all are joined.
+/// What is known of one chunk before the components of all chunks are joined.
 struct ChunkEstimate {
     ChunkNeighbours neighbours;
     ChunkSurface surface;
     ChunkOrientation orientation;
 };
 
-/// A point that stands apart in the plane of its neighbours, a plane that holds its station too, is no sparse
-/// surface: mixed pixels behind a silhouette lie on the rays that graze it, a curtain in the silhouette's
+/// Drops points of `surface.apart` whose plane contains their station, too. They are not a sparse surface:
+/// mixed pixels behind a silhouette lie on the rays that graze it, and form a curtain in the silhouette's
 /// tangent plane.
 void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     for (const uint32_t site : surface.apart) {
@@ -45,8 +46,8 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
     }
 }
 
-/// From each site to the station that saw it, scaled: the first point at the site with a station decides;
-/// zero where none is known.
+/// Returns the scaled ray from each site to the station that saw it. The site's first point with a known
+/// station decides; the ray is zero if there is none.
 Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkCache& cache, size_t chunk,
                                                  const NormalOptions& options,
                                                  const ChunkNeighbours& neighbours) {
@@ -64,7 +65,7 @@ Result<std::vector<glm::dvec3>> rays_to_stations(const ChunkCache& cache, size_t
     return rays;
 }
 
-/// The side of each site's normal that its station saw: 1, -1, or 0 where that is unknown.
+/// Returns the side of each site's normal that its station saw: 1, -1, or 0 where it is unknown.
 std::vector<int8_t> toward_stations(const ChunkSurface& surface, std::span<const glm::dvec3> rays) {
     std::vector<int8_t> toward(surface.normals.size(), 0);
     for (size_t site = 0; site < rays.size(); ++site) {
@@ -91,15 +92,16 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
 }
 
-/// Converts an area in squares of `length` to squares of 1. The marks for unknown and stray stay as they are.
+/// Converts an area in squares of `length` to squares of 1. The marks for unknown areas and outliers stay
+/// unchanged.
 float in_squares(float area, double length) {
     if (!(area > kStrayArea)) return area;
     constexpr double kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp(area * length * length, kLeast, kMost));
 }
 
-/// From sites to points, in their stored order; the points of a site share its area. `unit` is that of the
-/// estimate's areas, in the unit wanted.
+/// Converts results from sites to points, in their stored order. The points of a site share its area. `unit`
+/// is the length unit of the estimate's areas, in the wanted unit.
 ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     const auto sites = static_cast<uint32_t>(estimate.neighbours.site_count());
     const size_t points = estimate.neighbours.point_count();
@@ -119,7 +121,7 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     return normals;
 }
 
-/// The chunks from `first` on that are worked on side by side within the memory; at least one.
+/// Returns the end of the range of chunks from `first` on that fit into the memory together; at least one.
 size_t wave_end(const ChunkAccess& chunks, size_t first, uint64_t memory) {
     uint64_t bytes = 0;
     size_t end = first;

@@ -1,13 +1,14 @@
-// Choosing the nodes of a cut: one sweep over the quality w = 1 / (projected spacing)^2, the number of points
-// a pixel. Sources: Wimmer & Scheiblauer, "Instant Points", 2006 (best-first refinement of a nested octree);
-// Schuetz et al., "Real-Time Continuous Level of Detail Rendering of Point Clouds", 2019 (no jumps between
-// levels).
+// Selects the nodes of a cut in one sweep over the quality w = 1 / (projected spacing)^2, the number of
+// points per pixel. Sources: Wimmer & Scheiblauer, "Instant Points", 2006 (best-first refinement of a nested
+// octree); Schuetz et al., "Real-Time Continuous Level of Detail Rendering of Point Clouds", 2019 (no jumps
+// between levels).
 //
-// At quality w a node that lies where a pixel covers `reach` world units needs the density w / reach^2. Its
-// parent's points give 1 / parent_spacing^2 and all of its own make that 1 / spacing^2: it is absent up to
-// begin = (reach / parent_spacing)^2, whole from end = (reach / spacing)^2 on, and linear between, as the
-// density of a prefix is. Children are never nearer than their parent, so they begin after it is whole. The
-// budget then is one number to find: the largest w whose points fit.
+// At quality w, a node at a distance where a pixel covers `reach` world units needs the density w / reach^2.
+// Its parent's points provide 1 / parent_spacing^2, and with all of its own points the density is 1 /
+// spacing^2. So the node is absent up to begin = (reach / parent_spacing)^2, whole from end = (reach /
+// spacing)^2, and its prefix grows linearly in between, because the density of a prefix is linear in its
+// length. Children are never nearer than their parent, so they begin after it is whole. The budget then
+// leaves one number to find: the largest w whose points fit.
 #include "octree/stream/cut.h"
 
 #include <algorithm>
@@ -26,17 +27,18 @@
 namespace lucarne::octree {
 namespace {
 
-/// The least ratio of end to begin, which bounds how fast a node fades in: d(prefix share) <= w' / (1 -
-/// 1/1.25).
+/// The least ratio of end to begin. It bounds how fast a node fades in: d(prefix share) <= w' / (1 - 1/1.25).
 constexpr double kLeastFade = 1.25;
-/// Light cuts weigh against view cuts as a picture of this many pixels a radian would: coarser than a screen.
+/// Light cuts compete with view cuts for loading as a picture of this many pixels per radian would, which is
+/// coarser than a screen.
 constexpr double kLightPixelsPerRadian = 256;
-/// Share of the scene's extent around the centre of a light cut that is refined evenly.
+/// Radius around the centre of a light cut that is refined evenly, as a share of the scene's extent.
 constexpr double kLightCoreShare = 1.0 / 16;
-/// The same around a lamp, as a share of that: what stands a hand's breadth before it counts.
+/// The same around a lamp, as a share of the centre's radius: objects a hand's breadth from a lamp matter.
 constexpr double kLampCoreShare = 1.0 / 16;
 
-/// World units a pixel covers at a cube whose surfels reach `radius` beyond it; empty where it is not wanted.
+/// Returns how many world units a pixel covers at a cube whose surfels extend `radius` beyond it; empty where
+/// the cube is culled.
 using Reach = std::function<std::optional<double>(const Cube& cube, double radius)>;
 
 struct Candidate {
@@ -49,10 +51,10 @@ struct Candidate {
         return static_cast<uint32_t>(count * ((w - begin) / (end - begin)));
     }
 
-    /// What loading it adds to the picture, by the point loaded: the pixels it covers, times by how much the
-    /// spacing of the points falls there. Without it that is 1/sqrt(begin), with `used` of its points
-    /// 1/sqrt(reached), and points that raise the density by (reached - begin) cover used / (reached - begin)
-    /// pixels.
+    /// What loading the node adds to the picture per loaded point: the pixels that it covers times the
+    /// decrease of the points' spacing there. The spacing is 1/sqrt(begin) without the node and
+    /// 1/sqrt(reached) with `used` of its points. Points that raise the density by (reached - begin) cover
+    /// used / (reached - begin) pixels.
     float priority_at(double w, uint32_t used) const {
         const double reached = std::min(w, end);
         if (!(begin > 0) || !(reached > begin)) return begin > 0 ? 0.0f : 1e30f;
@@ -66,7 +68,7 @@ double distance_to(const Cube& cube, const glm::dvec3& point) {
     return glm::length(glm::max(glm::max(cube.min - point, point - (cube.min + cube.size)), glm::dvec3(0.0)));
 }
 
-/// The candidates in the order in which they become whole.
+/// Visits candidates in the order in which they become whole.
 class Sweep {
  public:
     Sweep(const NodeSource& source, const Reach& reach)
@@ -85,7 +87,7 @@ class Sweep {
         for (const Candidate& candidate : candidates_) {
             uint32_t count = candidate.count_at(w);
             if (cut.nodes.empty() && candidate.node == 0)
-                count = std::max(count, std::min(candidate.count, 1u));  // never nothing
+                count = std::max(count, std::min(candidate.count, 1u));  // a cut is never empty
             if (count == 0 && (candidate.count > 0 || w < candidate.end)) continue;
             cut.nodes.push_back({candidate.node, count, candidate.priority_at(w, count)});
             cut.points += count;
@@ -95,8 +97,8 @@ class Sweep {
     }
 
  private:
-    /// Looks at all nodes that begin before `w_most`, or before the quality at which the whole ones alone are
-    /// over the budget; returns that quality.
+    /// Visits all nodes that begin before `w_most`, or before the quality at which the whole nodes alone
+    /// exceed the budget. Returns that quality.
     double visit(uint64_t budget, double w_most) {
         for (const uint32_t root : source_.roots()) add(root, source_.cube(root).size, 0, true);
         uint64_t whole = 0;
@@ -120,7 +122,8 @@ class Sweep {
         ++visited_;
         const NodeInfo& info = nodes_[node];
         Candidate candidate{node, info.count, info.spacing(), 0, 0};
-        // A node without a measured spacing (a lone point) halves its parent's, as an octree's level does.
+        // A node without a measured spacing (a single point) gets half its parent's, as an octree's level
+        // does.
         if (!(candidate.spacing > 0) || !std::isfinite(candidate.spacing))
             candidate.spacing = parent_spacing / 2;
         if (!root) candidate.spacing = std::min(candidate.spacing, parent_spacing);
@@ -140,8 +143,9 @@ class Sweep {
         return points;
     }
 
-    /// The largest quality up to `w_known` whose points fit, bit by bit over doubles with 28 bits of
-    /// mantissa: the same grid for every budget, so that a larger budget never ends below a smaller one.
+    /// Returns the largest quality up to `w_known` whose points fit. Decides bit by bit, over doubles with 28
+    /// bits of mantissa. This grid is the same for every budget, so a larger budget never yields a lower
+    /// quality.
     double quality_within(uint64_t budget, double w_known) const {
         uint64_t bits = 0;
         for (int bit = 62; bit >= 24; --bit) {
@@ -162,7 +166,7 @@ class Sweep {
     uint64_t visited_ = 0;
 };
 
-/// The four sides and the front of a view, normals inward.
+/// The four sides and the near plane of a view, normals pointing inward.
 class Frustum {
  public:
     explicit Frustum(const View& view) : origin_(view.position), near_(view.near_plane) {
@@ -172,7 +176,7 @@ class Frustum {
         normals_[3] = glm::normalize(view.forward * view.tan_half_height + view.up);
         normals_[4] = glm::normalize(view.forward * view.tan_half_height - view.up);
     }
-    /// False only where no point within `radius` of the cube is inside.
+    /// False only if no point within `radius` of the cube is inside.
     bool touches(const Cube& cube, double radius) const {
         const double half = cube.size / 2;
         const glm::dvec3 centre = cube.min + half - origin_;
@@ -197,7 +201,7 @@ Cut view_cut(const NodeSource& source, const View& view, uint64_t budget, double
     const Frustum frustum(view);
     const double pixel = std::min(2 * view.tan_half_width / std::max(view.width, 1u),
                                   2 * view.tan_half_height / std::max(view.height, 1u));  // at distance 1
-    const double nearest = std::max(view.near_plane, 1e-9);  // of a node around the camera
+    const double nearest = std::max(view.near_plane, 1e-9);  // distance of a node around the camera
     const Reach reach = [&](const Cube& cube, double radius) -> std::optional<double> {
         if (!frustum.touches(cube, radius)) return std::nullopt;
         if (view.wanted && !view.wanted(cube)) return std::nullopt;

@@ -19,7 +19,7 @@ class JoinedSource final : public NodeSource {
         nodes_.reserve(nodes);
         for (auto& source : sources) add(std::move(source));
         const glm::dvec3 extent = header_.max - header_.min;
-        // As a cache's root cube: a little larger than the box, so that its upper faces are inside.
+        // Like a cache's root cube: a little larger than the box, so that its upper faces are inside.
         const double side = std::max({extent.x, extent.y, extent.z, 1e-9}) * (1 + 0x1p-20);
         header_.root = {(header_.min + header_.max - side) / 2.0, side};
     }
@@ -87,7 +87,7 @@ class JoinedSource final : public NodeSource {
 
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
-    std::vector<Part> parts_;  ///< by first_node
+    std::vector<Part> parts_;  ///< sorted by first_node
 };
 
 }  // namespace

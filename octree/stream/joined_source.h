@@ -7,10 +7,10 @@
 
 namespace lucarne::octree {
 
-/// Joins sources (hundreds of scans, say) into one with many roots, under one cut and one budget. They keep
-/// their root cubes, schemas and units. The joined unit is theirs where they agree, else the metre; scans are
-/// numbered through. Where parts overlap, all of their points are there. One source comes back as it is.
-/// Errors (ErrorKind::input_rejected): more nodes together than a directory can number; none at all.
+/// Joins sources (hundreds of scans, for example) into one with many roots, for one cut and one budget. They
+/// keep their root cubes, schemas and units. The joined unit is theirs if they agree, else the metre. Scans
+/// are numbered consecutively. Where parts overlap, all of their points are kept. A single source is returned
+/// unchanged. Errors (ErrorKind::input_rejected): no source; more nodes together than a directory can number.
 Result<std::shared_ptr<const NodeSource>> join_sources(
     std::vector<std::shared_ptr<const NodeSource>> sources);
 

@@ -8,21 +8,20 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr double kFarthestTurn = 1.0;  ///< radians: further ahead nobody knows where a camera looks
+constexpr double kFarthestTurn = 1.0;  ///< radians; directions further ahead cannot be predicted
 
-/// `v` rotated about the unit `axis` (Rodrigues 1840).
+/// Rotates `v` about the unit vector `axis` (Rodrigues 1840).
 glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
     return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
            axis * (glm::dot(axis, v) * (1 - std::cos(angle)));
 }
 
-/// The rotation between two views' axes as axis times angle: exact for one about a common axis, and good for
-/// the small angles between frames.
+/// The rotation between two views' axes, as axis times angle. It is exact for a rotation about a common axis
+/// and good for the small angles between frames.
 glm::dvec3 turn_between(const View& a, const View& b) {
     const glm::dvec3 sum =
         glm::cross(a.forward, b.forward) + glm::cross(a.right, b.right) + glm::cross(a.up, b.up);
-    const double sine =
-        glm::length(sum) / 2;  // of every axis together: 2 sin(angle) times the rotation's axis
+    const double sine = glm::length(sum) / 2;  // `sum` is 2 sin(angle) times the rotation's axis
     return sine > 0 ? sum / (2 * sine) * std::asin(std::min(sine, 1.0)) : glm::dvec3(0.0);
 }
 

@@ -6,14 +6,15 @@
 
 namespace lucarne::octree {
 
-/// Where a camera will be, from where it was: it goes on by the step of the last frames, in place and in
-/// direction. The mean of two steps, so that a hand's tremble does not swing what is loaded ahead.
+/// Predicts the views of a moving camera: it repeats the step of the last frames, in position and direction.
+/// The step is the mean of two, so that a trembling hand does not change what is prefetched.
 class Motion {
  public:
-    /// The view of the next frame.
+    /// Takes the view of the next frame.
     void observe(const View& view);
-    void forget();  ///< the camera has jumped
-    /// The view `frames` frames on; empty while it stands or when too little is known.
+    void forget();  ///< call when the camera has jumped
+    /// Returns the view `frames` frames ahead; empty while the camera stands still or too few frames are
+    /// known.
     std::optional<View> ahead(double frames) const;
 
  private:

@@ -18,21 +18,21 @@ namespace {
 using Events = std::list<ResidencyEvent>;
 
 struct Entry {
-    uint64_t bytes = 0;         ///< what a load takes
-    uint64_t held_bytes = 0;    ///< what the copy held takes
-    uint64_t record_bytes = 0;  ///< of a load, in transit
+    uint64_t bytes = 0;         ///< bytes of the cap that a load takes
+    uint64_t held_bytes = 0;    ///< bytes of the cap that the resident copy takes
+    uint64_t record_bytes = 0;  ///< bytes of a load in transit
     uint64_t unpolled_bytes = 0;
-    uint64_t last_wanted = 0;  ///< the number of the want() that last named it
+    uint64_t last_wanted = 0;  ///< number of the last want() that named the node
     float priority = 0;
     uint32_t count = 0;
     bool held = false, in_flight = false;
-    bool ahead = false;     ///< no cut of a picture wants it, only those ahead
-    bool fetched = false;   ///< loaded ahead, and no picture has wanted it since
-    bool admitted = false;  ///< wanted, and within the cap with all that is more important
+    bool ahead = false;     ///< wanted by prefetching cuts only
+    bool fetched = false;   ///< prefetched, and not wanted by a frame since
+    bool admitted = false;  ///< wanted, and fits the cap together with all more important nodes
     bool lost = false;      ///< it or an ancestor failed to load
-    bool stale = false;     ///< the source has something newer than what is held or on its way
-    bool known = false;     ///< the caller has polled it as loaded, and no eviction since was reported
-    std::optional<Events::iterator> unpolled;  ///< its loaded or replaced event, until the caller polls that
+    bool stale = false;     ///< the source has a newer version than the one resident or being loaded
+    bool known = false;     ///< the caller has polled it as loaded, and no eviction has been reported since
+    std::optional<Events::iterator> unpolled;  ///< its loaded or replaced event until that is polled
 };
 
 }  // namespace
@@ -46,14 +46,14 @@ struct Residency::State {
 
     mutable std::mutex mutex;
     std::condition_variable work, idle;
-    std::unordered_map<uint32_t, Entry> entries;  ///< all that is wanted, held or on its way
+    std::unordered_map<uint32_t, Entry> entries;  ///< nodes wanted, resident or being loaded
     std::vector<bool> broken;                     ///< nodes that failed; they are not tried again
-    std::vector<uint32_t> queue;                  ///< what to load, the most important last
-    std::vector<uint32_t> evictable;              ///< held and not admitted, the first to go last
+    std::vector<uint32_t> queue;                  ///< nodes to load, the most important last
+    std::vector<uint32_t> evictable;              ///< resident and not admitted, the next to evict last
     Events events;
     ResidencyStats stats;
     uint64_t wants = 0, bytes_in_flight = 0;
-    uint64_t bytes_unpolled = 0, bytes_polled = 0;  // records: read or being read; of the last poll
+    uint64_t bytes_unpolled = 0, bytes_polled = 0;  // of records: read or being read; of the last poll
     unsigned loads_in_flight = 0;
     std::optional<Error> error;
     bool stop = false;
@@ -76,7 +76,7 @@ struct Residency::State {
     bool goes_before(uint32_t a, uint32_t b) const;
 };
 
-/// Marks the union of the cuts.
+/// Marks the nodes of the cuts as wanted and appends those not yet named by this want() to `wanted`.
 void Residency::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
                                    std::vector<uint32_t>& wanted) {
     const size_t nodes = source.nodes().size();
@@ -96,7 +96,7 @@ void Residency::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
         }
 }
 
-/// Puts what is wanted into the queue; a parent is never less important than its children.
+/// Moves the wanted nodes into the queue and raises each parent's priority to at least that of its children.
 void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
     const auto nodes = source.nodes();
     std::ranges::sort(wanted, std::greater<>());  // children before parents
@@ -117,8 +117,8 @@ void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
     queue = std::move(wanted);
 }
 
-/// Of the wanted nodes in `queue` admits the most important that fit together and leaves those to be loaded
-/// there.
+/// Admits the most important wanted nodes of `queue` that fit together, and leaves those in the queue that
+/// must be loaded.
 void Residency::State::admit() {
     const auto nodes = source.nodes();
     std::ranges::sort(queue, [&](uint32_t a, uint32_t b) {
@@ -141,8 +141,8 @@ void Residency::State::admit() {
         const bool orphan = parent && !parent->admitted;
         const uint64_t bytes = std::max(entry.bytes, entry.held_bytes);
         const bool too_large = bytes > options.memory || entry.record_bytes > options.transit;
-        // What is larger than the whole cap never blocks the rest. The first that does not fit ends it: a
-        // smaller one further down would be held in the place of something more important.
+        // A node larger than the whole cap never blocks the others. The first other node that does not fit
+        // ends the admission: a smaller one after it would take the place of a more important one.
         full |= !orphan && !too_large && bytes > options.memory - total;
         if (orphan || full || too_large) {
             stats.refused += !entry.ahead;
@@ -156,14 +156,14 @@ void Residency::State::admit() {
     queue = std::move(missing);
 }
 
-/// Drops entries that are neither wanted nor held nor on their way, and lists what may be evicted, the
-/// longest unwanted last.
+/// Drops entries that are neither wanted nor resident nor being loaded. Lists the nodes that may be evicted,
+/// the least recently wanted last.
 void Residency::State::forget_strangers() {
     evictable.clear();
     std::erase_if(entries, [&](const auto& pair) {
         return !pair.second.held && !pair.second.in_flight && pair.second.last_wanted != wants;
     });
-    evictable.reserve(entries.size());  // finish_load() adds to it
+    evictable.reserve(entries.size());  // finish_load() adds to it and must not allocate
     for (const auto& [node, entry] : entries)
         if (entry.held && !entry.admitted) evictable.push_back(node);
     std::ranges::sort(evictable, [&](uint32_t a, uint32_t b) { return goes_before(b, a); });
@@ -176,7 +176,7 @@ bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
     return a > b;  // children before parents
 }
 
-/// Drops a loaded or replaced event that the caller has not seen: it need not.
+/// Drops a loaded or replaced event that the caller has not polled and no longer needs.
 void Residency::State::forget_event(Entry& entry) {
     if (!entry.unpolled) return;
     bytes_unpolled -= entry.unpolled_bytes;
@@ -186,7 +186,7 @@ void Residency::State::forget_event(Entry& entry) {
 
 void Residency::State::evict(uint32_t node) {
     Entry& entry = entries.at(node);
-    Events told;  // first, since it may throw
+    Events told;  // made first, since it may throw
     if (entry.known) told.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
     forget_event(entry);
     events.splice(events.end(), told);
@@ -207,7 +207,7 @@ bool Residency::State::make_room(uint64_t bytes) {
     return true;
 }
 
-/// Whether the next node of the queue has to wait for the caller to take others.
+/// Whether the next node of the queue must wait until the caller has polled others.
 bool Residency::State::transit_full() const {
     return bytes_unpolled + bytes_polled + entries.at(queue.back()).record_bytes > options.transit;
 }
@@ -217,14 +217,15 @@ bool Residency::State::nothing_moves() const {
     return loads_in_flight == 0 && (queue.empty() || transit_full());
 }
 
-/// Takes the next node off the queue once there is room for it. Throws where there is no memory to report an
-/// eviction; then nothing is taken.
+/// Takes the next node off the queue once there is room for it. Throws if there is no memory to report an
+/// eviction; then no node is taken.
 std::optional<uint32_t> Residency::State::next_load() {
     if (queue.empty() || transit_full()) return std::nullopt;
     const uint32_t node = queue.back();
     Entry& entry = entries.at(node);
     if (!make_room(entry.bytes)) {
-        // Loads that nobody wants any more take the room until they end, or two copies of a node do not fit.
+        // Either loads that are no longer wanted occupy the room until they end, or two copies of a node do
+        // not fit.
         if (loads_in_flight > 0 || !entry.stale) return std::nullopt;
         evict(node);
         return next_load();
@@ -240,7 +241,8 @@ std::optional<uint32_t> Residency::State::next_load() {
     return node;
 }
 
-/// The same; what it throws is reported instead, and the queue is given up: the next want() makes another.
+/// Calls next_load() and keeps what it throws as the error to report. In that case the queue is dropped; the
+/// next want() makes another.
 std::optional<uint32_t> Residency::State::take_next() {
     auto next = guarded("loading", [&]() -> Result<std::optional<uint32_t>> { return next_load(); });
     if (next) return *next;
@@ -250,7 +252,7 @@ std::optional<uint32_t> Residency::State::take_next() {
     return std::nullopt;
 }
 
-/// Allocates nothing, so that it cannot fail.
+/// Applies the result of a load. Allocates nothing, so that it cannot fail.
 void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     Entry& entry = entries.at(node);
     entry.in_flight = false;
@@ -258,7 +260,7 @@ void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     bytes_unpolled -= entry.record_bytes;
     --loads_in_flight;
     if (!loaded) {
-        if (entry.stale) return;  // it changed on the way: the next want() asks again
+        if (entry.stale) return;  // the node changed during the load: the next want() requests it again
         ++stats.failures;
         ++stats.lost;
         broken[node] = true;
@@ -285,13 +287,13 @@ void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     evictable.insert(std::ranges::partition_point(evictable, later), node);
 }
 
-/// Reads a node and makes its event, on a loading thread, without the lock.
+/// Reads a node and makes its event. Runs on a loading thread, without the lock.
 Result<Events> Residency::State::load(uint32_t node, uint64_t record_bytes, uint32_t count) const {
     const std::string name = fmt::format("node {}", node);
     return guarded(name, [&]() -> Result<Events> {
         LUCARNE_ASSIGN(NodeData data, source.load(node));
         if (data.count != count || data.records.size() != record_bytes)
-            return rejected(name, "it holds something else than the directory says");
+            return rejected(name, "its contents differ from its directory entry");
         if (options.prepare) data = options.prepare(node, std::move(data));
         Events made;
         made.push_back(
@@ -325,7 +327,7 @@ Residency::Residency(const NodeSource& source, ResidencyOptions options)
     for (unsigned i = 0; i < threads; ++i) {
         try {
             state_->threads.emplace_back([state = state_.get()] { state->loader(); });
-        } catch (const std::system_error&) {  // out of threads: fewer do as well, none does not
+        } catch (const std::system_error&) {  // one thread is enough, none is not
             if (state_->threads.empty()) throw;
             break;
         }

@@ -9,8 +9,8 @@
 namespace lucarne::octree {
 namespace {
 
-// -1, 0 and 1 are multiples of kMostRounding apart, so that rounding keeps normals along the axes as they
-// are.
+// The codes of -1, 0 and 1 are multiples of kMostRounding apart, so rounding leaves normals along the axes
+// unchanged.
 constexpr int kCentre = 2048, kReach = 63 * kMostRounding;
 static_assert(kCentre + kReach < 4095 && kCentre > kReach, "12 bits; 4095 is left for kNoNormal");
 

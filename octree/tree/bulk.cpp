@@ -10,21 +10,22 @@
 namespace lucarne::octree {
 namespace {
 
-/// Of the points, at each end of each axis, that may be strays.
+/// Share of the points that may be outliers, at each end of each axis.
 constexpr double kStrays = .005;
-/// The bulk is looked at where it is this much smaller than the whole; else nothing is left out of the
-/// picture.
+/// The robust bounds are used where their diagonal is below this share of the whole box's; otherwise no point
+/// is left out.
 constexpr double kMuchSmaller = .5;
 constexpr size_t kMostNodes = 1 << 13;
 
-/// Nodes that are loaded to see where in their cubes their points are: a coarse leaf may hold them in one
-/// corner.
+/// How many coarse leaves are loaded to find where their points are: such a leaf may hold them all in one
+/// corner of its cube.
 constexpr size_t kMostLoaded = 64;
-constexpr uint32_t kFineLevel = 6;  ///< whose cubes are told by their place alone
+/// Leaves from this level on are small: their cubes stand for their points.
+constexpr uint32_t kFineLevel = 6;
 constexpr uint32_t kPointsOfANode = 64;
 
-/// Places in a node that a device tells apart, a side (gi::kFractionSteps), and how many the bulk must span
-/// to be seen.
+/// How many steps a device resolves along the side of a node (gi::kFractionSteps), and how many steps the
+/// robust bounds must span to be visible.
 constexpr double kNodeSteps = 1 << 16, kLeastSteps = 256;
 
 struct Weighted {
@@ -34,10 +35,11 @@ struct Weighted {
 
 struct Parts {
     std::vector<Weighted> all;
-    double coarsest = 0;  ///< the largest step between places, of nodes that hold more than strays
+    /// The largest such step (world units) of the coarse leaves that hold more points than may be outliers.
+    double coarsest = 0;
 };
 
-/// The place on an axis that `share` of the points are below.
+/// The coordinate on an axis below which `share` of the points lie.
 double quantile(std::vector<Weighted>& parts, int axis, bool high, double share) {
     const auto place = [&](const Weighted& w) { return high ? w.high[axis] : w.low[axis]; };
     std::ranges::sort(parts, {}, place);
@@ -48,7 +50,8 @@ double quantile(std::vector<Weighted>& parts, int axis, bool high, double share)
     return place(parts.back());
 }
 
-/// The level whose nodes stand for all below them, so that clouds of any size are quick to look at.
+/// The deepest level that is looked at. Its nodes stand for all their descendants, so that clouds of any size
+/// are quick to measure.
 uint32_t deepest(std::span<const NodeInfo> nodes) {
     std::array<size_t, kMostLevel + 1> at_level{};
     for (const NodeInfo& node : nodes) ++at_level[node.key.level];
@@ -57,8 +60,9 @@ uint32_t deepest(std::span<const NodeInfo> nodes) {
     return level;
 }
 
-/// What divides the points: leaves, and the nodes of the deepest level with all below them. What nodes above
-/// hold is an even sample of space, in which strays would weigh as much as rooms.
+/// Returns the parts that divide the points: the leaves, and the nodes of the deepest level with all their
+/// descendants. The points of nodes above are left out: they are an even sample of space, in which outliers
+/// would weigh as much as rooms.
 Parts parts_of(const NodeSource& source) {
     const auto nodes = source.nodes();
     const uint32_t level = deepest(nodes);
@@ -111,7 +115,7 @@ std::array<glm::dvec3, 2> bulk_of(const NodeSource& source) {
     high = glm::min(high, header.max);
     const double all = glm::length(header.max - header.min), bulk = glm::length(high - low);
     const bool seen = bulk >= kLeastSteps * parts.coarsest;
-    return seen && bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false for what is no number
+    return seen && bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false also for NaN
 }
 
 }  // namespace lucarne::octree

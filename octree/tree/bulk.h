@@ -8,9 +8,10 @@
 
 namespace lucarne::octree {
 
-/// The box {low, high} to look at: that of the points, or, where a few strays make it far larger than what
-/// the rest take (a scanner that saw a bird, a reflection, the next village), the box of the others. Known
-/// from the directory, so as exact as nodes are small. The box of all points where a device could not tell
+/// Returns the robust bounds {low, high} of a cloud, the box that a view should show. These are the bounds of
+/// the points or, where a few outliers make those far larger (a scanner that saw a bird, a reflection, the
+/// next village), the bounds of the others. The box comes from the directory and a sample of the coarse
+/// leaves, so it is as exact as nodes are small. It is the box of all points where a device could not tell
 /// the others apart. World units.
 std::array<glm::dvec3, 2> bulk_of(const NodeSource& source);
 

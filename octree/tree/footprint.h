@@ -1,11 +1,10 @@
-// The one place where a surfel's size is decided, for C++ and GLSL alike (so: only what both languages
-// share).
+// Defines the size of a surfel, for C++ and GLSL alike. It uses only what both languages share.
 //
-// In an additive octree the ancestors of a node stand among its own points, so a surfel's share of the
+// In an additive octree the points of a node's ancestors lie among its own. So a surfel's share of the
 // surface follows from three things: its own share at full resolution (measured from its neighbours when the
 // cache was built), the deepest node of the cut around it, and how long a prefix of that node is drawn. A
-// node carries `floor`, the least share that makes the shares of all points in its cube (its own and its
-// ancestors') add up to the surface there, for prefixes of 1, 1/2, 1/4 and 1/8.
+// node carries `floor`: the least share with which the shares of all points in its cube (its own and its
+// ancestors') add up to the surface there. It is stored for prefixes of 1, 1/2, 1/4 and 1/8.
 #ifndef LUCARNE_OCTREE_FOOTPRINT_H
 #define LUCARNE_OCTREE_FOOTPRINT_H
 
@@ -17,23 +16,24 @@ namespace lucarne::octree {
 #define LUCARNE_SHARED_FN
 #endif
 
-// Disc area over surface share. Discs of equal size leave e^-C of the rays through a random pattern (.0002 at
-// 9); discs that follow each point's own share do as well with 7, and an even pattern needs less still:
-// measured, see README.md beside this file. So points with a share of their own get kCoverageRaw, points
-// thinned to an even level of detail kCoverageEven, and points whose own share nobody has measured
-// kCoverageUnknown.
+// Coverage: disc area divided by surface share. In a random pattern, discs of equal size let e^-C of the rays
+// through (.0002 at a coverage C of 9). Discs that follow each point's own share do as well at 7, and an even
+// pattern needs still less; octree/normals/README.md has the measurements. So points with a share of their
+// own get kCoverageRaw, points thinned to an even level of detail kCoverageEven, and points whose own share
+// was not measured kCoverageUnknown.
 const float kCoverageRaw = 7.0f;
 const float kCoverageEven = 5.0f;
 const float kCoverageUnknown = 9.0f;
 
-// The surfel's share of the surface, in the unit of its arguments. `own` is its share at full resolution (0
-// when unknown), `floor_area` the local floor at the prefix in use.
+// Returns the surfel's share of the surface, in the unit of the arguments. `own` is its share at full
+// resolution (0 when unknown), `floor_area` the local floor at the prefix in use.
 LUCARNE_SHARED_FN float surfel_area(float own, float floor_area) {
     return own > floor_area ? own : floor_area;
 }
 
-// Disc radius for a share. Where the floor dominates, the pattern was thinned and is even; where the surfel's
-// own share does, it is the raw scan's. Between them the coverage changes smoothly, so that no ring shows.
+// Returns the disc radius for a share. Where the floor dominates, the pattern was thinned and is even. Where
+// the surfel's own share dominates, the pattern is that of the raw scan. The coverage changes smoothly in
+// between, so that no ring shows.
 LUCARNE_SHARED_FN float surfel_radius(float own, float floor_area) {
     float area = surfel_area(own, floor_area);
     float rawness = own < floor_area ? own / floor_area : 1.0f;  // 0: thinned, 1: raw
@@ -46,10 +46,11 @@ LUCARNE_SHARED_FN float surfel_radius(float own, float floor_area) {
 }
 
 #ifdef __cplusplus
-// The floor at a prefix of `share` (0, 1] of a node's points, from its values at 1, 1/2, 1/4, 1/8: linear in
-// the logarithms between them, inversely proportional below. Where points are left out whose own shares
-// filled the surface (a first value near 0), the floor jumps to about the mean share at once: the second
-// term, measured on random and even patterns, keeps the sum of all areas within a twelfth of the surface.
+// Returns the floor at a prefix of `share` (0, 1] of a node's points, from its values at 1, 1/2, 1/4, 1/8. It
+// is linear in the logarithms between them and inversely proportional to the share below 1/8. Where the full
+// prefix needs almost no floor, because the points' own shares fill the surface (a first value near 0),
+// leaving points out raises the floor to about the mean share at once. The second term models this jump. It
+// was measured on random and even patterns and keeps the sum of all areas within a twelfth of the surface.
 inline float floor_at_prefix(const float (&floors)[4], float share) {
     const float octaves = -std::log2(share > 1e-6f ? share : 1e-6f);
     if (!(octaves > 0)) return floors[0];

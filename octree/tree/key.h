@@ -11,8 +11,8 @@
 namespace lucarne::octree {
 
 inline constexpr uint32_t kMaxLevel = 21;  ///< 3 x 21 bits of Morton code fill a 64-bit word
-/// Where one cell of kMaxLevel holds more points than a node should, nodes of further levels divide them by
-/// their order: their cells are all that one.
+/// The deepest level of any node. Where one cell of kMaxLevel holds more points than a node should, nodes of
+/// levels above kMaxLevel divide them by their order. The cube of all these nodes is that one cell.
 inline constexpr uint32_t kMostLevel = 31;
 
 /// Spreads the lower 21 bits of `v` to every third bit.
@@ -25,31 +25,32 @@ constexpr uint64_t spread_bits(uint64_t v) {
     v = (v | v << 2) & 0x1249249249249249ull;
     return v;
 }
-/// Bit 0 is x, bit 1 y, bit 2 z of the finest level.
+/// Interleaves the bits: bit 0 is the finest level's x, bit 1 its y, bit 2 its z.
 constexpr uint64_t morton(uint64_t x, uint64_t y, uint64_t z) {
     return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
 }
 
-/// A node's place: its level (0 is the root) and its cell among 2^level per axis.
+/// A node's position in the tree: its level (0 is the root) and its cell among 2^level per axis.
 struct NodeKey {
     uint32_t level = 0, x = 0, y = 0, z = 0;
 
-    /// octant bit 0: upper half in x, bit 1: y, bit 2: z.
+    /// Octant bit 0: upper half in x, bit 1: y, bit 2: z.
     constexpr NodeKey child(uint32_t octant) const {
         return {level + 1, x << 1 | (octant & 1), y << 1 | (octant >> 1 & 1), z << 1 | (octant >> 2 & 1)};
     }
     constexpr NodeKey parent() const { return {level - 1, x >> 1, y >> 1, z >> 1}; }
     constexpr uint32_t octant() const { return (x & 1) | (y & 1) << 1 | (z & 1) << 2; }
-    /// Down to kMaxLevel.
+    /// The Morton code of the cell; only for levels up to kMaxLevel.
     constexpr uint64_t code() const { return morton(x, y, z); }
-    /// The node whose cube this one's points lie in: itself down to kMaxLevel.
+    /// The node whose cube contains this node's points: itself up to kMaxLevel, else its ancestor of
+    /// kMaxLevel.
     constexpr NodeKey cell() const {
         if (level <= kMaxLevel) return *this;
         const uint32_t below = level - kMaxLevel;
         return {kMaxLevel, x >> below, y >> below, z >> below};
     }
     constexpr bool operator==(const NodeKey&) const = default;
-    /// By level, then along the Morton curve: the order of a cache's directory, parents before children.
+    /// Orders by level, then along the Morton curve, as a cache's directory does: parents before children.
     constexpr std::strong_ordering operator<=>(const NodeKey& other) const {
         if (level != other.level) return level <=> other.level;
         constexpr uint32_t kLow = kMostLevel - kMaxLevel;
@@ -60,18 +61,18 @@ struct NodeKey {
     }
 };
 
-/// A point's place in the root cube, 32 bits of fixed point an axis: exact enough for sampling, the same for
-/// every chunk and level, and the one rule for which node's cube a point is in.
+/// A point's position in the root cube, 32 bits of fixed point per axis. It is exact enough for sampling, the
+/// same for every chunk and level, and alone decides in which node's cube a point is.
 struct Place {
     uint32_t x = 0, y = 0, z = 0;
 
     constexpr bool operator==(const Place&) const = default;
-    /// The Morton code of the place's finest cell.
+    /// The Morton code of the cell of kMaxLevel that contains the place.
     constexpr uint64_t code() const {
         constexpr uint32_t kUnused = 32 - kMaxLevel;
         return morton(x >> kUnused, y >> kUnused, z >> kUnused);
     }
-    /// The cell of `level` that holds the place.
+    /// The cell of `level` that contains the place.
     constexpr NodeKey key(uint32_t level) const {
         const auto cell = [level](uint32_t v) { return static_cast<uint32_t>(uint64_t{v} >> (32 - level)); };
         return {level, cell(x), cell(y), cell(z)};
@@ -82,14 +83,14 @@ struct Place {
 struct Cube {
     glm::dvec3 min{0.0};
     double size = 1.0;
-    /// Appending may have doubled the cube, so many times, around a first one, which is now the cell
-    /// `first_cell` of that level. Places still count in the first one's lattice, so that rounding moves no
-    /// point out of the node it is in.
+    /// How often appending doubled the cube around its first one. The first cube is now the cell `first_cell`
+    /// of level `doublings`. Places are still computed in its lattice, so that rounding moves no point into
+    /// another node.
     uint32_t doublings = 0;
     glm::dvec3 first_min{0.0};
     std::array<uint32_t, 3> first_cell{};
 
-    /// The edge of the cube before it was doubled: what areas are stored relative to.
+    /// The edge of the cube before it was doubled; stored areas are relative to it.
     double first_size() const { return size / static_cast<double>(uint64_t{1} << doublings); }
 
     Cube of(const NodeKey& node) const {
@@ -97,7 +98,7 @@ struct Cube {
         const double part = size / static_cast<double>(uint64_t{1} << key.level);
         return {min + part * glm::dvec3(key.x, key.y, key.z), part};
     }
-    /// floor((p - min) * (2^32 / size)) in doubles, clamped to 32 bits (octree/FORMAT.md).
+    /// Computes floor((p - min) * (2^32 / size)) in doubles, clamped to 32 bits (octree/FORMAT.md).
     Place place(const glm::dvec3& p) const {
         if (doublings) return grown_place(p);
         const double scale = 0x1p32 / size;

@@ -6,14 +6,14 @@
 
 namespace lucarne::octree {
 
-/// Decides which normal of a point is drawn, shown and written: the input's own (`normal`) where it is not
-/// zero, else the estimated one (`normal_oct`). `--normals estimate` stores the input's own under another
-/// name (octree/tree/stored_names.h), so that the estimated ones are used.
+/// Decides which normal of a point is drawn, shown and written: the input's own (`normal`) where it is finite
+/// and not zero, else the estimated one (`normal_oct`). `--normals estimate` stores the input's own under
+/// another name (octree/tree/stored_names.h), so that the estimated ones are used.
 class PointNormals {
  public:
     explicit PointNormals(const io::Schema& schema);
 
-    /// Unit, or zero where the point has none.
+    /// A unit vector, or zero where the point has no normal.
     glm::vec3 of(const std::byte* record) const;
 
  private:

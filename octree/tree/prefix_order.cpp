@@ -6,7 +6,7 @@
 namespace lucarne::octree {
 
 void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vector<uint32_t>& order) {
-    // A counting sort by pass, then each pass dealt out in bit-reversed rank.
+    // A counting sort by pass; then each pass is appended in bit-reversed rank.
     std::array<uint32_t, kLastPass + 2> begin{};
     for (const uint8_t pass : passes) ++begin[pass + 1u];
     for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
@@ -19,7 +19,7 @@ void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vec
         const uint64_t range = std::bit_ceil(count);
         for (uint64_t i = 0, rank = 0; i < range; ++i) {
             if (rank < count) order.push_back(sorted[begin[pass] + rank]);
-            uint64_t bit = range >> 1;  // counts up from the other end: carries run downwards
+            uint64_t bit = range >> 1;  // increments the bit-reversed counter: carries run downwards
             for (; rank & bit; bit >>= 1) rank ^= bit;
             rank |= bit;
         }

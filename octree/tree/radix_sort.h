@@ -13,7 +13,7 @@ struct CodeIndex {
     uint32_t index = 0;
 };
 
-/// Stable sort by the lower `bits` bits of the code (the others are equal), least significant digit first.
+/// Sorts stably by the lower `bits` bits of the code (the others are equal), least significant digit first.
 inline void sort_by_code(std::vector<CodeIndex>& items, uint32_t bits) {
     constexpr uint32_t kDigit = 11;
     if (items.size() < 4096) {  // the passes would cost more than the comparisons

@@ -14,25 +14,26 @@ namespace lucarne::octree {
 inline constexpr uint32_t kNoNode = UINT32_MAX;
 inline constexpr size_t kPrefixSteps = 4;  ///< prefixes of 1, 1/2, 1/4, 1/8
 
-/// What is known of a node without loading its points.
+/// What is known about a node without loading its points.
 struct NodeInfo {
     NodeKey key;
     uint32_t parent = kNoNode;
-    uint32_t first_child = kNoNode;  ///< children stand together in the directory, in octant order
+    uint32_t first_child = kNoNode;  ///< children are contiguous in the directory, in octant order
     uint8_t child_mask = 0;          ///< bit i: the child in octant i exists
-    uint32_t count = 0;              ///< points that stand in this node itself
-    uint64_t subtree_count = 0;      ///< with all descendants
+    uint32_t count = 0;              ///< points in this node itself
+    uint64_t subtree_count = 0;      ///< points with all descendants
     uint32_t payload_bytes = 0;      ///< on disk
-    /// Least surface share of a surfel (file unit squared) where this node is the deepest of a cut and the
+    /// Least surface share of a surfel (in square file units) where this node is the deepest of a cut and the
     /// first count/2^i of its points are drawn. See octree/tree/footprint.h.
     std::array<float, kPrefixSteps> area_floor{};
 
-    /// The node in octant `o`, or kNoNode.
+    /// The child in octant `o`, or kNoNode.
     uint32_t child(uint32_t o) const {
         if (!(child_mask >> o & 1)) return kNoNode;
         return first_child + static_cast<uint32_t>(__builtin_popcount(child_mask & ((1u << o) - 1)));
     }
-    /// The mean distance of neighbouring points at the full prefix, in the file's unit.
+    /// The mean distance between neighbouring points when all of the node's points are drawn, in the file's
+    /// unit.
     float spacing() const { return __builtin_sqrtf(area_floor[0]); }
 };
 
@@ -42,55 +43,55 @@ struct NodeData {
     std::vector<std::byte> records;
 };
 
-/// What a source is as a whole.
+/// Describes a source as a whole.
 struct SourceHeader {
     io::Schema schema;
-    /// Other schemas in which a cache's older nodes are stored; what is loaded is in `schema` all the same.
+    /// Other schemas in which older nodes of a cache are stored. Loaded nodes are converted to `schema`.
     std::vector<io::Schema> layouts;
     Cube root;                      ///< the root node's cube
     glm::dvec3 min{0.0}, max{0.0};  ///< tight bounds of the points
     uint64_t points = 0;
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
-    std::string options;  ///< how the scans were read where not as usual: io::options_text
+    std::string options;  ///< how the scans were read where it differs from the default: io::options_text
 };
 
-/// What the keys and records of a node follow. A source is one part, or joins several: each with a root, a
-/// schema, a unit and a root cube of its own.
+/// The part of a source that a node belongs to; it defines how the node's key and records are read. A source
+/// is one part or joins several, each with its own root, schema, unit and root cube.
 struct SourcePart {
     const SourceHeader& header;  ///< in the part's own unit
     uint32_t index = 0;
-    double scale = 1.0;       ///< of the part's unit in the source's
-    uint32_t first_scan = 0;  ///< of header.scans among the source's
+    double scale = 1.0;       ///< the part's unit in the source's
+    uint32_t first_scan = 0;  ///< index of header.scans[0] among the source's scans
 };
 
-/// Anything that hands out octree nodes: a cache today, a growing build or a remote file later. Thread-safe.
-/// The directory is in memory (64 bytes a node or so); points are loaded node by node.
+/// Hands out octree nodes: a cache, a COPC file, a growing build, or several sources joined. Thread-safe. The
+/// directory is in memory (about 64 bytes a node); points are loaded node by node.
 class NodeSource {
  public:
     virtual ~NodeSource() = default;
     virtual const SourceHeader& header() const = 0;
-    /// Parents before children; a part's nodes stand together, its root first. May be empty. Areas are in the
-    /// source's unit.
+    /// Parents come before children; a part's nodes are contiguous, its root first. May be empty. Areas are
+    /// in the source's unit.
     virtual std::span<const NodeInfo> nodes() const = 0;
     virtual std::vector<uint32_t> roots() const {
         return nodes().empty() ? std::vector<uint32_t>{} : std::vector<uint32_t>{0};
     }
     virtual SourcePart part_of(uint32_t) const { return {header()}; }
     virtual uint32_t parts() const { return 1; }
-    /// In the source's unit.
+    /// The node's cube, in the source's unit.
     Cube cube(uint32_t node) const {
         const SourcePart part = part_of(node);
         const Cube own = part.header.root.of(nodes()[node].key);
         return {own.min * part.scale, own.size * part.scale};
     }
-    /// Of the nodes' records, bytes.
+    /// Bytes of the node's records.
     uint64_t record_bytes(uint32_t node) const {
         return uint64_t{nodes()[node].count} * part_of(node).header.schema.stride;
     }
-    /// What the directory takes of the memory.
+    /// Bytes of memory that the directory takes.
     virtual uint64_t directory_bytes() const { return nodes().size_bytes(); }
-    /// Loads and checks one node; blocking. Errors: unreadable, truncated, checksum.
+    /// Loads and checks one node; blocks. Errors: unreadable, truncated, checksum.
     virtual Result<NodeData> load(uint32_t node) const = 0;
 };
 

@@ -12,8 +12,8 @@
 
 namespace lucarne::octree::test {
 
-/// The nodes of an evenly scanned square, a quadtree of `levels` levels in the z = 0 layer of an octree:
-/// every node stands in its parent's lower half and has `count` points of its own. 16 bytes a point.
+/// The nodes of an evenly scanned square: a quadtree of `levels` levels in the z = 0 layer of an octree.
+/// Every node is in its parent's lower half and has `count` points of its own. 16 bytes a point.
 class PlaneSource : public NodeSource {
  public:
     PlaneSource(uint32_t levels, uint32_t count, double size) {
@@ -39,7 +39,7 @@ class PlaneSource : public NodeSource {
         for (NodeInfo& node : nodes_) {
             node.count = count;
             const double side = header_.root.of(node.key).size;
-            // Own points and the ancestors' on this square: count (1 + 1/4 + 1/16 + ...).
+            // The node's own points and the ancestors' in this square: count (1 + 1/4 + 1/16 + ...).
             double points = 0;
             for (uint32_t level = 0; level <= node.key.level; ++level)
                 points += count * std::pow(0.25, node.key.level - level);
@@ -54,7 +54,7 @@ class PlaneSource : public NodeSource {
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     std::vector<NodeInfo>& edit() { return nodes_; }
 
-    /// Every byte of a node is the low byte of its index. Waits while the gate is shut.
+    /// Every byte of a node is the low byte of its index. Loading waits while the gate is closed.
     Result<NodeData> load(uint32_t node) const override {
         std::unique_lock lock(mutex_);
         order_.push_back(node);
@@ -70,7 +70,7 @@ class PlaneSource : public NodeSource {
 
     void shut() { set_gate(false); }
     void open() { set_gate(true); }
-    /// Until `loads` of them wait at the gate.
+    /// Waits until `loads` loads wait at the gate.
     void await(size_t loads) const {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return waiting_ >= loads; });

@@ -12,7 +12,7 @@
 
 namespace lucarne::test {
 
-/// A scan whose i-th record is computed: nothing is held but one batch, so it can be of any size.
+/// A scan whose i-th record is computed. Only one batch is in memory, so the scan can be of any size.
 class ComputedSource final : public io::PointSource {
  public:
     using Fill = std::function<void(uint64_t index, std::byte* record)>;
@@ -28,7 +28,7 @@ class ComputedSource final : public io::PointSource {
     io::ScanInfo& info() { return info_; }
     uint64_t points() const { return points_; }
     Result<std::unique_ptr<io::PointReader>> open() const override { return std::make_unique<Reader>(*this); }
-    /// Never hands out more than this in a batch, whatever is asked for.
+    /// No batch has more points than this, whatever is requested.
     void limit_batches(size_t most) { most_ = most; }
     void make_seekable() { seekable_ = true; }
     bool seekable() const override { return seekable_; }
@@ -68,7 +68,7 @@ class ComputedSource final : public io::PointSource {
 
 using TempFolder = io::testing::TemporaryFolder;
 
-/// The first `bytes` of every record, sorted: equal for equal multisets.
+/// Returns the first `bytes` of every record, sorted: equal for equal multisets.
 inline std::vector<std::string> sorted_records(const io::PointSource& source, size_t bytes) {
     std::vector<std::string> all;
     auto reader = source.open();

@@ -10,18 +10,20 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr uint64_t kMaxChunkPoints = 1'000'000;  // larger chunks sort slower and share out worse
+// Larger chunks sort more slowly and distribute worse among threads.
+constexpr uint64_t kMaxChunkPoints = 1'000'000;
 constexpr uint64_t kMinMemory = uint64_t{16} << 20;
-/// What a thread that decodes LAZ holds (io/formats/las/laz/reader.cpp), and the share of the memory for all
-/// of them.
+/// Memory of a thread that decodes LAZ (io/formats/las/laz/reader.cpp); all of them together get at most
+/// 1/kReaderShare of the memory.
 constexpr uint64_t kReaderBytes = uint64_t{8} << 20, kReaderShare = 8;
-constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // count, its share of the sums, chunk number
-/// What building holds a point besides two copies of its record: sort keys twice, then code, place, area,
+constexpr uint64_t kBytesPerCell = 8 + 2 + 4;  // its count, its share of the sums, its chunk number
+/// Memory of the build per point besides two copies of its record: sort keys twice, then code, place, area,
 /// samples.
 constexpr uint64_t kWorkPerPoint = 48;
-/// The normals stage holds a few chunks at a time, a chunk's neighbours among them; building needs less.
+/// The normals stage holds about this many chunks at a time, including a chunk's neighbours. Building needs
+/// fewer.
 constexpr uint64_t kNormalChunks = 4;
-/// What sampling one node holds a candidate.
+/// Memory per candidate while a node is sampled.
 constexpr uint64_t kWorkPerCandidate = 48;
 
 }  // namespace
@@ -31,14 +33,15 @@ Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
         return bad_arguments("--memory", fmt::format("{} is too little", bytes_text(bytes)),
                              fmt::format("give at least {}", bytes_text(kMinMemory)));
     const uint64_t per_point = 2 * uint64_t{work.record} + kWorkPerPoint;
-    const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;  // eight samples of two leaves' points each
-    // Points that each of so many workers has room for. The assembly samples as well; a single worker takes
-    // turns with it.
+    // Eight samples with the points of two leaves each.
+    const uint64_t sampling = 16 * work.leaf * kWorkPerCandidate;
+    // Returns how many points fit for each of `workers` workers. The assembly samples as well; a single
+    // worker takes turns with it.
     const auto room = [&](unsigned workers) {
         const uint64_t share = bytes * 7 / 8, taken = sampling * (workers > 1 ? workers + 1 : 1);
         return share > taken ? (share - taken) / workers / per_point : 0;
     };
-    // Chunks must not depend on the number of threads: orientation is propagated chunk by chunk.
+    // Chunks must not depend on the number of threads, because orientation is propagated chunk by chunk.
     MemoryPlan plan{.workers = std::max(1u, work.threads)};
     plan.chunk_points = std::max<uint64_t>(
         work.leaf, std::min({room(1), bytes / (kNormalChunks * kNormalBytesPerPoint), kMaxChunkPoints}));
@@ -80,7 +83,7 @@ std::vector<Chunk> CountGrid::plan(uint64_t limit, size_t most) {
     }
     const uint64_t all = depth_ ? sums_[0][0] : counts_[0];
     std::vector<Chunk> chunks;
-    // Below the whole, any limit splits the cube, and the largest such limit into no more than 64 chunks: the
+    // Any limit below the total splits the cube. The largest such limit gives at most 64 chunks, because the
     // path down to the densest cell has seven neighbours a level.
     const uint64_t widest = limit < all ? all - 1 : limit;
     for (;; limit = std::min(2 * limit, widest)) {

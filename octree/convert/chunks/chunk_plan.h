@@ -12,25 +12,26 @@ namespace lucarne::octree {
 /// A cube of the octree whose points are built in memory at once.
 struct Chunk {
     NodeKey key;
-    uint64_t first = 0;  ///< its first point in the scratch file
+    uint64_t first = 0;  ///< index of its first point in the scratch file
     uint64_t count = 0;
-    /// Of its records as they were dealt out, `piece` bytes at a time, each seeded by the last.
+    /// Chained checksum of its records as they were written: `piece` bytes at a time, each seeded by the sum
+    /// before.
     uint64_t sum = 0;
     uint32_t piece = 0;
 };
 
-/// Where the points of one cell of kMaxLevel are more than a node or a chunk holds, they are divided into
-/// eight by their order: the first that the child in an octant gets; `octant` 8 is the end.
+/// Points of one cell of kMaxLevel that are too many for a node or a chunk are divided into eight by their
+/// order. Returns the index of the first point that goes to the child in `octant`; `octant` 8 is the end.
 inline uint64_t stacked_first(uint64_t count, uint32_t octant) {
     return count / 8 * octant + std::min<uint64_t>(count % 8, octant);
 }
 
-/// How a build shares out `--memory`.
+/// How a build divides its memory (`--memory`).
 struct MemoryPlan {
     struct Work {
         uint32_t record = 0;   ///< bytes of a record in the cache
         size_t leaf = 0;       ///< most points of a leaf
-        bool normals = false;  ///< normals or areas are estimated: that stage needs more at the least
+        bool normals = false;  ///< normals or areas are estimated; that stage needs more memory
         unsigned threads = 1;
     };
     /// Errors: too little memory for any work.
@@ -38,10 +39,10 @@ struct MemoryPlan {
 
     uint64_t chunk_points = 0;  ///< most points of a chunk
     unsigned workers = 1;       ///< chunks built at a time
-    uint64_t grid_bytes = 0;    ///< for counting
-    uint64_t buffer_bytes = 0;  ///< for dealing points out to chunks
-    uint64_t batch_bytes = 0;   ///< of points read at a time
-    unsigned readers = 1;       ///< threads that read an input; each holds some of it
+    uint64_t grid_bytes = 0;    ///< for the counting grid
+    uint64_t buffer_bytes = 0;  ///< for sorting points into chunks
+    uint64_t batch_bytes = 0;   ///< bytes of points read at a time
+    unsigned readers = 1;       ///< threads that read an input; each needs some memory
 };
 
 /// Counts the points of a cube in a regular grid of cells and joins sparse cells to chunks: cubes of the
@@ -49,13 +50,14 @@ struct MemoryPlan {
 /// section 3.)
 class CountGrid {
  public:
-    /// As fine as `bytes` and the number of points justify.
+    /// Makes the grid as fine as `bytes` and the number of points justify.
     CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes);
 
     void count(const Place& place, uint64_t points = 1) { counts_[cell(place)] += points; }
-    /// Chunks in Morton order, at most `most` of them (64 or more); `limit` points each where that allows it.
+    /// Returns chunks in Morton order, at most `most` of them (`most` is 64 or more). Each has at most
+    /// `limit` points, as far as `most` and the grid allow.
     std::vector<Chunk> plan(uint64_t limit, size_t most);
-    /// After plan: the index of the chunk that holds a place.
+    /// The index of the chunk that contains a place. Call plan() first.
     uint32_t chunk_of(const Place& place) const { return chunk_of_cell_[cell(place)]; }
 
  private:
@@ -66,10 +68,10 @@ class CountGrid {
               std::vector<Chunk>& chunks) const;
 
     NodeKey cube_;
-    uint32_t depth_ = 0;  ///< levels under the cube
+    uint32_t depth_ = 0;  ///< levels below the cube
     size_t mask_ = 0;
     std::vector<uint64_t> counts_;             ///< along the Morton curve
-    std::vector<std::vector<uint64_t>> sums_;  ///< of whole cubes, by depth; the last is counts_
+    std::vector<std::vector<uint64_t>> sums_;  ///< of whole cubes, by depth; the last level is counts_
     std::vector<uint32_t> chunk_of_cell_;
 };
 

@@ -9,7 +9,7 @@
 namespace lucarne::octree {
 namespace {
 
-/// Counting and dealing read the input twice; a file that somebody writes to meanwhile must not corrupt the
+/// Counting and distributing read the input twice. A file that is written to meanwhile must not corrupt the
 /// chunks.
 auto changed() {
     return rejected("inputs", "changed while they were read", "convert again when they are complete");
@@ -80,7 +80,7 @@ Result<ChunkStore> ChunkStore::restore(ScratchFile file, const io::Schema& schem
     store.chunks_ = reader.get_all<Chunk>();
     store.dealt_ = reader.get_all<Chunk>();
     store.end_ = reader.get<uint64_t>();
-    if (!reader.sound()) return failed("chunks", "were not written down whole");
+    if (!reader.sound()) return failed("chunks", "have an incomplete record");
     for (const auto& chunk : store.dealt_) LUCARNE_TRY(store.check(chunk));
     return store;
 }
@@ -102,7 +102,7 @@ Result<void> ChunkStore::check(const Chunk& chunk) const {
         LUCARNE_TRY(file_.read_at(begin + at, part));
         sum = chained_sum(sum, part);
     }
-    return sum == chunk.sum ? Result<void>{} : failed("chunks", "are not as they were left");
+    return sum == chunk.sum ? Result<void>{} : failed("chunks", "have changed since they were written");
 }
 
 Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory) {
@@ -159,7 +159,7 @@ Result<void> ChunkStore::fill(const Pass& pass, std::span<const NodeKey> cubes, 
     return refine(std::move(chunks), memory);
 }
 
-/// One level of distribution: the points of `cube` become chunks at the end of the scratch file.
+/// Distributes the points of `cube` once: they become chunks at the end of the scratch file.
 Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cube, uint64_t points,
                                              const MemoryPlan& memory) {
     const uint32_t stride = schema_.stride;
@@ -188,7 +188,7 @@ Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cu
     return chunks;
 }
 
-/// Divides the points of one place, as they lie.
+/// Divides the points of one place by their order, without moving them.
 void ChunkStore::stack(const Chunk& chunk, uint64_t limit) {
     if (chunk.count <= limit || chunk.key.level == kMostLevel) {
         chunks_.push_back(chunk);
@@ -201,7 +201,7 @@ void ChunkStore::stack(const Chunk& chunk, uint64_t limit) {
     }
 }
 
-/// Splits chunks that are still too large, as deep as the Morton code goes and beyond.
+/// Splits chunks that are still too large, down to the end of the Morton code and beyond.
 Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& memory) {
     for (const Chunk& chunk : coarse) {
         if (chunk.count <= memory.chunk_points || chunk.key.level == kMaxLevel) {
@@ -211,7 +211,7 @@ Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& mem
         }
         LUCARNE_ASSIGN(auto finer, split(pass_over(chunk, memory), chunk.key, chunk.count, memory));
         file_.discard(chunk.first * schema_.stride, chunk.count * schema_.stride);
-        LUCARNE_TRY(refine(std::move(finer), memory));  // a level deeper each time, so 21 deep at most
+        LUCARNE_TRY(refine(std::move(finer), memory));  // a level deeper each time, so at most 21 deep
     }
     return {};
 }

@@ -7,7 +7,7 @@
 
 namespace lucarne::octree {
 
-/// Puts numbers one behind the other, as they lie in memory: for journals that only this machine reads.
+/// Appends numbers as they are in memory: for journals that only this machine reads.
 class ByteWriter {
  public:
     template <class T>
@@ -28,7 +28,7 @@ class ByteWriter {
     std::vector<std::byte> bytes_;
 };
 
-/// Reads them back. What is not there comes as zeros and clears `sound()`.
+/// Reads the numbers back. Missing bytes read as zeros and make `sound()` false.
 class ByteReader {
  public:
     explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

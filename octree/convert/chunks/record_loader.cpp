@@ -5,7 +5,7 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr double kFace = 1;  ///< areas count in faces of the root cube before it was doubled
+constexpr double kFace = 1;  ///< areas are in faces of the root cube before it was doubled
 
 }  // namespace
 

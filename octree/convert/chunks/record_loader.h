@@ -6,15 +6,15 @@
 
 namespace lucarne::octree {
 
-/// The input's schema with what is estimated: areas and, if `normals`, normals.
+/// Adds the estimated attributes to the input's schema: areas and, if `normals`, normals.
 io::Schema with_estimates(io::Schema schema, bool normals);
 
-/// Hands out the records of chunks as the cache will hold them: the input's, with what was estimated behind
-/// them; in an update, whose chunks have the cache's whole schema, in place: areas anew, normals for points
-/// that have none yet.
+/// Loads the records of chunks as the cache will store them: the input's, followed by the estimates. In an
+/// update the chunks already have the cache's whole schema; then the estimates are written in place: areas of
+/// all points, normals of points that have none yet.
 class RecordLoader {
  public:
-    /// `surface` is null where neither normals nor areas were estimated; `normals`: whether its normals are
+    /// `surface` is null if neither normals nor areas were estimated. `normals`: whether its normals are
     /// wanted.
     RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals);
 
@@ -24,9 +24,9 @@ class RecordLoader {
     Result<std::vector<std::byte>> load(size_t chunk, uint64_t first, uint64_t count) const;
 
     Place place(const std::byte* record) const { return root().place(io::position_of(schema_, record)); }
-    /// The point's surface share in faces of the root cube before it was doubled; 0 where unknown.
+    /// The point's share of the surface, in faces of the root cube before it was doubled; 0 if unknown.
     float area(const std::byte* record) const;
-    /// Where estimates stand; null where nothing was estimated.
+    /// Where the records hold the estimates; null if nothing was estimated.
     const io::Attribute* estimated_normal() const { return normal_; }
     const io::Attribute* estimated_area() const { return area_; }
 

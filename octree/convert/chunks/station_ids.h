@@ -9,11 +9,11 @@
 
 namespace lucarne::octree {
 
-/// Which of the inputs' stations saw a point: by its point_source_id; the only station of an input saw all of
-/// its points.
+/// Tells which of the inputs' stations saw a point. The point's point_source_id decides; the only station of
+/// an input saw all of its points.
 class StationIds {
  public:
-    /// `schema` is that of the records and outlives this.
+    /// `schema` is that of the records and outlives this object.
     StationIds(const std::vector<io::ScanInfo>& scans, const io::Schema& schema) : by_id_(scans.size()) {
         for (size_t scan = 0; scan < scans.size(); ++scan)
             for (const auto& station : scans[scan].stations) {
@@ -25,14 +25,14 @@ class StationIds {
     }
 
     const std::vector<glm::dvec3>& stations() const { return stations_; }
-    /// The index into stations(), -1 where unknown.
+    /// Returns the index into stations(), -1 if unknown.
     int32_t of(const std::byte* record) const {
         const size_t scan = scan_ ? io::load<uint16_t>(record + scan_->offset) : 0;
         if (scan >= by_id_.size()) return -1;
         const auto& ids = by_id_[scan];
         if (ids.size() == 1) return ids.begin()->second;
         if (ids.size() < 2 || !source_) return -1;
-        // Some files hold it as a float, which may be no whole number, too large or none.
+        // Some files store the id as a float, which may be fractional, too large or NaN.
         const double id = io::scalar_at(source_->type, record + source_->offset);
         if (!(id >= 0 && id <= std::numeric_limits<uint32_t>::max())) return -1;
         const auto found = ids.find(static_cast<uint32_t>(id));

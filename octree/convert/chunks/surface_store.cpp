@@ -14,12 +14,13 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint64_t kPieceBytes = uint64_t{1} << 18;  ///< of records read at a time
-constexpr float kAreaBins = 4;                       ///< an octave
-/// A few points that hang in the air together have no plane, and a share that is that of the empty space
-/// around them: no picture wants it larger than the usual surfel.
+constexpr float kAreaBins = 4;                       ///< bins per octave
+/// Largest area of a point without a plane, as a share of the median area. A few points in the air together
+/// have no plane, and their estimated area is that of the empty space around them. They must not be drawn
+/// larger than usual surfels.
 constexpr float kMostStray = 0.5f;
 
-/// The chunks and stations of a build as the estimator sees them.
+/// Shows the chunks and stations of a build to the estimator.
 class Access final : public ChunkAccess {
  public:
     Access(const ChunkStore& store, const std::vector<io::ScanInfo>& scans)
@@ -28,7 +29,8 @@ class Access final : public ChunkAccess {
     const std::vector<glm::dvec3>& all_stations() const { return ids_.stations(); }
 
     size_t chunk_count() const override { return store_.chunks().size(); }
-    /// What one place holds by the chunk has no plane that could be seen, and would be everybody's neighbour.
+    /// A chunk whose points are all at one place appears empty: it has no visible plane, and its points would
+    /// be neighbours of everything around.
     uint64_t point_count(size_t chunk) const override {
         const Chunk& found = store_.chunks()[chunk];
         return found.key.level > kMaxLevel ? 0 : found.count;
@@ -57,7 +59,7 @@ class Access final : public ChunkAccess {
     }
 
  private:
-    /// In pieces: records may be many times as wide as what is wanted of them.
+    /// Reads in pieces, because records may be many times as wide as the fields that are used.
     template <typename Use>
     Result<void> for_each_record(size_t chunk, const Use& use) const {
         const size_t stride = store_.schema().stride;
@@ -110,7 +112,8 @@ void SurfaceStore::limit_strays() {
     for (const auto& [bin, count] : areas_) {
         below += count;
         if (2 * below < known) continue;
-        most_stray_area_ = kMostStray * std::exp2(static_cast<float>(bin) / kAreaBins);  // of the median
+        // The limit is kMostStray of the median.
+        most_stray_area_ = kMostStray * std::exp2(static_cast<float>(bin) / kAreaBins);
         return;
     }
 }
@@ -148,12 +151,12 @@ Result<SurfaceStore> SurfaceStore::restore(const ChunkStore& chunks, ScratchFile
     for (uint64_t i = 0; i < signed_chunks && reader.sound(); ++i)
         store.signs_.push_back(reader.get_all<int8_t>());
     if (!reader.sound() || sums.size() != store.sums_.size())
-        return failed("normals", "were not written down whole");
+        return failed("normals", "have an incomplete record");
     store.sums_ = sums;
     for (size_t chunk = 0; chunk < sums.size(); ++chunk) {
         LUCARNE_ASSIGN(const auto points, store.read(chunk, 0, store.count(chunk)));
         if (format::checksum(std::as_bytes(std::span(points))) != sums[chunk])
-            return failed("normals", "are not as they were left");
+            return failed("normals", "have changed since they were written");
     }
     return store;
 }

@@ -8,7 +8,7 @@
 
 namespace lucarne::octree {
 
-/// What the normals stage found out about each point, in a scratch file beside the chunks.
+/// Stores what the normals stage estimates for each point, in a scratch file beside the chunks.
 class SurfaceStore {
  public:
     struct Point {
@@ -17,26 +17,27 @@ class SurfaceStore {
         uint32_t component = 0;
     };
     struct Settings {
-        bool normals = true;  ///< false: the input's are kept, only areas are wanted
+        bool normals = true;  ///< false: the input's are kept, only areas are estimated
         uint32_t neighbours = 16;
         NeighbourSearch search = NeighbourSearch::leaf;
         unsigned threads = 0;
         uint64_t memory = 0;
-        std::function<Result<void>(uint64_t points)> step;  ///< told of points done; an error of its ends it
+        /// Called with numbers of finished points; its error ends the stage.
+        std::function<Result<void>(uint64_t points)> step;
     };
 
     /// Runs the estimator over all chunks. `scans` has the stations, one entry an input.
     static Result<SurfaceStore> estimate(const ChunkStore& chunks, const std::vector<io::ScanInfo>& scans,
                                          ScratchFile file, const Settings& settings);
-    /// What `save` wrote down about a store whose scratch file is still there. Errors: a file that does not
-    /// hold what was found.
+    /// Restores a store whose scratch file still exists from the record that `save` made. Errors: the file's
+    /// contents have changed.
     static Result<SurfaceStore> restore(const ChunkStore& chunks, ScratchFile file,
                                         std::span<const std::byte> record);
     std::vector<std::byte> save() const;
-    /// Turns the normals of one orientation component of a chunk around.
+    /// Flips the normals of one orientation component of a chunk.
     void turn(size_t chunk, uint32_t component);
 
-    /// Points [first, first + count) of a chunk, normals turned the way they shall point.
+    /// Returns the points [first, first + count) of a chunk, with their normals oriented.
     Result<std::vector<Point>> load(size_t chunk, uint64_t first, uint64_t count) const;
 
  private:
@@ -52,13 +53,14 @@ class SurfaceStore {
     void limit_strays();
 
     ScratchFile file_;
-    std::vector<uint64_t> first_;  ///< each chunk's first point
+    std::vector<uint64_t> first_;  ///< index of each chunk's first point
     uint64_t end_ = 0;
     std::vector<uint64_t> sums_;  ///< checksums of the chunks' parts of the file
     OrientationSigns signs_;
-    /// Points by area, kAreaBins an octave: the whole cloud's, so that no limit depends on the chunks.
+    /// Histogram of areas, kAreaBins bins an octave. It covers the whole cloud, so that the limit does not
+    /// depend on the chunks.
     std::map<int, uint64_t> areas_;
-    float most_stray_area_ = 0;  ///< of a point without a plane
+    float most_stray_area_ = 0;  ///< largest area of a point without a plane; 0: no limit
 };
 
 }  // namespace lucarne::octree

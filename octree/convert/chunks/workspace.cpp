@@ -21,10 +21,11 @@ namespace fs = std::filesystem;
 constexpr const char* kJournal = "journal";
 constexpr const char* kSuffix = ".lucarne-work";
 constexpr const char* kIdentity = "identity";
-/// All that a work folder holds; nothing else in it is touched.
+/// All files of a work folder; nothing else in it is touched.
 const std::array<std::string, 3> kFiles = {kJournal, "points", "normals"};
 constexpr const char* kBusy = "another conversion to this cache is running";
-/// A record: its stage's name padded with zeros, the bytes that follow, and the checksum of name and bytes.
+/// A record: its stage's name padded with zeros, the number of bytes, the checksum of the whole record, and
+/// the bytes.
 constexpr size_t kNameBytes = 16, kHeadBytes = kNameBytes + 16;
 
 std::vector<std::byte> encode(const std::string& stage, std::span<const std::byte> bytes) {
@@ -32,7 +33,7 @@ std::vector<std::byte> encode(const std::string& stage, std::span<const std::byt
     std::memcpy(record.data(), stage.data(), std::min(stage.size(), kNameBytes));
     io::store(&record[kNameBytes], uint64_t{bytes.size()});
     std::copy(bytes.begin(), bytes.end(), record.begin() + kHeadBytes);
-    const uint64_t sum = format::checksum(record);  // its own place holds zeros
+    const uint64_t sum = format::checksum(record);  // the checksum's own bytes are still zero
     io::store(&record[kNameBytes + 8], sum);
     return record;
 }
@@ -49,7 +50,7 @@ std::string text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The first line in which two identities differ.
+/// Returns the first line in which two identities differ.
 std::string difference(const std::string& before, const std::string& now) {
     const auto at = std::mismatch(before.begin(), before.end(), now.begin(), now.end());
     const auto line = [](const std::string& text, auto where) {
@@ -59,13 +60,13 @@ std::string difference(const std::string& before, const std::string& now) {
     return fmt::format("'{}' then, '{}' now", line(before, at.first), line(now, at.second));
 }
 
-/// Interrupted builds of other outputs are somebody's to resume: they are only told of.
+/// Logs interrupted builds of other outputs. They are left alone: their owners may resume them.
 void report_others(const fs::path& temp_folder, const fs::path& own) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(temp_folder, error)) {
         if (!entry.path().filename().string().ends_with(kSuffix) || entry.path() == own) continue;
         if (!UpdateFile::open_private(entry.path() / kJournal, false, kBusy))
-            continue;  // just made, at work, or another user's
+            continue;  // just made, in use, or another user's
         log::warn("{} holds {} of an interrupted conversion; resume that one with --resume, or remove it",
                   entry.path().string(), bytes_text(folder_bytes(entry.path())));
     }
@@ -82,7 +83,7 @@ Result<Workspace> Workspace::open(const fs::path& temp_folder, const fs::path& o
     const std::string whole = fs::absolute(output, error).lexically_normal().string();
     const auto hash = format::checksum(std::as_bytes(std::span(whole)));
     const fs::path folder = temp_folder / fmt::format("{:016x}{}", hash, kSuffix);
-    LUCARNE_TRY(ScratchFile::create(temp_folder));  // says what is wrong with the folder above
+    LUCARNE_TRY(ScratchFile::create(temp_folder));  // reports errors of the parent folder
     if (const auto own = make_private_folder(folder); !own) {
         log::warn("{}; this conversion cannot be resumed", own.error().line());
         return work;
@@ -110,11 +111,11 @@ Workspace::~Workspace() {
     if (keep_ && records_.size() > 1)
         log::warn("{} keeps {} for --resume", folder_.string(), bytes_text(folder_bytes(folder_)));
     else
-        remove_private_folder(folder_, kFiles);  // what cannot be removed is reported by the next build
+        remove_private_folder(folder_, kFiles);  // the next build reports what cannot be removed
     forget_interrupt(folder_);
 }
 
-/// An interrupt keeps what a resumed build would go on from, and removes what is of no use.
+/// Registers what an interrupt does: keeps the folder if a resumed build can use it, else removes it.
 void Workspace::tell_at_interrupt() const {
     if (records_.size() < 2) {
         at_interrupt(folder_, [folder = folder_] {
@@ -149,10 +150,11 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
             log::warn("the interrupted conversion was another one, starting from the beginning: {}",
                       difference(before, identity));
         if (!keep_)
-            log::warn("removed {} that an interrupted conversion left; --resume would have gone on from it",
+            log::warn("removed {} that an interrupted conversion left; --resume would have used it",
                       bytes_text(folder_bytes(folder_)));
     }
-    remove_private_files(folder_, std::span(kFiles).subspan(1));  // what stays is emptied when it is opened
+    // Files that cannot be removed are emptied when they are opened.
+    remove_private_files(folder_, std::span(kFiles).subspan(1));
     records_.clear();
     LUCARNE_TRY(journal_->truncate(0));
     tell_at_interrupt();
@@ -160,7 +162,7 @@ Result<void> Workspace::start(const std::string& identity, Resume resume) {
     return append({kIdentity, {bytes.begin(), bytes.end()}});
 }
 
-/// The records up to the first that is not whole.
+/// Returns the records up to the first damaged one.
 Result<std::vector<Workspace::Record>> Workspace::read_journal() const {
     std::vector<Record> records;
     LUCARNE_ASSIGN(const uint64_t size, journal_->size());

@@ -11,39 +11,39 @@
 
 namespace lucarne::octree {
 
-/// What becomes of a build's scratch files when it is interrupted.
+/// What happens to a build's scratch files when it is interrupted.
 enum class Resume {
     never,  ///< they are nameless: nothing is left, however the process ends
     later,  ///< a signal or a power cut leaves them for `go_on`; any other failure removes them
-    go_on   ///< goes on from the last stage that an interrupted build finished, if there was one
+    go_on   ///< continues after the last stage that an interrupted build finished, if there was one
 };
 
 /// The scratch files of a build and the journal of its finished stages, in a folder of their own beside the
-/// output or in the temporary folder. Others can guess its name, so it is used only where it is private
-/// (io/files/private_file.h); else the scratch files are nameless, with a warning. Nothing in it is synced:
-/// every record of the journal has a checksum, and has those of the scratch files it speaks of, so that what
-/// a power cut took is noticed and done again.
+/// output or in the temporary folder. The folder's name can be guessed, so it is used only if it is private
+/// (io/files/private_file.h); otherwise the scratch files are nameless, with a warning. Nothing in the folder
+/// is synced. Each record of the journal has a checksum and contains those of the scratch files that it
+/// refers to, so a stage whose data a power cut destroyed is detected and run again.
 class Workspace {
  public:
-    /// `identity` says what is built from what with which options; another build's leftovers are not used.
-    /// Errors: somebody else is building `output`; no folder can be made.
+    /// `identity` says what is built from which inputs with which options; leftovers of another build are not
+    /// used. Errors: another process is building `output`; no folder can be made.
     static Result<Workspace> open(const std::filesystem::path& temp_folder,
                                   const std::filesystem::path& output, const std::string& identity,
                                   Resume resume);
     Workspace(Workspace&& other) noexcept { *this = std::move(other); }
     Workspace& operator=(Workspace&& other) noexcept;
-    /// Removes the folder, unless `go_on` was asked for, a stage was finished, and the output was not.
+    /// Removes the folder, unless `go_on` was given, a stage was finished, and the output was not.
     ~Workspace();
 
-    /// `kept`: with what an interrupted build wrote to it.
+    /// Opens a scratch file. `kept`: with what an interrupted build wrote to it.
     Result<ScratchFile> scratch(const std::string& name, bool kept) const;
-    /// Whether what is written may be wanted by a resumed build.
+    /// Whether a resumed build may want the scratch files.
     bool resumable() const { return journal_.has_value(); }
-    /// What was written down about a stage; null where it was not finished.
+    /// Returns the record of a finished stage, null if it was not finished.
     const std::vector<std::byte>* finished(const std::string& stage) const;
-    /// Writes a stage down; it and those after it are forgotten first.
+    /// Records a finished stage. Drops earlier records of it and of the stages after it.
     Result<void> finish(const std::string& stage, std::vector<std::byte> record);
-    /// The output is there: nothing needs to be resumed any more.
+    /// Call when the output is complete: nothing needs to be resumed any more.
     void done() { keep_ = false; }
 
  private:
@@ -58,7 +58,7 @@ class Workspace {
     Result<void> append(Record record);
     void tell_at_interrupt() const;
 
-    std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty where nothing has a name
+    std::filesystem::path temp_folder_, folder_;  ///< `folder_` is empty if the scratch files are nameless
     std::optional<UpdateFile> journal_;
     std::vector<Record> records_;
     uint64_t end_ = 0;

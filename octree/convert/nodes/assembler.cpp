@@ -29,7 +29,7 @@ Assembler::Assembler(CacheWriter& writer, const RecordLoader& loader, const Node
 
 Result<void> Assembler::add(Subtree&& tree, const NodeKey* next) {
     {
-        Subtree done = std::move(tree);  // gone before the sampling above it starts
+        Subtree done = std::move(tree);  // freed before the sampling above it starts
         subtree_encode_seconds_ += done.encode_seconds;
         LUCARNE_ASSIGN(const uint64_t base, writer_.append(done.payload));
         for (auto& entry : done.entries) {
@@ -68,7 +68,7 @@ Result<std::vector<std::byte>> Assembler::sample_of(const Waiting& waiting) cons
     return records;
 }
 
-/// The last `children` of the stack become their parent.
+/// Replaces the last `children` nodes of the stack by their parent.
 Result<void> Assembler::join(size_t children) {
     const std::vector<Waiting> family(stack_.end() - static_cast<std::ptrdiff_t>(children), stack_.end());
     sampler_.start(family[0].node.key.parent());
@@ -110,7 +110,7 @@ Result<void> Assembler::emit(size_t child, const std::vector<std::byte>& sample)
     emitter_.emit(
         sampler_, child, [&](uint32_t i) { return &sample[size_t{i} * stride_]; }, payload, entries);
     LUCARNE_ASSIGN(const uint64_t base, writer_.append(payload));
-    for (auto& entry : entries) {  // one, or none where the parent took every point
+    for (auto& entry : entries) {  // one, or none if the parent took every point
         entry.payload_offset = base;
         LUCARNE_TRY(writer_.add(entry));
     }

@@ -8,25 +8,25 @@
 
 namespace lucarne::octree {
 
-/// Puts subtrees together, in Morton order: writes their nodes, and as soon as all children of a node are
-/// there samples it from them. What waits for its parent lies in a scratch file, so that memory holds one
-/// family at a time. The file comes out the same wherever the chunks' borders were.
+/// Assembles subtrees, in Morton order: writes their nodes, and samples a node as soon as all of its children
+/// are there. Nodes that wait for their parent are in a scratch file, so that memory holds only one parent
+/// with its children at a time. The file is the same wherever the borders of the chunks are.
 class Assembler {
  public:
     static Result<Assembler> create(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits,
                                     const std::filesystem::path& temp_folder,
                                     BuildListener* listener = nullptr);
 
-    /// Takes the next subtree in Morton order; `next` is the root of the one after it, null at the end.
+    /// Takes the next subtree in Morton order. `next` is the root of the subtree after it, null at the end.
     Result<void> add(Subtree&& tree, const NodeKey* next);
 
-    /// CPU time spent on compressing, in the subtrees taken as well.
+    /// CPU time spent on compression, including that of the subtrees.
     double encode_seconds() const { return subtree_encode_seconds_ + emitter_.encode_seconds(); }
 
  private:
     struct Waiting {
         Pending node;
-        uint64_t first = 0;  ///< its sample's first record in the scratch file
+        uint64_t first = 0;  ///< index of its sample's first record in the scratch file
         uint32_t count = 0;
     };
     Assembler(CacheWriter& writer, const RecordLoader& loader, const NodeLimits& limits, ScratchFile samples,
@@ -46,7 +46,7 @@ class Assembler {
     ScratchFile samples_;
     BuildListener* listener_;
     std::vector<Waiting> stack_;
-    uint64_t end_ = 0;  ///< records in the scratch file; those behind the top of the stack are free again
+    uint64_t end_ = 0;  ///< records in the scratch file; those after the top of the stack are free
     std::vector<uint32_t> order_;
 };
 

@@ -11,25 +11,25 @@
 
 namespace lucarne::octree {
 
-/// Is told how a build goes on, so that what is finished can be shown. Calls come one at a time but for
-/// advanced() and stopped(), which any thread makes.
+/// Receives the progress of a build, so that finished parts can be shown. Calls come one at a time, except
+/// advanced() and stopped(), which any thread may call.
 class BuildListener {
  public:
     virtual ~BuildListener() = default;
-    /// All points have been seen: bounds, root cube and count are those of the cache. The schema is still the
-    /// inputs'.
+    /// All points have been read: bounds, root cube and count are those of the cache. The schema is still
+    /// that of the inputs.
     virtual void scanned(const SourceHeader& header) = 0;
-    /// Nodes come from here on, with records of this schema.
+    /// Nodes follow from here on, with records of this schema.
     virtual void building(const io::Schema& schema) = 0;
-    /// Nodes that are in the file as they will stay, children before parents, along the Morton curve.
+    /// These nodes are in the file in their final form: children before parents, along the Morton curve.
     virtual void settled(std::span<const format::Entry> entries) = 0;
-    /// A node whose descendants are all settled, and the points it shows until its parent has taken some of
-    /// them: whole records in Morton order. Takes the place of its children, if those were shown before.
+    /// A node whose descendants are all final, and the points it shows until its parent has taken some of
+    /// them: whole records in Morton order. It replaces its children, if those were shown before.
     virtual void pending(const Pending& node, std::span<const std::byte> sample,
                          const CacheWriter& writer) = 0;
-    /// `done` of `total` points of a stage.
+    /// `done` of `total` points of a stage are finished.
     virtual void advanced(std::string_view stage, uint64_t done, uint64_t total) = 0;
-    /// True makes the build end with an error at its next step; nothing is left behind.
+    /// Returning true ends the build with an error at its next step; nothing is left behind.
     virtual bool stopped() const = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace lucarne::octree {
 
-/// Turns settled children into payloads and directory entries.
+/// Converts settled children to payloads and directory entries.
 class Emitter {
  public:
     explicit Emitter(const RecordLoader& loader)
@@ -17,17 +17,17 @@ class Emitter {
           rounding_(loader.estimated_normal(), loader.estimated_area(), stride_),
           encoder_(loader.schema()) {}
 
-    /// Appends the settled child's payload and its entry, whose offset counts from the start of `payload`.
-    /// `record(i)` is the i-th of its sample.
+    /// Appends the settled child's payload and its entry, whose offset is relative to the start of `payload`.
+    /// `record(i)` returns the i-th record of the child's sample.
     template <class Record>
     void emit(NodeSampler& sampler, size_t child, const Record& record, std::vector<std::byte>& payload,
               std::vector<format::Entry>& entries) {
         format::Entry entry = sampler.settle(child, order_);
-        if (entry.subtree_count == 0) return;  // its parent took everything
+        if (entry.subtree_count == 0) return;  // its parent took every point
         entry.payload_offset = payload.size();
         sampler.kept(child, curve_, passes_);
         collect(curve_, record);
-        if (!compress(entry, payload)) {  // some few records: as they are, whole
+        if (!compress(entry, payload)) {  // compression gains nothing: store the records raw
             collect(order_, record);
             payload.insert(payload.end(), records_.begin(), records_.end());
         }
@@ -36,7 +36,7 @@ class Emitter {
         entries.push_back(entry);
     }
 
-    /// CPU time spent on rounding and compressing so far.
+    /// CPU time spent on rounding and compression so far.
     double encode_seconds() const { return seconds_; }
 
  private:
@@ -49,8 +49,8 @@ class Emitter {
             to += stride_;
         }
     }
-    /// Rounds the records' surface estimates and appends them compressed; false, and nothing is appended,
-    /// where that gains nothing.
+    /// Rounds the records' surface estimates and appends the records compressed. Returns false, and appends
+    /// nothing, if compression gains nothing.
     bool compress(format::Entry& entry, std::vector<std::byte>& payload);
 
     uint32_t stride_;

@@ -11,8 +11,8 @@
 
 namespace lucarne::octree {
 
-/// Makes `count` pieces side by side, at most `most` at a time, and hands them on in their order:
-/// make(i) gives a Result, take(i, its value) returns Result<void>. Stops at the first failure.
+/// Makes `count` pieces in parallel, at most `most` at a time, and passes them on in order. make(i) returns a
+/// Result; take(i, its value) returns Result<void>. Stops at the first failure.
 template <class Make, class Take>
 Result<void> in_order(size_t count, unsigned most, const Make& make, const Take& take) {
     using Piece = typename decltype(make(size_t{}))::value_type;

@@ -8,7 +8,7 @@
 namespace lucarne::octree {
 namespace {
 
-/// One chunk in memory, its points sorted along the Morton curve.
+/// Builds one chunk in memory, its points sorted along the Morton curve.
 class Builder {
  public:
     Builder(const RecordLoader& loader, const NodeLimits& limits)
@@ -65,7 +65,7 @@ Result<void> Builder::load(size_t index, uint64_t count) {
     return {};
 }
 
-/// Bottom up: a leaf shows its points, an inner node a sample of what its children show.
+/// Builds bottom up: a leaf shows its points, an inner node a sample of what its children show.
 Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::vector<uint32_t>& sample) {
     if (last - first <= limits_.leaf || key.level == kMostLevel) {
         sample.resize(last - first);
@@ -130,8 +130,7 @@ double surface_of(std::span<const float> areas, std::span<const uint64_t> codes,
         if (area > 0) sum += area, ++known;
     const auto count = static_cast<double>(areas.size());
     if (known) return sum * count / static_cast<double>(known);
-    uint32_t depth =
-        std::min(level + 4, kMaxLevel);  // a lonely point stands for a sixteenth of its cube's width
+    uint32_t depth = std::min(level + 4, kMaxLevel);  // a single point counts as 1/16 of its cube's width
     const auto cells_at = [&](uint32_t d) {
         const uint32_t shift = 3 * (kMaxLevel - d);
         size_t cells = 1;

@@ -9,7 +9,7 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kFewest = 64;  ///< neighbours from which a median is worth something
+constexpr size_t kFewest = 64;  ///< fewer differences have no meaningful median
 
 }  // namespace
 

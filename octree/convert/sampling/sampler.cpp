@@ -11,7 +11,8 @@ namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr float kFree = std::numeric_limits<float>::infinity();
-/// From one pass to the next. The number of points that fit grows by the inverse square, 1.56.
+/// Ratio of the radius of a pass to that of the previous pass. The number of points that fit grows by the
+/// inverse square, 1.56.
 constexpr float kRadiusStep = 0.8f;
 
 }  // namespace
@@ -34,11 +35,11 @@ void Sampler::add(const Place& place) {
 
 void Sampler::reset_grid(float radius) {
     radius2_ = radius * radius;
-    cells_ = 1 / (2 * radius);  // cells of two radii: what can conflict lies in the nearest 2 x 2 x 2
+    cells_ = 1 / (2 * radius);  // a cell is two radii wide: conflicts are in the nearest 2 x 2 x 2 cells
     std::fill(heads_.begin(), heads_.end(), kNone);
 }
 
-/// Hashed cells: two cells in one bucket cost a few more distances and change nothing else.
+/// Hashes a cell. Two cells in one bucket cost a few more distances and change nothing else.
 inline size_t Sampler::bucket(int32_t x, int32_t y, int32_t z) const {
     return (static_cast<uint32_t>(x) + static_cast<uint32_t>(y) * 0x9e3779b1u +
             static_cast<uint32_t>(z) * 0x85ebca77u) &
@@ -54,8 +55,8 @@ inline void Sampler::insert(uint32_t index) {
 }
 
 inline float Sampler::conflict_around(const Point& p) const {
-    // Shifted by half a cell and cut: the lower of the two nearest cells of each axis, from -1 (+1: no
-    // negative cut).
+    // Finds the lower of the two nearest cells of each axis, at least -1. Truncates before subtracting 1,
+    // because truncation rounds negative numbers up.
     const auto lower = [this](float v) { return static_cast<int32_t>(v * cells_ + 0.5f) - 1; };
     const int32_t x = lower(p.x), y = lower(p.y), z = lower(p.z);
     for (int32_t corner = 0; corner < 8; ++corner)
@@ -98,7 +99,7 @@ void Sampler::run(float radius, size_t most) {
     reset_grid(radius);
     take(waiting_, waiting_, 0);
     const bool thinning = taken_.size() > most;
-    while (taken_.size() > most) {  // a volume instead of a surface, or many layers: a wider radius
+    while (taken_.size() > most) {  // a volume instead of a surface, or many layers: widens the radius
         const auto excess = static_cast<float>(taken_.size()) / static_cast<float>(most);
         radius *= std::max(1.1f, std::min(std::sqrt(excess), 1.15f * std::cbrt(excess)));
         thinned_.swap(taken_);
@@ -112,7 +113,7 @@ void Sampler::run(float radius, size_t most) {
         std::inplace_merge(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(before),
                            waiting_.end());
     }
-    if (thinning) blocked_.assign(count, kFree);  // who blocked them may have been taken out again
+    if (thinning) blocked_.assign(count, kFree);  // the points that blocked them may have been removed
     for (uint8_t pass = 1; pass < kLastPass && !waiting_.empty(); ++pass) {
         radius *= kRadiusStep;
         reset_grid(radius);

@@ -13,7 +13,7 @@
 namespace lucarne::octree {
 namespace {
 
-/// What of an input is not among the points that were handed to `visit`.
+/// The contents of an input that are not among the points passed to `visit`.
 struct LeftOut {
     uint64_t dropped = 0;
     io::Losses losses;
@@ -34,7 +34,7 @@ Result<LeftOut> read_input(const Unifier& inputs, size_t input, uint64_t batch_b
     }
 }
 
-/// The least edge of a root cube: places in it are counted in 2^32ths, whose inverse is an ordinary double.
+/// The least edge of a root cube. Places in it are counted in 2^32ths, whose inverse must be a normal double.
 constexpr double kLeastRoot = 1e-290;
 
 void put_text(ByteWriter& writer, const std::string& text) {
@@ -51,10 +51,10 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max) {
     const glm::dvec3 extent = max - min;
     double size = std::max({extent.x, extent.y, extent.z});
     if (!(size < 1e300))
-        return rejected("points", "their coordinates span more than 1e300 units", "remove the stray ones");
-    if (size <= 0) size = 1;  // one place only
+        return rejected("points", "their coordinates span more than 1e300 units", "remove the outliers");
+    if (size <= 0) size = 1;  // all points are at one place
     size = std::max(size, kLeastRoot);
-    // A hair wider, so that the farthest point is inside and not on the border.
+    // Slightly wider, so that the farthest point is inside and not on the border.
     return Cube{min, size * (1 + 1e-9)};
 }
 
@@ -97,7 +97,7 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
         }
         facts.inputs.push_back(std::move(input));
     }
-    if (!reader.sound()) return failed("scan", "was not written down whole");
+    if (!reader.sound()) return failed("scan", "has an incomplete record");
     return facts;
 }
 

@@ -6,25 +6,25 @@
 
 namespace lucarne::octree {
 
-/// What one pass over the inputs tells.
+/// The results of one pass over the inputs.
 struct ScanFacts {
     uint64_t points = 0, dropped = 0;
     glm::dvec3 min{0.0}, max{0.0};
-    Cube root;  ///< the smallest cube at `min` that holds every point
+    Cube root;  ///< the smallest cube at `min` that contains every point
     std::vector<io::Contents> inputs;
 
     std::vector<std::byte> save() const;
     static Result<ScanFacts> restore(std::span<const std::byte> record);
 };
 
-/// The smallest cube at `min` that holds a box. Errors: coordinates too far apart for any cube.
+/// Returns the smallest cube at `min` that contains a box. Errors: coordinates too far apart for any cube.
 Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max);
 
-/// A pass over the points of all inputs, in the unified schema, input after input.
+/// Returns a pass over the points of all inputs, in the unified schema, input after input.
 Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
 
-/// Reads the inputs from `first` on and says what each lost; those before it only give their schemas. Errors:
-/// unreadable inputs, no points at all, coordinates too far apart for any cube.
+/// Reads the inputs from `first` on and logs what each lost; the inputs before it only contribute their
+/// schemas. Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
 Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first = 0);
 
 }  // namespace lucarne::octree

@@ -32,11 +32,11 @@ ScalarType integer_type(bool with_sign, size_t bytes) {
     }
 }
 
-/// The narrowest type that holds every value of both; empty where there is none.
+/// Returns the narrowest type that can represent every value of both; empty if there is none.
 std::optional<ScalarType> common_type(ScalarType a, ScalarType b) {
     if (a == b) return a;
     if (is_float(a) || is_float(b)) {
-        // Integers of up to 4 bytes are exact in a double, of up to 2 in a float.
+        // Integers of up to 4 bytes are exact in a double, of up to 2 bytes in a float.
         const auto need = [](ScalarType t) {
             return is_float(t) ? io::scalar_bytes(t) : 2 * io::scalar_bytes(t);
         };

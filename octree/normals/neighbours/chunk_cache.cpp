@@ -17,8 +17,8 @@ bool is_finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-constexpr int kExtentExponent = 50;  ///< the square of 2^50 leaves room to sum millions of them in a float
-constexpr int kMostScaleExponent = 1000;  ///< the scale and its inverse are ordinary doubles
+constexpr int kExtentExponent = 50;       ///< a float can hold the sum of millions of squares of 2^50
+constexpr int kMostScaleExponent = 1000;  ///< keeps the scale and its inverse normal doubles
 
 double scale_of(const ChunkAccess& chunks) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ Result<Positions> ChunkCache::positions(size_t chunk) {
             return at->second->positions;
         }
     }
-    // Loaded without the lock: others go on meanwhile, at worst the same chunk is read twice.
+    // Loads without the lock, so that other threads continue. At worst, the same chunk is read twice.
     LUCARNE_ASSIGN(auto loaded, chunks_.positions(chunk));
     for (auto& p : loaded) {
         p *= scale_;

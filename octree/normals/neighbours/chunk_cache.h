@@ -11,19 +11,20 @@ namespace lucarne::octree {
 
 using Positions = std::shared_ptr<const std::vector<glm::dvec3>>;
 
-/// The positions of the chunks used last, so that a chunk is not read again for each of its
-/// neighbours. Thread-safe. Holds at most `bytes` besides what callers hold themselves.
+/// Caches the positions of the chunks used last, so that a chunk is not read again for each of its
+/// neighbours. Thread-safe. Holds at most `bytes` besides the chunks that callers hold themselves.
 ///
 /// Positions and bounds are multiplied by a power of two that brings the widest extent of the cloud to about
-/// 2^50: floats then hold the squares of all distances from the extent down to its 10^-34th part, whatever
-/// the cloud's unit and size. Scaling by a power of two rounds nothing.
+/// 2^50. Floats can then represent the squares of all distances from the extent down to its 10^-34th part,
+/// whatever the cloud's unit and size. Scaling by a power of two is exact.
 class ChunkCache {
  public:
     ChunkCache(const ChunkAccess& chunks, uint64_t bytes);
 
     const ChunkAccess& chunks() const { return chunks_; }
     double scale() const { return scale_; }
-    /// Scaled. Errors: what ChunkAccess::positions reports; a coordinate that is not a finite number.
+    /// Returns a chunk's positions, scaled. Errors: what ChunkAccess::positions reports; a coordinate that is
+    /// not a finite number.
     Result<Positions> positions(size_t chunk);
     Box bounds(size_t chunk) const;  ///< scaled
 

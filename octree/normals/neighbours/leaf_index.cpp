@@ -13,9 +13,9 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr uint32_t kLeafPoints = 24;  ///< most; 16 is a usual number
+constexpr uint32_t kLeafPoints = 24;  ///< most points in a leaf; 16 is typical
 
-/// The Morton code of a place within bounds, 21 bits an axis.
+/// Computes Morton codes of positions within bounds, 21 bits an axis.
 struct MortonGrid {
     glm::dvec3 low;
     double scale;
@@ -72,7 +72,8 @@ LeafIndex::LeafIndex(const PointArrays& points) : points_(&points) {
     build_tree();
 }
 
-/// Halves the cell that holds all of [first, last) until few are left; in the same finest cell, the points.
+/// Halves the cell that contains the points [first, last) until few points are left. If all are in the same
+/// finest cell, halves the range of points instead.
 void LeafIndex::cut(uint32_t first, uint32_t last, std::span<const uint64_t> codes) {
     if (last - first <= kLeafPoints) {
         if (last > first) first_.push_back(first);
@@ -127,7 +128,7 @@ void LeafIndex::build_tree() {
 bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const {
     const double limit2 = radius * radius;
     const glm::vec3 low(box.min - tile.origin), high(box.max - tile.origin);
-    const auto tile_limit2 = static_cast<float>(limit2) * 1.00001f;  // floats round
+    const auto tile_limit2 = static_cast<float>(limit2) * 1.00001f;  // tolerates the rounding of floats
     std::array<Step, kMostSteps> stack;
     size_t waiting = 0;
     stack[waiting++] = {0, static_cast<uint32_t>(levels_.size() - 1), 0};
@@ -135,7 +136,7 @@ bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t mo
     while (waiting > 0) {
         const Step step = stack[--waiting];
         distances_of(levels_[step.level][step.node], box.min, box.max, distance2);
-        // The first is taken up first, so that a tile is in the points' order.
+        // Pushed in reverse, so that the first child is visited first and the tile keeps the points' order.
         if (step.level > 0) {
             for (size_t i = kFan; i-- > 0;)
                 if (distance2[i] <= limit2)
@@ -152,7 +153,7 @@ bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t mo
     return true;
 }
 
-/// Depth first, the nearest box first (Roussopoulos, Kelley, Vincent 1995).
+/// Searches depth first, the nearest box first (Roussopoulos, Kelley, Vincent 1995).
 size_t LeafIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> nearest, size_t found,
                                 uint32_t offset) const {
     if (nearest.empty()) return found;

@@ -19,18 +19,18 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kGroups = 96;                        ///< of sites a piece of parallel work
-constexpr size_t kMostNeighbours = 128;               ///< per site, on the stack
-constexpr size_t kMostChunkPoints = size_t{1} << 29;  ///< sites times edges must fit 32 bits
-/// A halo is widened to this many chunk sizes and no further: an isolated point must not load the world.
+constexpr size_t kGroups = 96;                        ///< groups of sites in a piece of parallel work
+constexpr size_t kMostNeighbours = 128;               ///< most neighbours of a site
+constexpr size_t kMostChunkPoints = size_t{1} << 29;  ///< sites times edges must fit into 32 bits
+/// A halo is widened to at most this many chunk sizes: an isolated point must not load the whole cloud.
 constexpr double kWidestHalo = 4.0;
-/// A halo holds at most this many points per own site, but kLeastHalo anyway.
+/// A halo holds at most this many points per point of the chunk, but kLeastHalo are always allowed.
 constexpr size_t kHaloShare = 2, kLeastHalo = size_t{1} << 18;
-/// What a halo point takes: found, sorted, and in a tree. The fewest there is always room for: 2 MiB.
+/// Memory of a halo point: found, sorted, and in a tree. There is always room for kFewestHalo points: 2 MiB.
 constexpr uint64_t kHaloPointBytes = 128;
 constexpr uint64_t kFewestHalo = 1 << 14;
-constexpr int kMostNarrowings = 6;  ///< tries of a halo a quarter as wide when there are more
-/// Sites that share what is gathered around them.
+constexpr int kMostNarrowings = 6;  ///< how often a halo with too many points is narrowed to a quarter
+/// Number of sites that share the points gathered around them.
 constexpr size_t kGroupSites = 16;
 
 double distance2(const Box& a, const Box& b) {
@@ -55,7 +55,7 @@ Box bounds_of(std::span<const glm::dvec3> points) {
     return box;
 }
 
-/// The cells of a grid that lie within one cell of given points.
+/// The set of a grid's cells that lie within one cell of given points.
 class CellSet {
  public:
     CellSet(const Box& box, double cell)
@@ -76,7 +76,7 @@ class CellSet {
     }
 
  private:
-    /// Two cells of margin below, so that no neighbour cell is negative.
+    /// Leaves a margin of two cells below, so that no neighbour cell is negative.
     std::array<int64_t, 3> coordinates(const glm::dvec3& p) const {
         const glm::dvec3 c = glm::clamp(glm::floor((p - origin_) / cell_), -1.0, kMostCell) + 2.0;
         return {static_cast<int64_t>(c.x), static_cast<int64_t>(c.y), static_cast<int64_t>(c.z)};
@@ -135,7 +135,7 @@ bool ChunkNeighbours::reaches_out(uint32_t site, double reach2) const {
 
 Result<void> ChunkNeighbours::search(size_t k, const Visit& visit) {
     assert(k <= kMostNeighbours);
-    std::vector<uint32_t> starts;  // of groups
+    std::vector<uint32_t> starts;  // starts of the groups
     if (search_ == NeighbourSearch::leaf) {
         auto index = std::make_unique<LeafIndex>(sites_);
         starts.assign(index->leaves().begin(), index->leaves().end());
@@ -172,7 +172,7 @@ Result<void> ChunkNeighbours::search(size_t k, const Visit& visit) {
     return search_beyond(std::move(pending), k, visit);
 }
 
-/// As wide a halo first as half of the sites need.
+/// Returns the first radius of the halo: the one that half of the sites need.
 double ChunkNeighbours::first_radius(std::span<const Pending> pending) const {
     const double size = widest(cache_->bounds(chunk_));
     std::vector<double> reaches;
@@ -225,8 +225,8 @@ Result<void> ChunkNeighbours::search_beyond(std::vector<Pending> pending, size_t
         double farthest = 0;
         for (const Pending& p : still) farthest = std::max(farthest, p.radius);
         pending = std::move(still);
-        // Four times as wide, or as wide as is certainly enough. Places too near for floats are at distance
-        // 0.
+        // Tries four times the radius, or one that is certainly enough. Positions too close for floats are at
+        // distance 0.
         radius = std::min({radius > 0 ? 4 * radius : farthest, farthest, widest_halo});
     }
     return {};

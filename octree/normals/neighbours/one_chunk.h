@@ -8,7 +8,7 @@
 
 namespace lucarne::octree {
 
-/// A whole cloud as one chunk.
+/// Presents a whole cloud as one chunk.
 class OneChunk final : public ChunkAccess {
  public:
     explicit OneChunk(std::vector<glm::dvec3> points) : points_(std::move(points)) {

@@ -9,7 +9,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// A FLANN result set over a caller's sorted array, so that a second index can go on where the first ended.
+/// A FLANN result set over a caller's sorted array, so that a second index can continue where the first
+/// ended.
 class MergingResult final : public flann::ResultSet<double> {
  public:
     MergingResult(std::span<Neighbour> nearest, size_t found, uint32_t offset)
@@ -36,7 +37,7 @@ class MergingResult final : public flann::ResultSet<double> {
     double worst_ = 0;
 };
 
-/// Takes all points within a radius.
+/// A FLANN result set that takes all points within a radius.
 class AllWithin final : public flann::ResultSet<double> {
  public:
     AllWithin(double limit2, std::vector<uint32_t>& found) : limit2_(limit2), found_(found) {}

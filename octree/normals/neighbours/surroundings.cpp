@@ -10,12 +10,13 @@
 namespace lucarne::octree {
 namespace {
 
-/// More points than these are gathered for one site at a time: a group of far outliers has the world around
-/// it.
+/// Most points gathered for a group and for one site. Where a group's surroundings hold more (a group of
+/// distant outliers has the whole cloud around it), its sites are handled one at a time.
 constexpr size_t kMostShared = 4096, kMostAlone = 16384;
-/// What is gathered is so much wider than asked for, as the next site will ask for more.
+/// How much wider than requested points are gathered, because the next site will request a little more.
 constexpr double kSlack = 1.1;
-/// Floats tell apart neighbours at this share of a tile's size well enough, but not much nearer ones.
+/// In a tile of a given size, floats distinguish neighbours at this share of the size well, but not much
+/// nearer ones.
 constexpr double kFinest = 1.0 / 4096;
 constexpr double kMoreThanRounding = 1 + 1e-5;
 
@@ -49,7 +50,8 @@ void ChunkNeighbours::Surroundings::begin(std::span<const uint32_t> sites, size_
         box_.min = glm::min(box_.min, of_.sites_[site]);
         box_.max = glm::max(box_.max, of_.sites_[site]);
     }
-    // As far as in the group before, or as follows from how close these stand, if that is less.
+    // The reach of the previous group, or the one that follows from the spacing of this group's sites, if
+    // less.
     const double size = glm::distance(box_.min, box_.max),
                  own = size * std::sqrt(static_cast<double>(k) / static_cast<double>(sites.size()));
     guess_ = farthest_ > 0 ? farthest_ * kSlack : kInfinity;
@@ -70,11 +72,12 @@ const Patch& ChunkNeighbours::Surroundings::visit(uint32_t site, size_t k) {
     return nearest_;
 }
 
-/// Among what was gathered around all sites of the group; false where that is no help.
+/// Finds the k nearest among the points gathered around the whole group. Returns false where they do not
+/// suffice.
 bool ChunkNeighbours::Surroundings::find_shared(size_t k) {
     constexpr int kMostTries = 12;
     const glm::dvec3 at = of_.sites_[site_];
-    // How far the k nearest can be at most: no farther than the site before, and then its k nearest.
+    // An upper bound: the distance to the previous site plus that of the previous site's k-th nearest.
     const double bound = previous_reach_ >= 0
                              ? (glm::distance(at, previous_) + previous_reach_) * kMoreThanRounding
                              : kInfinity;
@@ -97,7 +100,8 @@ bool ChunkNeighbours::Surroundings::find_shared(size_t k) {
     return reach > kFinest * (std::min(near_.radius, 1e300) + glm::distance(box_.min, box_.max));
 }
 
-/// The k nearest, more than were asked for before, in ever wider surroundings of all sites of the group.
+/// Finds the k nearest, where k is more than visit() asked for, in ever wider surroundings of the whole
+/// group.
 bool ChunkNeighbours::Surroundings::find_wide(size_t k, Patch& patch) {
     constexpr int kMostTries = 4;
     double radius = previous_reach_;

@@ -1,6 +1,6 @@
-// The vector loops of the neighbour search. Each is written once on vectors of eight floats, which every
+// The vector loops of the neighbour search. Each is written once for vectors of eight floats, which every
 // compiler can lower, and compiled twice: for any x86-64 (or other) processor, and for those with AVX2. Both
-// give the same bits: nothing is contracted or reassociated.
+// versions give the same bits: nothing is contracted or reassociated.
 #include "octree/normals/neighbours/tile.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#if defined(__x86_64__) && !defined(__clang__)  // which has no such pragma
+#if defined(__x86_64__) && !defined(__clang__)  // clang has no such pragma
 #include <immintrin.h>
 #define LUCARNE_HAS_WIDE
 #endif
@@ -30,7 +30,7 @@ namespace plain {
 }
 
 #ifdef LUCARNE_HAS_WIDE
-/// For each set of eight lanes, the lanes in it, first ones first, four bits apart.
+/// For each set of eight lanes: the numbers of the lanes in it, in ascending order, four bits each.
 constexpr std::array<uint32_t, 256> kPacking = [] {
     std::array<uint32_t, 256> table{};
     for (uint32_t mask = 0; mask < 256; ++mask)
@@ -124,7 +124,7 @@ void Patch::take_within(const Tile& tile, const glm::vec3& centre, float limit2)
 void Patch::take_nearest(Patch& from, size_t most) {
     constexpr size_t kMostRanked = 256;
     size_t candidates = from.count;
-    if (candidates > std::max(kMostRanked, 2 * most)) {  // all against all would take too long
+    if (candidates > std::max(kMostRanked, 2 * most)) {  // comparing all with all would take too long
         std::vector<float> sorted(from.distance2.begin(),
                                   from.distance2.begin() + static_cast<ptrdiff_t>(candidates));
         const auto last = sorted.begin() + static_cast<ptrdiff_t>(most - 1);
@@ -149,7 +149,7 @@ void Patch::take_nearest(Patch& from, size_t most) {
     LUCARNE_CALL(rank, from.distance2.data(), candidates, ranks.data());
     make_room(most);
     for (size_t i = 0; i < candidates; ++i) {
-        const size_t at = std::min(static_cast<size_t>(ranks[i]), most);  // the others all go behind the last
+        const size_t at = std::min(static_cast<size_t>(ranks[i]), most);  // all others go behind the last
         x[at] = from.x[i];
         y[at] = from.y[i];
         z[at] = from.z[i];

@@ -1,5 +1,5 @@
-// The loops of tile.cpp, included once for each kind of processor, inside a namespace. `Packer` is what keeps
-// chosen lanes there.
+// The loops of tile.cpp, included once for each kind of processor, inside a namespace that defines Packer,
+// which keeps the chosen lanes.
 
 template <class Vector, class T>
 LUCARNE_INLINE Vector load(const T* from) {
@@ -35,8 +35,8 @@ struct Packer {
     __m256i order;
 };
 #else
-/// Keeps the chosen lanes of up to five arrays side by side: appends them and says how many. One lane after
-/// the other, without a branch.
+/// Packs the chosen lanes of up to five arrays: appends them and returns their number. It handles one lane
+/// after the other, without a branch.
 struct Packer {
     LUCARNE_INLINE explicit Packer(const Words& chosen) { store(flags, chosen); }
     template <class T, class Vector>
@@ -87,7 +87,7 @@ LUCARNE_INLINE void append_lanes(Tile& tile, const Lanes& x, const Lanes& y, con
         append_lanes(tile, relative(points.x, i, tile.origin.x), relative(points.y, i, tile.origin.y),
                      relative(points.z, i, tile.origin.z), kLane + static_cast<int32_t>(i + offset), last - i,
                      low, high, limit2);
-    for (; i < last; ++i) {  // the end of the arrays
+    for (; i < last; ++i) {  // the rest of the arrays
         const glm::vec3 p(points[i] - tile.origin);
         append_lanes(tile, p.x - Lanes{}, p.y - Lanes{}, p.z - Lanes{},
                      kLane + static_cast<int32_t>(i + offset), 1, low, high, limit2);
@@ -110,7 +110,7 @@ LUCARNE_INLINE void append_lanes(Tile& tile, const Lanes& x, const Lanes& y, con
     }
 }
 
-/// The place of each value among all; equal ones stay in their order.
+/// Computes the rank of each value among all. Equal values keep their order.
 [[gnu::noinline]] void rank(const float* values, size_t count, int32_t* ranks) {
     for (size_t block = 0; block < count; block += kLanes) {
         const Lanes own = load<Lanes>(&values[block]);
@@ -181,7 +181,7 @@ LUCARNE_INLINE float total(const Lanes& v) {
     return gap;
 }
 
-/// What cuts a cell, kept side by side until there are many.
+/// Collects the neighbours that cut a cell until there are many.
 struct Cuts {
     static constexpr size_t kMost = 256;
     float x[kMost + kLanes], y[kMost + kLanes];
@@ -190,7 +190,7 @@ struct Cuts {
     LUCARNE_INLINE void take(const Words& chosen, const Lanes& u, const Lanes& v, const Lanes& length2,
                              Nearness& nearness) {
         if (count + kLanes > kMost) apply(nearness);
-        const Lanes scale = 2.0f / length2;  // infinite only where not chosen
+        const Lanes scale = 2.0f / length2;  // infinite only in lanes that are not chosen
         const Packer packer(chosen);
         packer.put(scale * u, &x[count]);
         packer.put(scale * v, &y[count]);
@@ -234,7 +234,7 @@ LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y
     return sum;
 }
 
-/// The slot of the least of all lanes; of equal ones, the first slot.
+/// Returns the slot of the least value of all lanes; among equal ones, the first slot.
 LUCARNE_INLINE size_t slot_of_least(const Lanes& least, const Words& slot) {
     size_t best = 0;
     for (size_t i = 1; i < kLanes; ++i)

@@ -14,8 +14,8 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr float kParallel = 0.7f;  ///< |n.n'| from which no turn of the surface is assumed
-constexpr size_t kGrades = 512;    ///< of doubt, for the counting sort of edges
+constexpr float kParallel = 0.7f;  ///< |n.n'| from which the surface is taken as not turning
+constexpr size_t kGrades = 512;    ///< steps of doubt in the counting sort of edges
 constexpr float kSteep = 0.5f;     ///< squared sine of an offset's angle to a plane: 45 degrees
 constexpr float kSmooth = 0.1f;    ///< doubt up to which a single edge is trusted: 25 degrees
 constexpr size_t kVotesPerPair = 256;
@@ -24,11 +24,11 @@ bool has_normal(const glm::vec3& n) {
     return n != glm::vec3(0.0f);
 }
 
-/// The graph's edges in Kruskal's order: by rising doubt, then by site; found by a counting sort. An edge is
-/// its place among all sites' slots.
+/// The graph's edges in Kruskal's order: by rising doubt, then by site, from a counting sort. An edge is
+/// identified by its slot: its index among the edge slots of all sites.
 struct SortedEdges {
     std::vector<uint32_t> slots;
-    std::vector<uint16_t> grade;  ///< of each slot: doubt in steps, kOpposite
+    std::vector<uint16_t> grade;  ///< of each slot: doubt in steps, and kOpposite
     static constexpr uint16_t kNone = 0xffff, kOpposite = 0x8000;
     bool opposite(uint32_t slot) const { return grade[slot] & kOpposite; }
     float doubt(uint32_t slot) const { return static_cast<float>(grade[slot] & ~kOpposite) / (kGrades - 1); }
@@ -46,7 +46,7 @@ SortedEdges sorted_edges(const ChunkNeighbours& neighbours, const ChunkSurface& 
                 grade = SortedEdges::kNone;
                 if (j == kNoSite || !has_normal(surface.normals[i]) || !has_normal(surface.normals[j]))
                     continue;
-                // An edge known from both ends is taken once.
+                // An edge known from both ends is used once.
                 if (j < i && std::find(edges[j].begin(), edges[j].end(), i) != edges[j].end()) continue;
                 const glm::vec3 offset(neighbours.position(j) - neighbours.position(i));
                 const Agreement a = agreement(surface.normals[i], surface.normals[j], offset);
@@ -84,7 +84,7 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
                               std::span<const int8_t> toward) {
     auto& normals = surface.normals;
     const auto sites = static_cast<uint32_t>(normals.size());
-    SignedForest forest(sites + 1);  // the last stands for the stations
+    SignedForest forest(sites + 1);  // the last node represents the stations
     ChunkOrientation orientation;
     for (uint32_t i = 0; i < sites; ++i)
         if (toward[i] != 0 && has_normal(normals[i])) {
@@ -116,7 +116,7 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
         const auto number =
             numbers.try_emplace(root.node, static_cast<uint32_t>(numbers.size())).first->second;
         orientation.components[i] = number;
-        // Signs are relative to the root; those of the anchored component, to the stations.
+        // Signs are relative to the root, those of the anchored component relative to the stations.
         const bool turn = root.opposite != (orientation.anchored && number == 0 && stations.opposite);
         if (turn) normals[i] = -normals[i];
     }
@@ -196,12 +196,12 @@ void OrientationMerger::tell(const ChunkSurface& surface, const ChunkOrientation
 
 std::vector<std::vector<int8_t>> OrientationMerger::signs() const {
     const auto count = static_cast<uint32_t>(components_.size());
-    SignedForest forest(count + 1);  // the last stands for the stations
+    SignedForest forest(count + 1);  // the last node represents the stations
     for (uint32_t c = 0; c < count; ++c)
         if (components_[c].anchored) forest.unite(c, count, false);
     votes_.unite(forest);
 
-    std::unordered_map<uint32_t, Shell> wholes;  // by root, as the root is turned
+    std::unordered_map<uint32_t, Shell> wholes;  // by root, in the root's orientation
     for (uint32_t c = 0; c < count; ++c) {
         const auto root = forest.find(c);
         wholes[root.node].join(components_[c].shell, root.opposite);

@@ -8,11 +8,12 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr float kLevelNormal = 0.9f;  ///< |n.z| of floors: up to 25 degrees
-/// |sum of area n.z| over the sum of area |n.z|, of a top that is not a wall's.
+constexpr float kLevelNormal = 0.9f;  ///< least |n.z| of floors: up to 25 degrees
+/// Least |sum of area n.z| / sum of area |n.z| of a top that is not just the upper end of walls.
 constexpr double kClearlyUp = 0.3;
-constexpr double kClosed = 0.25;  ///< |sum of area n.z| over the sum of area |n.z|; 1 for a sheet
-/// Of the extent's rectangle, floor and ceiling each; L-shaped rooms have .5.
+/// Largest |sum of area n.z| / sum of area |n.z| of a closed surface; a sheet has 1.
+constexpr double kClosed = 0.25;
+/// Share of the extent's rectangle that floor and ceiling must each cover; L-shaped rooms have .5.
 constexpr double kCovered = 0.4;
 
 }  // namespace

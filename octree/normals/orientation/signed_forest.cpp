@@ -3,17 +3,17 @@
 namespace lucarne::octree {
 namespace {
 
-/// Votes looked at again, so that no cloud takes more than a second or two.
+/// Limit on the votes and nodes that are checked again, so that no cloud takes more than a second or two.
 constexpr double kMostWork = 3e8;
-constexpr double kAgainst = -1e-6;  ///< less than this is a verdict and no rounding
+constexpr double kAgainst = -1e-6;  ///< sums below this contradict a link; smaller magnitudes are rounding
 
 struct Vote {
     uint32_t a, b;
-    double same;        ///< > 0: turned the same way
-    uint32_t meet = 0;  ///< where the ways from a and b to the root meet
+    double same;        ///< > 0: same orientation
+    uint32_t meet = 0;  ///< where the paths from a and b to the root meet
 };
 
-/// Nodes that votes join, and how each is turned: a spanning forest, and signs along it.
+/// The nodes that votes join, and their orientation: a spanning forest, and a sign for each node.
 class Ballot {
  public:
     Ballot(uint32_t nodes, std::vector<Vote> votes) : votes_(std::move(votes)), links_(nodes), nodes_(nodes) {
@@ -32,8 +32,8 @@ class Ballot {
         for (Vote& vote : votes_) vote.meet = meet(vote.a, vote.b);
     }
 
-    /// Each link divides its tree. Where all votes across it together are against how it joins the two parts,
-    /// the lower part is turned; the clearest case first, until there is none.
+    /// Each link divides its tree into two parts. Where the sum of all votes across it contradicts the link,
+    /// flips the lower part. Repeats this, the clearest case first, until no link is contradicted.
     void revise() {
         double work = 0;
         for (uint32_t at = worst(); at != kNone && work < kMostWork; at = worst()) {
@@ -61,7 +61,8 @@ class Ballot {
         uint32_t jump = 0;  ///< an ancestor far up (Myers 1983), so that deep trees are climbed in few steps
         int8_t sign = 0;
         bool below = false;
-        double across = 0;  ///< votes between what is below the node and the rest of its tree, as it stands
+        /// Sum of the votes between the node's subtree and the rest of its tree; > 0 agrees with the link.
+        double across = 0;
     };
 
     void grow(uint32_t root) {
@@ -130,7 +131,7 @@ class Ballot {
 }  // namespace
 
 void SignVotes::unite(SignedForest& forest) const {
-    std::unordered_map<uint64_t, double> open;  // between what is not joined yet
+    std::unordered_map<uint64_t, double> open;  // votes between nodes that are not joined yet
     for (const auto& [pair, vote] : votes_) {
         const auto a = forest.find(static_cast<uint32_t>(pair >> 32)),
                    b = forest.find(static_cast<uint32_t>(pair));

@@ -9,7 +9,8 @@
 
 namespace lucarne::octree {
 
-/// Union-find whose links carry a sign: who belongs together, and whether turned the same way or opposite.
+/// A union-find whose links carry a sign. It tells which nodes are connected, and whether they have the same
+/// or the opposite orientation.
 class SignedForest {
  public:
     explicit SignedForest(uint32_t count) : links_(count) {
@@ -17,22 +18,22 @@ class SignedForest {
     }
     struct Root {
         uint32_t node;
-        bool opposite;  ///< to the node asked for
+        bool opposite;  ///< relative to the node asked for
     };
     Root find(uint32_t node) {
         bool opposite = false;
         while (links_[node].parent != node) {
             Link& link = links_[node];
             const Link above = links_[link.parent];
-            // Path halving: hang the node below its grandparent.
+            // Path halving: links the node to its grandparent.
             link = {above.parent, link.opposite != above.opposite};
             opposite = opposite != link.opposite;
             node = link.parent;
         }
         return {node, opposite};
     }
-    /// Joins the two sets so that `a` and `b` are turned the same way, or opposite; false if they were one
-    /// set. The smaller root stays root.
+    /// Joins the two sets so that `a` and `b` have the same or the opposite orientation. Returns false if
+    /// they were in one set. The root of the smaller number stays root.
     bool unite(uint32_t a, uint32_t b, bool opposite) {
         Root of_a = find(a), of_b = find(b);
         if (of_a.node == of_b.node) return false;
@@ -50,16 +51,16 @@ class SignedForest {
     std::vector<Link> links_;
 };
 
-/// Votes of many weak witnesses on how pairs of nodes are turned, and what follows from them all.
+/// Collects weak votes on the relative orientation of pairs of nodes, and joins the nodes by them.
 class SignVotes {
  public:
-    /// `weight` > 0.
+    /// `weight` must be positive.
     void add(uint32_t a, uint32_t b, bool opposite, double weight) {
         votes_[key(a, b)] += opposite ? -weight : weight;
     }
-    /// Joins nodes by their votes: along the maximum spanning forest, the clearest first; then each link is
-    /// asked whether all votes between the two sides that it joins say the same, as one false link between
-    /// two halves of a room turns one of them inside out.
+    /// Joins nodes by their votes, along the maximum spanning forest, strongest votes first. Then checks each
+    /// link against all votes between the two sides that it joins, because one false link between two halves
+    /// of a room turns one of them inside out.
     void unite(SignedForest& forest) const;
 
  private:

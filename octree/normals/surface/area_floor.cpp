@@ -9,14 +9,14 @@
 namespace lucarne::octree {
 namespace {
 
-/// The least c >= 0 with sum(max(a_i, c)) = surface; reorders `areas`. Bisects over the values themselves:
-/// what lies above c keeps its own area, what lies below shares the rest evenly.
+/// Returns the least c >= 0 with sum(max(a_i, c)) = surface. Reorders `areas`. Bisects over the values
+/// themselves: areas above c stay as they are, those below become c.
 double floor_of(std::span<float> areas, double surface) {
-    // Areas that add up to the surface but for rounding have a floor of 0, and not the least of them.
+    // If the areas add up to the surface except for rounding, the floor is 0, not the least area.
     constexpr double kRounding = 1e-9;
     if (std::accumulate(areas.begin(), areas.end(), 0.0) >= surface * (1 - kRounding)) return 0.0;
-    size_t below = 0;    // known to lie under c
-    double above = 0.0;  // sum of those known to lie at or over c
+    size_t below = 0;    // how many are known to be below c
+    double above = 0.0;  // sum of those known to be at least c
     while (!areas.empty()) {
         const size_t middle = areas.size() / 2;
         std::nth_element(areas.begin(), areas.begin() + static_cast<ptrdiff_t>(middle), areas.end());

@@ -17,22 +17,24 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kNearEdges = 4;  ///< of kSiteEdges; the others are spread over the rest of the neighbourhood
-constexpr size_t kBorderEdges = 2;  ///< a site, to the nearest points of other chunks
-/// Where the normal is uncertain, all points within so many times the distance of the k-th neighbour are
-/// asked: on a surface four times as many.
+constexpr size_t kBorderEdges = 2;  ///< edges of a site to the nearest points of other chunks
+/// Where the normal is uncertain, all points within this many times the distance of the k-th neighbour are
+/// used: the window. On a surface it holds four times as many points.
 constexpr double kWindow = 2.0;
-/// ... but of more than these, at the rim of a dense patch, no more than about kUsualWindow times k.
+/// If the window holds more than kMostWindow times k points, as at the rim of a dense patch, it is narrowed
+/// to about kUsualWindow times k.
 constexpr size_t kMostWindow = 6, kUsualWindow = 4;
-/// Neighbours on a line, by their variances across and along it: those of one scan line.
+/// Neighbours whose variance across their main axis is below this share of that along it lie on a line, such
+/// as one scan line.
 constexpr float kLine = 0.05f;
 
-/// The surface at one site after another; one a thread.
+/// Estimates the surface at one site after another; one per thread.
 class SiteEstimator {
  public:
     SiteEstimator(ChunkNeighbours& neighbours, size_t usual, ChunkSurface& surface)
         : neighbours_(neighbours), usual_(usual), surface_(surface) {}
 
-    /// 0, or the radius that must be known around the site first.
+    /// Estimates the surface at a site. Returns 0, or the radius that must be known around the site first.
     double visit(uint32_t site, const Patch& nearest, ChunkNeighbours::Surroundings& around) {
         if (nearest.count < kLeastPoints) return 0;
         const bool whole_cloud = nearest.count < usual_;
@@ -44,9 +46,9 @@ class SiteEstimator {
         const float reach2 = nearest.distance2[nearest.count - 1], reach = std::sqrt(reach2);
         const float spacing =
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
-        const Patch* patch = &nearest;  // that of the fit
+        const Patch* patch = &nearest;  // the patch of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
-        double seen = reach;  // all that is nearer, in `patch`
+        double seen = reach;  // all points nearer than this are in `patch`
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
@@ -54,12 +56,13 @@ class SiteEstimator {
             if (window_.count > nearest.count)
                 patch = improve(fit, fitter_.fit(window_, spacing), window_, *patch);
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
-            const bool cut_short = seen < kWindow * reach;  // by the many there are
+            // The window was narrowed: it held too many points.
+            const bool cut_short = seen < kWindow * reach;
             if (window_.count >= most) {
                 const size_t all = window_.count;
-                further_.take_nearest(window_, most);  // may drop the others of very many
+                further_.take_nearest(window_, most);  // the window may hold very many points
                 if (window_.count < all) seen = std::sqrt(double{further_.distance2[further_.count - 1]});
-            } else if (cut_short || !(fit.deviation < kPoorDeviation)) {  // or nearly alone, or on a line
+            } else if (cut_short || !(fit.deviation < kPoorDeviation)) {  // or nearly isolated, or on a line
                 around.nearest(most, further_);
                 const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
                 if (!around.knows(known)) return known;
@@ -67,7 +70,8 @@ class SiteEstimator {
             } else {
                 further_.clear();
             }
-            // A few points in the air together have each other, and are seen to be alone by more.
+            // A few points in the air together are each other's neighbours; more neighbours show that they
+            // are isolated.
             if (further_.count == most && is_stray(further_, usual_, true)) {
                 apart = goes_on_with(further_);
                 if (!apart) return leave_out(site);
@@ -75,7 +79,7 @@ class SiteEstimator {
         }
         connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
-            // A blob has no disc, and a stray point must not get that of the empty space around it.
+            // A blob has no disc. An outlier must not get the area of the empty space around it.
             surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
             return 0;
         }
@@ -103,7 +107,7 @@ class SiteEstimator {
  private:
     static constexpr size_t kLeastPoints = 4, kMostNearest = 128;
 
-    /// Whether a stray point is part of its neighbours' surface all the same.
+    /// Whether a point that looks isolated belongs to its neighbours' surface nevertheless.
     bool goes_on_with(const Patch& others) {
         return is_near_enough(others) && fitter_.lies_in_plane_of_others(others);
     }
@@ -120,7 +124,7 @@ class SiteEstimator {
         return &patch;
     }
 
-    /// The window around a site; returns how far it goes.
+    /// Takes the window around a site. Returns its radius.
     double take_window(ChunkNeighbours::Surroundings& around, double reach) {
         double radius = kWindow * reach;
         for (int tries = 0; tries < 8; ++tries) {
@@ -151,8 +155,8 @@ class SiteEstimator {
             ++border;
         }
     }
-    /// From the rim of a patch to what goes on beyond it: a patch much denser than the surface around it has
-    /// no other edges to that.
+    /// Connects the rim of a patch to the surface beyond it. A patch much denser than the surface around it
+    /// has no other edges to that surface.
     void connect_rim(uint32_t site, const ChunkNeighbours::Surroundings::View& view, size_t slot) {
         const Tile& tile = view.tile;
         const uint32_t other = tile.index[slot];
@@ -165,7 +169,7 @@ class SiteEstimator {
     void set_edge(uint32_t& edge, uint32_t other) const {
         if (!neighbours_.is_halo(other)) edge = other;
     }
-    /// From one scan line to the next, and out of what noise has made a blob: to the nearest in each quarter
+    /// Connects a site to the next scan line, or out of a blob of noise: to the nearest point in each quarter
     /// that is low over the plane.
     void connect_across(SiteEdges& edges, const Patch& wide, const glm::vec3& normal) const {
         const auto nearest = nearest_by_quarter(wide, tangent_frame(normal), kSlope2);

@@ -23,8 +23,8 @@ Plane plane_of(const Moments& moments) {
     double least = 0;
     Eigen::Vector3d axis;
     pcl::eigen33(covariance, least, axis);
-    // PCL gives the least eigenvalue and its vector; the other two follow from the trace, which is 1, and the
-    // sum of the principal minors, which spares a second solution of the cubic equation.
+    // PCL gives the least eigenvalue and its vector. The other two follow from the trace, which is 1, and the
+    // sum of the principal minors. This saves solving the cubic equation again.
     least = std::max(least, 0.0);
     const double minors = (xx * yy + xx * zz + yy * zz - xy * xy - xz * xz - yz * yz) / (trace * trace);
     const double sum = std::max(0.0, 1 - least), rest = minors - least * sum;

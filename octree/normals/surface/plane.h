@@ -16,8 +16,9 @@ struct Plane {
         variances{};  ///< eigenvalues of the covariance, rising; variances[0] along the normal
 };
 
-/// The plane of the points of which these are the sums, by PCL: pcl::eigen33, which pcl::solvePlaneParameters
-/// and so pcl::NormalEstimation call, in double precision. No point at all has the plane z = 0.
+/// Computes the plane of the points whose sums are `moments`, by PCL: pcl::eigen33, which
+/// pcl::solvePlaneParameters and thus pcl::NormalEstimation call, in double precision. If there are no
+/// points, returns the plane z = 0.
 Plane plane_of(const Moments& moments);
 
 }  // namespace lucarne::octree

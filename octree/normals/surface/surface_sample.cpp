@@ -10,39 +10,42 @@
 namespace lucarne::octree {
 namespace {
 
-constexpr size_t kLeastLayer = 6;  ///< fewer points say nothing about a layer of their own
-/// Layers are apart by this share of the neighbourhood's thickness (Gaussian noise leaves such a gap among 17
-/// points once in 2^16), and by this share of the spacing: closer ones are the noise, rounding or
-/// registration of one.
+constexpr size_t kLeastLayer = 6;  ///< fewer points are not a layer of their own
+/// Layers are separated by a gap of this share of the neighbourhood's thickness (Gaussian noise leaves such a
+/// gap among 17 points once in 2^16) and of this share of the spacing. Smaller gaps are noise, rounding or
+/// registration errors of one layer.
 constexpr float kLayerGap = 0.4f, kLayerSpacing = 0.5f;
-/// The nearest of 16 neighbours in a plane is at this share of the farthest once in 2^18 (Poisson); a point
-/// out in the air sees all of a surface from afar and has no share of it.
+/// Share of the farthest neighbour's distance above which the nearest neighbour's marks a point as isolated.
+/// In a plane with 16 neighbours this happens once in 2^18 (Poisson). A point in the air sees all of a
+/// surface from afar and has no share of it.
 constexpr float kIsolated = 0.75f;
-/// A few points hanging in the air together (mixed pixels behind an edge) have each other, and then nothing
-/// up to the surfaces around, whose points stand much closer: the distance to the 8th neighbour over that of
-/// the neighbours to their own 2nd is about 2 within a surface, 3 on its edge, and 4 along the lines of the
-/// most uneven scanner.
+/// A few points in the air together (mixed pixels behind an edge) are each other's neighbours, and then there
+/// is nothing up to the surrounding surfaces, whose points are much closer to each other. The test compares
+/// the distance to the 8th neighbour with the neighbours' distances to their own 2nd. The ratio is about 2
+/// within a surface, 3 at its edge, and 4 along the lines of the most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
-constexpr float kSparser = 7.0f;  // not one of 200,000 points of a random pattern
-/// ... where their plane is clear; where it is not, less will do.
+// The ratio of an outlier: not one of 200,000 points of a random pattern has it.
+constexpr float kSparser = 7.0f;
+/// The ratio of an outlier whose neighbours have no clear plane.
 constexpr float kSparserInDoubt = 5.0f;
-/// But a sparse point beside a dense patch that lies in the patch's plane, within this share of its distance
-/// or this many deviations of the patch's own heights, goes on with its surface.
+/// A sparse point beside a dense patch belongs to the patch's surface if it lies in the patch's plane: within
+/// this share of its distance, plus this many deviations of the patch's own heights.
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
-/// ... unless it is farther from the patch than this many of its spacings: too far for its plane to tell.
+/// A point farther from the patch than this many of the patch's spacings is too far for its plane to tell.
 constexpr float kMostApart = 10.0f;
 constexpr size_t kCompanions = 2;
-/// Coordinates are rounded in files (LAS: millimetres): variances below this share of the widest are not
+/// Coordinates are rounded in files (LAS: millimetres), so variances below this share of the largest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
 
-/// Squared distances from one of the points to all.
+/// The squared distance between two points of a patch.
 float distance2(const Patch& near, size_t i, size_t j) {
     const float x = near.x[i] - near.x[j], y = near.y[i] - near.y[j], z = near.z[i] - near.z[j];
     return x * x + y * y + z * z;
 }
 
-/// The squared distance from a neighbour to its kTheirRank-th nearest among them, the point itself left out.
+/// The squared distance from a neighbour to its kTheirRank-th nearest among the neighbours, without the point
+/// itself.
 float their_reach2(const Patch& near, size_t i) {
     static_assert(kTheirRank == 2);
     float first = std::numeric_limits<float>::max(), second = first;
@@ -61,9 +64,9 @@ bool reaches_within(const Patch& near, size_t i, float limit2) {
     return within > kTheirRank;
 }
 
-/// Whether the neighbourhood of the point is much sparser than those of its neighbours (as the local outlier
-/// factor compares them: Breunig et al. 2000), from the neighbours' distances among themselves. Within a
-/// surface the few that are asked first end it.
+/// Whether the neighbourhood of the point is much sparser than those of its neighbours, judged by the
+/// neighbours' distances among themselves (the comparison of the local outlier factor: Breunig et al. 2000).
+/// Within a surface, the few neighbours that are checked first decide.
 bool stands_apart(const Patch& near, float sparser) {
     if (near.count <= kOwnRank) return false;
     const float limit = near.distance2[kOwnRank] / (sparser * sparser);
@@ -80,7 +83,7 @@ float deviation_of(const Plane& plane, size_t points) {
     const double n = static_cast<double>(points);
     const double widest = plane.variances[2];
     if (!(widest > 0) || points < 4) return 10.0f;
-    // The plane has taken three degrees of freedom from the residuals.
+    // The plane takes three degrees of freedom from the residuals.
     const double noise = plane.variances[0] * n / (n - 3) + kVarianceFloor * widest;
     double variance = 0;
     for (const size_t axis : {1, 2}) {
@@ -91,8 +94,8 @@ float deviation_of(const Plane& plane, size_t points) {
     return static_cast<float>(std::min(10.0, std::sqrt(variance)));
 }
 
-/// The range of heights of the layer that holds the point itself, which is at 0. A gap of nearly half the
-/// range or more is looked for at the middle of it.
+/// Returns the range of heights of the layer that contains the point itself, whose height is 0. A gap of
+/// nearly half the range or more contains the middle, so it is looked for there.
 Range own_layer(const std::vector<float>& heights, size_t count, const Range& range, float spacing) {
     const float thickness = range.high - range.low,
                 least = std::max(kLayerGap * thickness, kLayerSpacing * spacing);
@@ -158,7 +161,7 @@ float share_of_neighbours(const Patch& nearest) {
 
 bool is_near_enough(const Patch& nearest) {
     const float limit = kMostApart * kMostApart * share_of_neighbours(nearest);
-    // The nearest few may hang there with it.
+    // The nearest few may be outliers together with it.
     return nearest.distance2[kCompanions] < limit &&
            nearest.distance2[std::min(kOwnRank, nearest.count - 1)] < 4 * limit;
 }

@@ -12,21 +12,23 @@ namespace lucarne::octree {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-/// Corners up to this share of the reach count as known. A corner is the centre of an empty disc: beyond the
-/// reach only part of it is unseen, and in a Poisson pattern the chance of such a disc to be empty is e^-10.
+/// Corners of the cell up to this share of the reach count as known. A corner is the centre of an empty disc
+/// of which only a part lies beyond the reach, and in a Poisson pattern such a disc is empty with a chance of
+/// e^-10.
 constexpr float kKnown = 0.8f;
-constexpr float kMostSeen = 2.0f;  ///< reaches: an open side is half of kLook away
-/// How much farther than the known neighbours the surface is looked for. At the rim of a dense patch these
-/// are all of the patch; a sparse point a third of its spacing away from it sees 16 of them within half its
-/// spacing. Twice as far would cost much in a scan with many rims.
+constexpr float kMostSeen = 2.0f;  ///< in reaches: an open side is half of kLook away
+/// How many reaches away the surface is looked for. At the rim of a dense patch all known neighbours belong
+/// to the patch; a sparse point a third of its spacing away from the patch sees 16 of them within half its
+/// spacing. Looking twice as far would cost much in a scan with many rims.
 constexpr float kLook = 4.0f;
-/// The least share that a cell at a rim fills of the disc around it. A strip between two neighbours of a rim
-/// then ends about a spacing outside.
+/// The least share that a cell at a rim must fill of the disc around it. A strip between two neighbours at a
+/// rim then ends about a spacing outside.
 constexpr float kFill = 0.4f;
 constexpr float kShrink = 0.85f;
 constexpr int kMostShrinks = 12;
-constexpr int kRimSteps = 4;  ///< from a spacing (neighbours in half a disc) to nearly the fixed point, which
-                              ///< a straight rim has at .55 spacings
+/// From a spacing (neighbours in half a disc) to nearly the fixed point, which a straight rim has at .55
+/// spacings.
+constexpr int kRimSteps = 4;
 constexpr float kCoincident = 1e-10f;
 
 }  // namespace
@@ -53,7 +55,7 @@ ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours, fl
 void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer) {
     const size_t here =
         cut_by_layer(neighbours, heights, layer, frame_, kCoincident * reach_ * reach_, nearness_);
-    coincident_ = std::max<size_t>(here, 1) - 1;  // the point itself, too
+    coincident_ = std::max<size_t>(here, 1) - 1;  // without the point itself
     least_ = least_of(nearness_);
 }
 

@@ -10,54 +10,53 @@
 namespace lucarne::octree {
 
 /// A point's share of the surface: its Voronoi cell among its neighbours, in its tangent plane. The cells of
-/// all points add up to the surface whatever their pattern, where a share by the number of neighbours in a
-/// ball makes a sparse point beside a dense patch as small as the patch's own points, and leaves a hole.
+/// all points add up to the surface, whatever their pattern. A share by the number of neighbours in a ball
+/// would make a sparse point beside a dense patch as small as the patch's own points, and leave a hole.
 ///
-/// The cell is held by how far it reaches in kDirections directions. Its area is the mean over these, which
-/// may be a hundredth off for one cell and is right in the sum of many. Starts as a disc as wide as the
-/// widest cell to be looked for.
+/// The cell is described by how far it reaches in kDirections directions. Its area is the mean over these,
+/// which may be wrong by a hundredth for one cell but is right in the sum of many. The cell starts as a disc
+/// as wide as the widest cell that is searched for.
 class ShareCell {
  public:
-    /// `reach`: distance of the farthest of the nearest `neighbours`; `seen`: all that are nearer will be cut
-    /// by. More are looked for within widest_search().
+    /// `reach`: distance of the farthest of the nearest `neighbours`. `seen`: the cell will be cut by all
+    /// points nearer than this. widest_search() tells how far to look for more.
     ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen);
 
-    /// Cuts off what is nearer to the neighbours in the layer low .. high; all `heights` are over the plane.
+    /// Cuts the cell by the neighbours in the layer low .. high. All `heights` are over the plane.
     void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer);
-    /// Cuts, where the cell is open, what is nearer to anything that goes on with the surface: the points of
-    /// `around` within `radius` of the site, which is at `centre` there. Returns the nearest of these beyond
-    /// the reach, or the tile's count.
+    /// Cuts the cell, where it is open, by everything that continues the surface: the points of `around`
+    /// within `radius` of the site, which is at `centre` there. Returns the nearest of them beyond the reach,
+    /// or the tile's count.
     size_t cut_open(const Tile& around, const glm::vec3& centre, float radius);
-    /// Whether neighbours beyond the reach may still cut off much: then the known ones say nothing of one
-    /// side.
+    /// Whether neighbours beyond the reach may still cut off much, because nothing is known on some side.
     bool open() const;
     float widest_search() const { return widest_search_; }
-    float widest_cut() const;  ///< neighbours at this distance or more cannot cut the cell as it is
-    bool closed() const;       ///< neighbours on all sides
-    /// The share, where the cell is closed; its area.
+    float widest_cut() const;  ///< neighbours at this distance or more cannot cut the cell further
+    bool closed() const;       ///< there are neighbours on all sides
+    /// The area of a cell that is not open, divided by the points that share it.
     float area() const;
-    /// The share of an open cell that no further neighbour will cut. Where it still has no end on some side,
-    /// the surface ends: such sides end as far out as the others do on average (root of the mean square over
-    /// their angles), which for a pattern of any kind is half a spacing. Where it has one, but is long and
-    /// thin as that of a dense patch's point at the rim of a void, it is cut off at what a disc of its own
-    /// can cover.
+    /// The area of an open cell that no further neighbour will cut. If the cell still has no end on some
+    /// side, the surface ends there: such sides are cut off as far out as the others reach on average (root
+    /// of the mean square over their angles), which is half a spacing for a pattern of any kind. If it ends
+    /// on all sides but is long and thin, like that of a dense patch's point at the rim of a void, it is cut
+    /// off at what a disc of its area can cover.
     float area_at_rim();
 
  private:
     void cut_off(float radius);
-    float full_area() const;  ///< before it is shared with what is above and below
+    float full_area() const;  ///< before it is shared with the points exactly above and below
 
     TangentFrame frame_;
     float reach_, known_, widest_search_, rim_spacing_;
     size_t coincident_ = 0;  ///< neighbours exactly above or below share the cell
-    Nearness nearness_;      ///< one over how far it reaches
-    float least_;            ///< of these
+    Nearness nearness_;      ///< 1 / reach per direction
+    float least_;            ///< the least of these
 };
 
-/// Axes in the plane of a normal.
+/// Returns two axes in the plane of a normal, and the normal.
 TangentFrame tangent_frame(const glm::vec3& normal);
-/// What goes on with the surface: its height over the tangent plane, over its distance along it, squared (14
-/// degrees).
+/// Squared ratio of a point's height over the tangent plane to its distance along it, up to which the point
+/// continues the surface (14 degrees).
 inline constexpr float kSlope2 = 0.25f * 0.25f;
 
 }  // namespace lucarne::octree

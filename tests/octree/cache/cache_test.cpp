@@ -1,4 +1,4 @@
-// The cache reader against every kind of damage, lies with correct checksums among them.
+// Tests the cache reader against every kind of damage, including false contents with correct checksums.
 #include "octree/cache/cache.h"
 
 #include <cmath>
@@ -51,7 +51,7 @@ class Cache : public testing::Test {
     }
     size_t nodes() const { return block_.directory_bytes / kEntryBytes; }
 
-    /// The file with one directory entry changed and every checksum right again: a lie, not an accident.
+    /// Returns the file with one directory entry changed and every checksum recomputed, as in a forged file.
     template <class Change>
     std::string with_entry(size_t node, const Change& change) const {
         std::string bytes = bytes_;
@@ -61,7 +61,7 @@ class Cache : public testing::Test {
         format::store_entry(entry, at);
         return resealed(bytes, block_);
     }
-    /// The file with another metadata text of the same length.
+    /// Returns the file with another metadata text of the same length.
     std::string with_metadata(const std::string& from, const std::string& to) const {
         std::string bytes = bytes_;
         const auto at = bytes.find(from, block_.metadata_offset);
@@ -70,7 +70,7 @@ class Cache : public testing::Test {
         bytes.replace(at, to.size(), to);
         return resealed(bytes, block_);
     }
-    /// The file with these records of a node as codec 0 behind its end.
+    /// Returns the file with these records as codec 0 of a node, after its end.
     std::string with_raw_node(size_t node, const std::vector<std::byte>& records) const {
         std::string bytes =
             bytes_ + std::string(reinterpret_cast<const char*>(records.data()), records.size());
@@ -130,7 +130,7 @@ TEST_F(Cache, OpensFromEitherSuperblockAndVerifyMissesTheOther) {
 TEST_F(Cache, TakesTheSuperblockOfTheHigherGeneration) {
     format::Superblock next = block_;
     next.generation = 2;
-    next.directory_offset = 1;  // if this one is taken, the cache does not open
+    next.directory_offset = 1;  // if this superblock is used, the cache does not open
     std::string bytes = bytes_;
     const auto encoded = format::encode(next);
     std::memcpy(bytes.data() + kSuperblockBytes, encoded.data(), kSuperblockBytes);
@@ -228,7 +228,7 @@ TEST_F(Cache, RejectsLyingMetadata) {
 }
 
 TEST_F(Cache, VerifyFindsPointsOutsideTheirCube) {
-    // Every checksum and count is right, one point is not.
+    // Every checksum and count is right; one point is outside its cube.
     std::vector<size_t> leaves;
     const auto cache = CacheFile::open(path());
     for (size_t i = 0; i < nodes(); ++i)
@@ -265,7 +265,8 @@ TEST_F(Cache, CompressedPayloadsThatLieAreRefusedOrHarmless) {
         auto* entry_at = at + block_.directory_offset + node * kEntryBytes;
         format::Entry entry = format::load_entry(entry_at);
         if (entry.payload_bytes == 0) continue;
-        const size_t most = seed % 2 ? entry.payload_bytes : std::min(entry.payload_bytes, 64u);  // the heads
+        // Half of the flips hit the heads.
+        const size_t most = seed % 2 ? entry.payload_bytes : std::min(entry.payload_bytes, 64u);
         at[entry.payload_offset + random.next() % most] ^= static_cast<std::byte>(1 + random.next() % 255);
         entry.checksum = format::checksum({at + entry.payload_offset, entry.payload_bytes});
         format::store_entry(entry, entry_at);

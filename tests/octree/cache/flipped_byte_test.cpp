@@ -1,4 +1,5 @@
-// Every byte of a cache is checked, or means nothing: only what an update left behind is not looked at.
+// Every byte of a cache is checked or has no meaning: verify ignores only the bytes that an update left
+// behind.
 #include <cstdio>
 #include <fstream>
 #include <vector>
@@ -66,7 +67,7 @@ void remove_points(const std::filesystem::path& cache) {
 
 struct Kind {
     const char* name;
-    bool updated;  ///< in place: bytes are left behind
+    bool updated;  ///< updated in place: bytes are left behind
     std::function<void(const std::filesystem::path&)> make;
 };
 
@@ -124,7 +125,7 @@ const Kind kKinds[] = {
      }},
 };
 
-/// Which bytes the newest state of a cache speaks of.
+/// Marks the bytes that the newest state of a cache refers to.
 std::vector<bool> named_bytes(const std::filesystem::path& path) {
     const auto cache = CacheFile::open(path).value();
     std::vector<bool> named(cache->file().size(), false);

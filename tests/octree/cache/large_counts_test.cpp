@@ -1,4 +1,4 @@
-// More points than 32 bits count, at every place that counts them; the points themselves are never made.
+// More points than 32 bits can count, wherever points are counted. The points themselves are never made.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -55,8 +55,8 @@ TEST(LargeCounts, CutsOfFiveBillionPoints) {
     EXPECT_LE(light.points, budget);
 }
 
-/// Seventeen nodes of 350 million points: a file of 71 GB whose points are a hole, so that it takes a few
-/// blocks.
+/// Seventeen nodes of 350 million points. The file has 71 GB, but its points are a hole, so it takes only a
+/// few blocks on disk.
 TEST(LargeCounts, ACacheOfMoreThanFourBillionPointsOpensAndCounts) {
     const lucarne::test::TempFolder folder;
     constexpr uint32_t kPoints = 350'000'000, kChildren = 8, kGrandchildren = 8;

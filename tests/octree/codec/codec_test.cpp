@@ -1,4 +1,4 @@
-// Compressed payloads: every record comes back bit by bit, whatever the schema, and damage is never believed.
+// Compressed payloads: every record comes back bit by bit, whatever the schema, and damage is detected.
 #include <algorithm>
 #include <limits>
 
@@ -17,7 +17,7 @@ using io::PositionType;
 using io::ScalarType;
 using Bytes = std::vector<std::byte>;
 
-/// Records along the curve, their passes, and what they become.
+/// Records along the curve, their passes, and their payload.
 struct Node {
     Bytes records;
     std::vector<uint8_t> passes;
@@ -37,7 +37,8 @@ struct Node {
     }
 };
 
-/// The payload in memory of exactly its size and what may be read behind it, so that a sanitizer sees more.
+/// The payload in a buffer of exactly its size plus the bytes that may be read after it, so that a sanitizer
+/// finds more.
 bool decode(const io::Schema& schema, Bytes payload, Bytes& records) {
     const size_t bytes = payload.size();
     payload.resize(bytes + kReadAhead);
@@ -165,12 +166,12 @@ TEST(Codec, NoiseTakesItsBitsAndTheRestNearlyNone) {
     const Node node = wall(5000, schema);
     expect_round_trip(schema, node, "wall");
     Bytes payload = node.encode(schema);
-    // Shannon's bound of what varies, the difference of neighbours where values run: about 6.6 for x, 9.2 for
-    // y, 3 for z, 10 for intensity, 3.2 for green and up to 4.1 for each difference to it, 2.3, 3.2,
-    // passes 4.6.
+    // Shannon's bound of what varies, of differences between neighbours where values change slowly: about 6.6
+    // for x, 9.2 for y, 3 for z, 10 for intensity, 3.2 for green and up to 4.1 for each difference to it,
+    // 2.3, 3.2, passes 4.6.
     const double bits = 8.0 * static_cast<double>(payload.size()) / 5000;
     EXPECT_LT(bits, 1.05 * (6.6 + 9.2 + 3 + 10 + 3.2 + 2 * 4.1 + 2.3 + 3.2 + 4.6));
-    // The class is one byte more in each record, always the same.
+    // The class is one more byte in each record, always the same.
     Node other = node;
     for (size_t i = 0; i < 5000; ++i) other.records[i * schema.stride + 14] = std::byte{2};
     EXPECT_LE(other.encode(schema).size(), payload.size() + 2);

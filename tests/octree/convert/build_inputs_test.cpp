@@ -1,4 +1,4 @@
-// The unit of several inputs.
+// The common unit of several inputs.
 #include "octree/convert/build_inputs.h"
 
 #include <deque>
@@ -92,7 +92,7 @@ TEST_F(Units, ColoursOf8BitsAmongOthersOf16HaveTheirWhite) {
     }
     const Unifier inputs = unified();
     const auto header = header_of(inputs, {}, inputs.schema());
-    EXPECT_EQ(header.scans[0].color_bits, 16u) << "were made so";
+    EXPECT_EQ(header.scans[0].color_bits, 16u) << "8-bit colours became 16-bit ones";
     EXPECT_EQ(header.scans[1].color_bits, 16u);
     EXPECT_EQ(header.scans[2].color_bits, 8u) << "stay as they are in their 16 bits";
 }

@@ -28,7 +28,8 @@ io::Schema las_like() {
     return schema;
 }
 
-/// A rough hemisphere over a floor, 20 m wide, uneven density, every attribute different for every point.
+/// A rough hemisphere over a floor, 20 m wide, of uneven density. Every attribute is different for every
+/// point.
 ComputedSource hall(uint64_t points, uint64_t seed = 1) {
     return {las_like(), points, [seed](uint64_t index, std::byte* record) {
                 Random random(seed, index);
@@ -96,7 +97,7 @@ TEST(Build, IsTheSameFileForAnyThreadsBatchesAndMemory) {
     }
 }
 
-/// Points at fixed places, f64.
+/// Points at fixed positions, f64.
 ComputedSource at_places(uint64_t points, std::function<glm::dvec3(uint64_t)> place) {
     return {io::Schema{}, points,
             [place](uint64_t index, std::byte* record) { io::store(record, place(index)); }};
@@ -122,7 +123,8 @@ TEST(Build, TakesOnePointAndTwo) {
 
 TEST(Build, EndsWithMoreDuplicatesOfOnePointThanMemoryHolds) {
     const TempFolder folder;
-    // Every third point elsewhere; the others share one place and are 5 MB in a build that may hold 16 MiB.
+    // Every third point is elsewhere. The others share one place; they take 5 MB in a build that may use 16
+    // MiB.
     const auto source = at_places(300'000, [](uint64_t i) {
         Random random(4, i);
         return i % 3 ? glm::dvec3(0.3) : glm::dvec3(random.uniform(), random.uniform(), 0.3);
@@ -252,7 +254,7 @@ TEST(Build, RefusesAttributesThatNoTypeCanHold) {
               "computed: its attribute 'tag' does not fit that of the other inputs; convert it on its own");
 }
 
-/// A source whose reading fails half way, as on a torn network mount.
+/// A source whose reading fails half way, as on a broken network mount.
 class TornSource final : public io::PointSource {
  public:
     explicit TornSource(int passes) : passes_(passes), whole_(hall(10'000)) {}
@@ -292,7 +294,7 @@ TEST(Build, LeavesNothingBehindWhenAnInputTears) {
     }
 }
 
-/// Every pass over it gives more (or fewer) points than the last, as a file that is being written.
+/// Every pass over it gives more (or fewer) points than the previous one, like a file that is being written.
 class GrowingSource final : public io::PointSource {
  public:
     explicit GrowingSource(int64_t growth) : first_(hall(20'000)), growth_(growth) {}

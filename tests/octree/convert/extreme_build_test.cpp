@@ -1,4 +1,4 @@
-// Clouds that break converters: everything in one place, in one plane, in a millimetre, far apart.
+// Clouds that are hard for converters: all points at one place, in one plane, within a millimetre, far apart.
 #include <cmath>
 
 #include <gtest/gtest.h>

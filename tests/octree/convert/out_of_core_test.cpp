@@ -1,5 +1,5 @@
-// A cloud a hundred times larger than --memory, made while it is read; resident memory is measured by the
-// kernel.
+// A cloud a hundred times larger than --memory, made while it is read. The kernel measures the resident
+// memory.
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -22,10 +22,10 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint64_t kMemory = uint64_t{16} << 20;
-/// What the allocator keeps in reserve, thread stacks and tables that do not belong to any stage.
+/// Memory that does not belong to any stage: the allocator's reserve, thread stacks and tables.
 constexpr uint64_t kSlack = uint64_t{4} << 20;
 
-/// Ten rooms of walls and floors, each point with doubles for everything: 80 bytes.
+/// Ten rooms of walls and floors. Each point has doubles for everything: 80 bytes.
 test::ComputedSource rooms(uint64_t points) {
     io::Schema schema;
     for (const char* name :
@@ -44,7 +44,7 @@ test::ComputedSource rooms(uint64_t points) {
             }};
 }
 
-/// Most memory that this process ever had resident, bytes.
+/// The most memory that this process ever had resident, bytes.
 uint64_t peak_resident() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -52,8 +52,8 @@ uint64_t peak_resident() {
     return 0;
 }
 
-/// Not a test: what the measured process runs. Builds LUCARNE_TEST_POINTS points and leaves its peak beside
-/// the cache.
+/// Not a test, but what the measured process runs. Builds LUCARNE_TEST_POINTS points and writes its peak to a
+/// file beside the cache.
 TEST(OutOfCore, DISABLED_BuildAndWriteDownThePeak) {
     const char* points = std::getenv("LUCARNE_TEST_POINTS");
     const char* output = std::getenv("LUCARNE_TEST_OUTPUT");
@@ -76,7 +76,7 @@ struct Measured {
     uint64_t peak = 0, chunks = 0;
 };
 
-/// The peak of a process that builds nothing else: memory that earlier tests freed must not count.
+/// Returns the peak of a process that only builds, so that memory freed by earlier tests does not count.
 Measured build_in_child(const std::filesystem::path& output, uint64_t points) {
     ::setenv("LUCARNE_TEST_POINTS", std::to_string(points).c_str(), 1);
     ::setenv("LUCARNE_TEST_OUTPUT", output.c_str(), 1);

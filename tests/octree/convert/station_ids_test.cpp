@@ -1,4 +1,4 @@
-// Which station saw a point: what a file says in any type of number, also where it makes no sense.
+// Which station saw a point, for ids of any number type, including values that make no sense.
 #include "octree/convert/chunks/station_ids.h"
 
 #include <cmath>

@@ -22,8 +22,8 @@ using test::TempFolder;
 constexpr double kRadius = 4;
 constexpr double kSphere = 4 * std::numbers::pi * kRadius * kRadius;
 
-/// A sphere sampled at random, its upper half four times as densely; seen from a station inside or, without,
-/// from nowhere. `normals`: with its true ones.
+/// A sphere sampled at random, its upper half four times as densely. It is seen from a station inside or has
+/// no station. `normals`: with its true ones.
 ComputedSource sphere(uint64_t points, bool normals = false) {
     io::Schema schema;
     if (normals) schema.add("normal", io::ScalarType::f32, 3);
@@ -71,7 +71,7 @@ std::vector<Surfel> surfels(const NodeSource& source, uint32_t node) {
 }
 
 /// The surface of the cut of all nodes down to `level`: every surfel has its own share, or the floor of the
-/// deepest node of the cut around it where that is more.
+/// deepest node of the cut around it if that is larger.
 double surface_of_cut(const NodeSource& source, uint32_t level) {
     const auto nodes = source.nodes();
     double sum = 0;
@@ -105,7 +105,7 @@ TEST(SurfaceBuild, AreasOfTheCutsOfAllLevelsAddUpToTheSurface) {
 
 TEST(SurfaceBuild, TheSurfelsOfAMeshAddUpToItsArea) {
     const TempFolder folder;
-    // A cube of 1 m, its faces turned outwards.
+    // A cube of 1 m, its faces turned outward.
     std::string cube;
     for (int i = 0; i < 8; ++i) cube += fmt::format("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2 & 1);
     cube += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
@@ -158,7 +158,7 @@ TEST(SurfaceBuild, KeepsTheInputsNormalsAndEstimatesAreasOnly) {
     const auto both = converted(source, folder / "both.luc", NormalsMode::estimate);
     EXPECT_TRUE(both->header().schema.find(io::names::normal_oct) &&
                 both->header().schema.find("normal_in_file"));
-    EXPECT_FALSE(both->header().schema.find(io::names::normal)) << "the estimated ones stand in their place";
+    EXPECT_FALSE(both->header().schema.find(io::names::normal)) << "the estimated ones replace them";
 }
 
 TEST(SurfaceBuild, IsTheSameFileForAnyThreads) {

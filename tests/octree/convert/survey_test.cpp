@@ -1,4 +1,5 @@
-// The benchmark's cloud, at a size a test can afford: what a point takes on disk needs no clock.
+// The benchmark's cloud, at a size that a test can afford. The bytes a point takes on disk can be tested
+// without a clock.
 #include <gtest/gtest.h>
 
 #include "io/synthetic/synthetic.h"
@@ -9,8 +10,8 @@
 namespace lucarne::octree {
 namespace {
 
-/// Bytes a point of the survey's cache. A million points of the same town stand wider apart than the
-/// benchmark's twenty, so that each takes about a byte more.
+/// Bytes a point of the survey's cache. A million points of the same town are farther apart than the
+/// benchmark's twenty million, so each takes about a byte more.
 double bytes_a_point(NormalsMode normals) {
     const test::TempFolder folder;
     io::SyntheticOptions scan;

@@ -1,4 +1,4 @@
-// Caches written as COPC, and read back by our own reader; other tools: tests/oracles/copc_written.py.
+// Caches written as COPC and read back by our own reader. For other tools see tests/oracles/copc_written.py.
 #include <gmock/gmock.h>
 
 #include "io/core/random.h"
@@ -14,7 +14,7 @@ namespace {
 
 using test::TempFolder;
 
-/// Points that fill no more than a corner of the last octant, again and again: many levels, few nodes.
+/// Points that always fill only a corner of the last octant: many levels, few nodes.
 test::ComputedSource spiral(uint64_t points) {
     io::Schema schema;
     schema.position = io::PositionType::i32_scaled;

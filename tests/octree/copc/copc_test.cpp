@@ -1,4 +1,4 @@
-// COPC files as octrees: real ones, and what lies in them.
+// COPC files as octrees: real ones, and ones with false contents.
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -53,7 +53,8 @@ TEST_P(SharedCopc, EveryPointIsInItsNodesCubeAndTheNodesAreATree) {
             }
         EXPECT_EQ(nodes[i].subtree_count, below);
         const Cube cube = (*copc)->cube(i);
-        const double slack = 0.501 * header.schema.scale.x + 1e-9 * header.root.size;  // quantised after
+        // Files are quantised after they are divided.
+        const double slack = 0.501 * header.schema.scale.x + 1e-9 * header.root.size;
         const auto data = (*copc)->load(i);
         ASSERT_TRUE(data) << data.error().line();
         for (uint32_t p = 0; p < data->count; ++p) {
@@ -115,7 +116,8 @@ TEST_F(CopcSquare, ItsFloorsAddUpToItsSurfaceAtEveryLevel) {
     ASSERT_GE(deepest, 2u);
     for (uint32_t level = 0; level <= deepest; ++level) {
         // A point's area is the floor of the deepest node around it, down to this level. The points of a node
-        // and its ancestors are as dense as its floor says, so its surface is its own points' share of that.
+        // and its ancestors are as dense as its floor says, so the node's surface is its own points' share of
+        // that.
         double covered = 0;
         for (const NodeInfo& node : nodes) {
             if (node.key.level > level || (node.child_mask && node.key.level < level)) continue;

@@ -1,5 +1,4 @@
-// Appending to, deleting from and compacting a cache: the points are those of a fresh build, and so is the
-// tree.
+// Appending to, deleting from and compacting a cache give the points and the tree of a new build.
 #include "octree/edit/edit.h"
 
 #include <algorithm>
@@ -35,7 +34,7 @@ io::Schema las_like() {
     return schema;
 }
 
-/// A floor with a bumpy roof over [from, from + size], every record another.
+/// A floor with a bumpy roof over [from, from + size]; all records are different.
 ComputedSource patch(uint64_t points, glm::dvec2 from, double size, uint64_t seed) {
     ComputedSource source{
         las_like(), points, [=](uint64_t index, std::byte* record) {
@@ -71,8 +70,8 @@ std::unique_ptr<CacheFile> opened(const std::filesystem::path& path) {
     return cache ? std::move(*cache) : nullptr;
 }
 
-/// Sound, and with the records of `fresh` but for what was estimated. The positions come first, and last in
-/// the schema comes what was estimated.
+/// Checks that the cache is sound and has the records of `fresh`, except for the estimates. In the schema the
+/// positions come first and the estimates last.
 void expect_points_of(const std::filesystem::path& path, const std::filesystem::path& fresh) {
     const auto verified = verify_cache(path, [](uint64_t) {});
     ASSERT_TRUE(verified) << verified.error().line();
@@ -89,7 +88,7 @@ void expect_points_of(const std::filesystem::path& path, const std::filesystem::
     EXPECT_TRUE(test::sorted_records(*cache, bytes) == test::sorted_records(*expected, bytes));
 }
 
-/// The same root cube gives the same tree, node by node, with the same floors.
+/// Checks that the same root cube gives the same tree, node by node, with the same floors.
 void expect_tree_of(const std::filesystem::path& path, const std::filesystem::path& fresh, double floors) {
     const auto cache = opened(path), expected = opened(fresh);
     ASSERT_EQ(cache->nodes().size(), expected->nodes().size());
@@ -115,7 +114,7 @@ TEST(Append, OfAScanInsideGivesTheTreeOfAFreshBuildAndLeavesMostNodesWhereTheyAr
     EXPECT_GT(report->kept_nodes, report->nodes / 3);
     expect_points_of(folder / "a.luc", folder / "fresh.luc");
     expect_tree_of(folder / "a.luc", folder / "fresh.luc", 1e-4);
-    // What was there stays, byte by byte, but for one superblock.
+    // The old bytes stay unchanged, except for one superblock.
     const auto after = io::testing::read_bytes(folder / "a.luc");
     EXPECT_EQ(after.substr(0, 4096), before.substr(0, 4096));
     EXPECT_EQ(after.substr(8192, before.size() - 8192), before.substr(8192));
@@ -164,7 +163,7 @@ TEST(Append, UnifiesOtherAttributesAndLatticesAsAFreshBuildDoes) {
     other.stride = 12;
     other.add("gps_time", io::ScalarType::f64);
     other.add("intensity", io::ScalarType::u8);
-    other.add("area", io::ScalarType::f32);  // called like one of ours
+    other.add("area", io::ScalarType::f32);  // the name of one of the cache's own attributes
     const ComputedSource second{other, 2'000, [](uint64_t index, std::byte* record) {
                                     Random random(9, index);
                                     io::store(record, static_cast<float>(400 + 3 * random.uniform()));
@@ -221,8 +220,8 @@ TEST(Append, LeavesReadersWithTheStateTheyOpened) {
     EXPECT_TRUE(test::sorted_records(*reader, 20) == before);
 }
 
-/// Of the points of a cache with normals, by their height over 2: the mean |normal.z|, the share of normals
-/// that point up, the sum of areas.
+/// The points of a cache with normals that are on the floor (z at most 102): their mean |normal.z|, the share
+/// of normals that point up, the sum of areas.
 struct Surface {
     double upright = 0, up = 0, area = 0;
     uint64_t points = 0;
@@ -262,8 +261,8 @@ TEST(Append, GivesNewPointsNormalsAndSharesTheSurfaceAnew) {
     const Surface after = surface_of_floor(folder / "a.luc");
     EXPECT_EQ(after.points, 2 * before.points);
     EXPECT_GT(after.upright, 0.99);
-    EXPECT_NEAR(after.up, before.up, 0.01);  // the new ones point to the side of the old
-    // Twice the points on the same floor: it grows no larger.
+    EXPECT_NEAR(after.up, before.up, 0.01);  // the new normals point to the side of the old ones
+    // Twice the points on the same floor must not increase its area.
     EXPECT_NEAR(before.area / 900, 1, 0.05);
     EXPECT_NEAR(after.area / 900, 1, 0.05);
 }
@@ -353,7 +352,8 @@ TEST(GrownRoot, KeepsEveryPlaceInItsOldNode) {
         for (int i = 0; i < 2000; ++i) {
             glm::dvec3 p = first.min + first.size / (1 + 1e-9) *
                                            glm::dvec3(random.uniform(), random.uniform(), random.uniform());
-            if (i % 2) p = glm::dvec3(first.of(first.place(p).key(9)).min);  // on a border, but for rounding
+            // On a border, except for rounding.
+            if (i % 2) p = glm::dvec3(first.of(first.place(p).key(9)).min);
             const NodeKey key = first.place(p).key(10);
             ASSERT_EQ(grown->place(p).key(10 + grown->doublings), shift(key));
         }

@@ -1,5 +1,4 @@
-// Which normals a cache shows and gives back: the file's own, or the estimated ones that were asked for
-// instead.
+// Which normals a cache shows and exports: the file's own, or the estimated ones that were requested instead.
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
@@ -18,7 +17,7 @@ namespace {
 using test::ComputedSource;
 using test::TempFolder;
 
-/// A floor, seen from above, whose normals say that it is a wall.
+/// A floor, seen from above, whose normals are those of a wall.
 ComputedSource floor_with(const glm::vec3& normal, uint64_t seed = 1) {
     io::Schema schema;
     schema.position = io::PositionType::f32;
@@ -61,7 +60,7 @@ void write_scan(const io::PointSource& source, const std::filesystem::path& path
     ASSERT_TRUE((*writer)->finish());
 }
 
-/// How many points have a normal for which `holds`. Formats without vectors have an attribute a component.
+/// Counts the points whose normal satisfies `holds`. Formats without vectors have an attribute per component.
 template <class Holds>
 size_t count(const io::PointSource& scan, const std::string& name, const Holds& holds) {
     const auto& schema = scan.schema();

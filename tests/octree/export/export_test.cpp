@@ -14,7 +14,7 @@ namespace {
 
 using test::TempFolder;
 
-/// A mesh is its vertices here: samples of its surface are not in the file.
+/// Reads a mesh as its vertices: samples of its surface are not in the file.
 const io::ReadOptions kVertices{"", true, {0, 0, true}};
 
 Result<void> convert(std::vector<const io::PointSource*> inputs, const std::filesystem::path& cache) {
@@ -30,7 +30,7 @@ Result<void> export_to(const std::filesystem::path& cache, const std::filesystem
     return exporter.write(*writer, [](uint64_t) {});
 }
 
-/// Scan, cache, scan: `extension` is that of the file written at the end.
+/// Converts a scan and exports it. `extension` is that of the written file.
 void expect_same_after_round_trip(const std::filesystem::path& scan, const std::string& extension) {
     SCOPED_TRACE(scan.string());
     const TempFolder folder;
@@ -71,7 +71,7 @@ test::ComputedSource cloud(io::PositionType position, uint64_t seed) {
     if (position != io::PositionType::i32_scaled) {
         schema.add("normal", io::ScalarType::f32, 3);
         schema.add("temperature", io::ScalarType::f64);
-        schema.add("area", io::ScalarType::f32);  // called like one of ours
+        schema.add("area", io::ScalarType::f32);  // the name of one of the cache's own attributes
     }
     return {schema, 40'000, [schema, seed](uint64_t index, std::byte* record) {
                 Random random(seed, index);
@@ -123,7 +123,7 @@ TEST(Export, KeepsTheScanOfEachPointOfSeveral) {
     EXPECT_EQ(second, 40'000u);
 }
 
-/// Points of one colour, all components alike.
+/// Points of one colour, all components equal.
 test::ComputedSource of_colour(io::ScalarType type, double value, uint32_t bits) {
     io::Schema schema;
     schema.add(std::string(io::names::color), type, 3);
@@ -158,7 +158,7 @@ TEST(Export, SpreadsColoursOf8BitsAmongOthersOf16) {
     }
 }
 
-/// What a damaged cache may say: points have the number of a scan, but there is none.
+/// A damaged cache may have points whose scan number names no scan.
 class WithoutScans final : public NodeSource {
  public:
     WithoutScans() {

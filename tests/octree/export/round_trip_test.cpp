@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 using io::testing::Records;
 using io::testing::TemporaryFolder;
 
-/// A component of an attribute, however the format spreads an attribute's components: text headers have no
-/// blanks in their names, PLY no integers of 64 bits.
+/// A component of an attribute, however the format stores its components: names in text headers have no
+/// blanks, PLY has no integers of 64 bits.
 std::optional<double> value_of(const io::Schema& schema, const std::byte* record, const io::Attribute& wanted,
                                uint32_t component) {
     const auto at = [&](const io::Attribute& a, uint32_t c) {
@@ -35,7 +35,8 @@ std::optional<double> value_of(const io::Schema& schema, const std::byte* record
     return std::nullopt;
 }
 
-/// One row a point: its place in steps of `like`'s scale, or as it is, and the attributes of `like`, sorted.
+/// One row per point: its position, in steps of `like`'s scale or unchanged, and the attributes of `like`,
+/// sorted.
 using Rows = std::vector<std::vector<double>>;
 Rows rows_of(const io::PointSource& scan, const io::Schema& like) {
     Rows rows;
@@ -113,7 +114,7 @@ const Coordinates kPlaces[] = {{"UTM", 0.001, 500'000, 4'649'776, 0, 9001},
                                {"Oregon, US survey feet", 0.01, 636'000, 848'000, 0, 9003},
                                {"feet from nowhere", 0.00025, 0, 0, 0, 9002}};
 
-/// Points of a place at the ends of what 32 bits hold and near its middle, with every field in use.
+/// Points at both ends of the range of 32 bits and near its middle, with every field in use.
 io::testing::LasFile scan_of(const Coordinates& place, uint8_t format) {
     io::testing::LasFile las;
     las.minor = 4;
@@ -162,7 +163,7 @@ TEST(RoundTrip, OfTheSharedScansKeepsThemAsWell) {
     if (shared.empty()) GTEST_SKIP() << "the shared data is not here";
     for (const char* name : {"las/1.2-with-color.copc.laz", "las/extrabytes.las", "las/5points_14.las"})
         expect_round_trips(shared / name, kAll);
-    expect_round_trips(shared / "las/test1_4.las", kAll);  // a scale that is no decimal fraction
+    expect_round_trips(shared / "las/test1_4.las", kAll);  // a scale that is not a decimal fraction
     for (const char* name : {"ply/ankylosaurus_ascii_rgb_normals.ply", "ply/text_extradim.ply",
                              "e57/bunnyInt19.e57", "ptx_pts/multiple-and-transform.ptx"})
         expect_round_trips(shared / name, kFloating);
@@ -181,7 +182,7 @@ TEST(RoundTrip, LightGetsMetresWhereTheCacheKeepsFeet) {
     const auto cache = open_cache(options.output);
     ASSERT_TRUE(cache);
     EXPECT_EQ((*cache)->header().metres_per_unit, 1200.0 / 3937.0);
-    EXPECT_GE((*cache)->header().min.x, 636'000.0);  // feet, as the file has them
+    EXPECT_GE((*cache)->header().min.x, 636'000.0);  // feet, as in the file
 }
 
 }  // namespace

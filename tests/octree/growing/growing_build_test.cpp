@@ -23,7 +23,7 @@ using test::TempFolder;
 constexpr double kSide = 20, kRadius = 3;  // m
 constexpr double kSurface = kSide * kSide + 4 * std::numbers::pi * kRadius * kRadius;
 
-/// A square and a sphere over it, line after line as a scanner would; each point has a number of its own.
+/// A square and a sphere above it, line after line as from a scanner; each point has a number of its own.
 std::unique_ptr<ComputedSource> scene(uint64_t points) {
     io::Schema schema;
     schema.position = io::PositionType::f64;
@@ -60,13 +60,13 @@ GrowingOptions options_for(const std::filesystem::path& output, NormalsMode norm
     GrowingOptions options;
     options.build.output = output;
     options.build.normals = normals;
-    options.build.memory = uint64_t{32} << 20;  // many chunks
+    options.build.memory = uint64_t{32} << 20;  // small, so that there are many chunks
     options.sample_points = 20'000;
     options.seconds_between = 0;
     return options;
 }
 
-/// All sources of a build, the first and the cache among them.
+/// All sources of a build, including the first and the cache.
 std::vector<std::shared_ptr<const NodeSource>> all_sources(GrowingBuild& build) {
     std::vector<std::shared_ptr<const NodeSource>> sources = {build.state().source};
     build.begin([&] {
@@ -89,7 +89,7 @@ std::vector<uint64_t> numbers_in(const NodeSource& source) {
     return numbers;
 }
 
-/// Whether the directory is one: parents before children, children in octant order, counts that add up.
+/// Checks the directory: parents before children, children in octant order, counts that add up.
 ::testing::AssertionResult is_directory(std::span<const NodeInfo> nodes) {
     size_t next = 1;
     std::vector<uint64_t> below(nodes.size(), 0);
@@ -121,7 +121,7 @@ TEST(GrowingBuild, ItsFirstSourceCoversTheWholeExtent) {
         const auto numbers = numbers_in(*source);
         EXPECT_GT(numbers.size(), 15'000u);
         EXPECT_LT(numbers.size(), 45'000u);
-        // As many from each hundredth of the file, within what chance allows.
+        // Each hundredth of the file has the same number, within random variation.
         std::array<size_t, 100> parts{};
         for (const uint64_t number : numbers) ++parts[number / 5000];
         const size_t even = numbers.size() / parts.size();
@@ -137,7 +137,7 @@ TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
     ASSERT_TRUE(build) << build.error().line();
     const auto sources = all_sources(**build);
     ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
-    // How many depends on how long each takes to be made: they get a twentieth of the time.
+    // Their number depends on how long each takes to make: they get a twentieth of the time.
     EXPECT_GT(sources.size(), 2u) << "something comes between the first and the cache";
     size_t last = 0;
     for (const auto& source : sources) {
@@ -168,7 +168,7 @@ TEST(GrowingBuild, EndsWithTheCacheThatABuildAloneMakes) {
     EXPECT_EQ(last->nodes().size(), (*cache)->nodes().size());
 }
 
-/// The sum of the areas of what a cut down to `level` shows, as gi/scene reckons it.
+/// The sum of the areas that a cut down to `level` shows, computed as gi/scene does.
 double surface_at(const NodeSource& source, uint32_t level) {
     const auto& schema = source.header().schema;
     const auto* area = schema.find(io::names::area);
@@ -184,7 +184,7 @@ double surface_at(const NodeSource& source, uint32_t level) {
                 decode_area(io::load<uint16_t>(record + area->offset), source.header().root.size));
             const Place place = source.header().root.place(io::position_of(schema, record));
             uint32_t node = i;
-            bool whole = false;  // all there is: its own share holds
+            bool whole = false;  // no deeper node: the point's own share applies
             while (nodes[node].key.level < level || nodes[node].child_mask == 0) {
                 const uint32_t octant = place.key(nodes[node].key.level + 1).octant();
                 if (whole = !(nodes[node].child_mask >> octant & 1); whole) break;
@@ -212,12 +212,12 @@ TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
 
 TEST(GrowingBuild, StoppedInTheMiddleItLeavesNothing) {
     const TempFolder folder;
-    std::counting_semaphore<> changes(0);  // outlives the build, which reports its end as well
+    std::counting_semaphore<> changes(0);  // outlives the build, which also calls it at its end
     {
         const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));
         ASSERT_TRUE(build) << build.error().line();
         (*build)->begin([&] { changes.release(); });
-        changes.acquire();  // the build runs
+        changes.acquire();  // the build is running
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

@@ -21,7 +21,7 @@ double floored_sum(std::span<const float> areas, double floor) {
 std::vector<float> random_areas(size_t count, uint64_t seed) {
     Random random(seed);
     std::vector<float> areas(count);
-    // Over four decades, a tenth unknown, some repeated: what nodes of uneven scans hold.
+    // Over four decades, a tenth of them unknown, some repeated, as in nodes of uneven scans.
     for (float& a : areas) {
         const double u = random.uniform();
         a = u < 0.1 ? 0.0f : u < 0.2 ? 0.01f : static_cast<float>(std::pow(10.0, -4.0 * random.uniform()));

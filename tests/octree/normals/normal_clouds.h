@@ -1,4 +1,4 @@
-// Clouds of known truth for the tests of octree/normals, held in memory behind ChunkAccess.
+// Clouds with known normals for the tests of octree/normals, in memory behind ChunkAccess.
 #pragma once
 
 #include <cmath>
@@ -17,11 +17,11 @@ namespace lucarne::octree::testing {
 
 struct Cloud {
     std::vector<glm::dvec3> points;
-    std::vector<glm::dvec3> normals;  ///< the truth, on the side that is seen
+    std::vector<glm::dvec3> normals;  ///< the true normals, on the side that is seen
     std::vector<int32_t> stations;    ///< empty: unknown
 };
 
-/// A cloud cut into `parts`^3 equal cells.
+/// A cloud divided into `parts`^3 equal cells.
 class MemoryChunks final : public ChunkAccess {
  public:
     MemoryChunks(const Cloud& cloud, uint32_t parts) : members_(size_t{parts} * parts * parts) {
@@ -67,7 +67,7 @@ class MemoryChunks final : public ChunkAccess {
     mutable std::atomic<size_t> loads_{0}, loaded_points_{0};
 };
 
-/// Oriented normals and areas in the order of the cloud's points.
+/// Estimates oriented normals and areas, in the order of the cloud's points.
 struct Estimate {
     std::vector<glm::vec3> normals;
     std::vector<float> areas;
@@ -101,12 +101,12 @@ inline Estimate estimate(const Cloud& cloud, const NormalOptions& options = {}, 
     return whole;
 }
 
-/// How an estimate compares with the truth.
+/// Compares an estimate with the truth.
 struct Score {
-    double angle = 0;     ///< mean, degrees, of normals as lines
+    double angle = 0;     ///< mean angle in degrees, regardless of sign
     double oriented = 0;  ///< share of the estimated normals on the true side
     double marked = 0;    ///< share of points without a normal
-    double area = 0;      ///< sum
+    double area = 0;      ///< sum of the areas
 };
 inline Score score(const Cloud& cloud, const Estimate& estimate) {
     Score s;
@@ -131,7 +131,7 @@ inline double gaussian(Random& random) {
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
 }
 
-/// A unit square at z = 0, seen from above, `noise` along z.
+/// A unit square at z = 0, seen from above, with `noise` along z.
 inline Cloud plane(size_t count, double noise = 0, uint64_t seed = 1) {
     Random random(seed);
     Cloud cloud;

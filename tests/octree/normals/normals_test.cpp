@@ -21,7 +21,7 @@ void print(const char* name, const Score& s, double area) {
                 s.oriented, s.marked, s.area / area);
 }
 
-/// What photogrammetry leaves in the air: crumbs of a few points, far from the body and from each other.
+/// Outliers as photogrammetry leaves them: groups of a few points, far from the body and from each other.
 TEST(Normals, CrumbsInTheAirHaveNoDiscAsWideAsTheirDistance) {
     Cloud cloud = sphere(100000);
     const size_t body = cloud.points.size();
@@ -136,14 +136,15 @@ TEST(Normals, TinyCloudsGiveWhatTheyCan) {
 
 TEST(Normals, AnIsolatedPointIsMarkedAndDoesNotLoadTheWorld) {
     Cloud cloud = plane(20000);
-    cloud.points.push_back({0.5, 0.5, 3.0});  // a bird over the roof
+    cloud.points.push_back({0.5, 0.5, 3.0});  // an outlier above the roof
     cloud.points.push_back({100e3, 0, 0});
     cloud.normals.resize(cloud.points.size(), glm::dvec3(0, 0, 1));
     for (const uint32_t parts : {1u, 4u}) {
         const Estimate result = estimate(cloud, {}, parts);
         for (const size_t lone : {20000u, 20001u}) {
             EXPECT_EQ(result.normals[lone], glm::vec3(0.0f));
-            EXPECT_LT(result.areas[lone], 0.01);  // of its neighbours, not of the empty space around it
+            // The neighbours' area, not that of the empty space around it.
+            EXPECT_LT(result.areas[lone], 0.01);
         }
         EXPECT_NEAR(score(cloud, result).area, 1, 0.04);
     }
@@ -210,7 +211,7 @@ TEST(Normals, CoordinatesThatAreNoNumbersAreRefused) {
     }
 }
 
-/// The share of points whose result differs from that of the cloud in one piece.
+/// The share of points whose result differs from that of the undivided cloud.
 double changed(const Estimate& a, const Estimate& b) {
     size_t different = 0;
     for (size_t i = 0; i < a.normals.size(); ++i)
@@ -218,7 +219,7 @@ double changed(const Estimate& a, const Estimate& b) {
     return static_cast<double>(different) / static_cast<double>(a.normals.size());
 }
 
-/// The same, but for rounding: offsets are rounded to floats from wherever a chunk's leaves begin.
+/// The same, with a tolerance for rounding: offsets are rounded to floats relative to each chunk's leaves.
 double changed_visibly(const Estimate& a, const Estimate& b) {
     size_t different = 0;
     for (size_t i = 0; i < a.normals.size(); ++i)
@@ -234,7 +235,7 @@ TEST(Normals, ChunkBordersDoNotShow) {
     const Estimate whole = estimate(cloud, {}, 1);
     for (const uint32_t parts : {2u, 3u, 4u, 7u}) {
         NormalOptions options;
-        options.memory = 20 << 20;  // several waves, a cache that forgets
+        options.memory = 20 << 20;  // several waves, and a cache too small for all chunks
         const double share = changed_visibly(whole, estimate(cloud, options, parts));
         std::printf("%u chunks: %.5f of the points differ from one chunk\n", parts * parts * parts, share);
         EXPECT_LT(share, 1e-3) << parts;

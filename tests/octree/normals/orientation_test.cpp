@@ -32,7 +32,7 @@ Cloud wavy_sheet(size_t count) {
     return cloud;
 }
 
-/// A torus on its edge: its top is outside, but half of its surface looks at its own centre.
+/// A torus on its edge. Its top is outside, but half of its surface faces its own centre.
 Cloud torus(size_t count) {
     Random random(2);
     Cloud cloud;
@@ -54,7 +54,7 @@ Cloud room(size_t count) {
     return cloud;
 }
 
-/// Random groups whose halves agree by many votes, and one strong vote between the halves that is false.
+/// Random groups whose halves agree by many votes; one strong vote between the halves is false.
 TEST(Orientation, ManyVotesBetweenTwoHalvesOutdoAStrongFalseOne) {
     constexpr uint32_t kHalf = 200;
     Random random(7);
@@ -165,8 +165,8 @@ TEST(Orientation, PointsFaceTheStationThatSawThem) {
     for (const uint32_t parts : {1u, 3u})
         EXPECT_GT(oriented("room, one station", inside, parts, options), 0.9995);
 
-    // Two stations on either side of a wall that is thinner than the neighbourhoods: only the stations can
-    // tell.
+    // Two stations on the two sides of a wall that is thinner than the neighbourhoods. Only the stations tell
+    // the sides apart.
     Cloud wall = plane(10000, 0, 1);
     append(wall, plane(10000, 0, 2), {0, 0, -0.02});
     options.stations = {{0.5, 0.5, 1}, {0.5, 0.5, -1}};

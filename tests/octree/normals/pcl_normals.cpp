@@ -22,9 +22,9 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Search = pcl::search::Search<pcl::PointXYZ>;
 
-/// Our neighbours behind PCL's interface. The nearest of the cloud's own points, which is what estimators ask
-/// for one by one and in their own order, are found for all points at once when they are asked for first;
-/// other places are looked up one by one.
+/// Our neighbour search behind PCL's interface. Estimators ask for the nearest of the cloud's own points one
+/// by one and in their own order, so the first request finds those of all points at once. Other positions are
+/// searched one by one.
 class LeafSearch final : public Search {
  public:
     LeafSearch() : Search("leaves along a Morton curve", true) {}
@@ -100,7 +100,7 @@ class LeafSearch final : public Search {
         return points;
     }
 
-    /// For other places than the cloud's own points.
+    /// For positions that are not points of the cloud.
     const LeafIndex& index() const {
         const std::lock_guard lock(mutex_);
         if (!index_) {
@@ -147,7 +147,7 @@ class LeafSearch final : public Search {
     mutable PointArrays sorted_;
     mutable std::vector<uint32_t> order_;
     mutable std::unique_ptr<LeafIndex> index_;
-    mutable size_t asked_ = 0;  ///< neighbours a point in the table
+    mutable size_t asked_ = 0;  ///< neighbours per point in the table
     mutable std::vector<Entry> table_;
 };
 

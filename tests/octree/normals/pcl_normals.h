@@ -10,9 +10,9 @@
 
 namespace lucarne::octree {
 
-/// Normals by PCL's own estimator, pcl::NormalEstimationOMP: over the search it takes by default (FLANN's
-/// kd-tree), or over ours, plugged in as a pcl::search::Search. What our stage is compared with. Unit, toward
-/// the origin; not finite where PCL gives none.
+/// Estimates normals by PCL's own estimator, pcl::NormalEstimationOMP, for comparison with ours. It uses
+/// PCL's default search (FLANN's kd-tree) or ours, plugged in as a pcl::search::Search. The normals are unit
+/// and face the origin; they are not finite where PCL finds none.
 std::vector<glm::vec3> pcl_normals(std::span<const glm::vec3> points, int neighbours, NeighbourSearch search);
 
 }  // namespace lucarne::octree

@@ -1,4 +1,4 @@
-// PCL's own estimator over its own search and over ours.
+// PCL's own estimator with its own search and with ours.
 #include "tests/octree/normals/pcl_normals.h"
 
 #include <cmath>
@@ -75,7 +75,7 @@ TEST(PclNormals, PlanesAreThePrincipalAxesOfTheirPoints) {
 TEST(PclNormals, LeavesFindTheNeighboursThatFlannFinds) {
     Random random(4);
     std::vector<glm::dvec3> points;
-    for (int i = 0; i < 20000; ++i) {  // a dense cluster, a sheet, a few far outliers
+    for (int i = 0; i < 20000; ++i) {  // a dense cluster, a sheet, a few distant outliers
         const double scale = i % 100 == 0 ? 1e4 : i % 2 ? 1.0 : 1e-3;
         points.push_back(glm::dvec3(gaussian(random), gaussian(random), i % 3 ? 0.0 : gaussian(random)) *
                          scale);

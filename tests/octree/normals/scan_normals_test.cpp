@@ -52,13 +52,12 @@ TEST(ScanNormals, FollowTheTruthIndoorsWithoutStations) {
     }
 }
 
-/// Mixed pixels are known by their distance from an even sampling of the scene, which is some millimetres
-/// dense.
-/// Those that are drawn must not be wide: such a disc hangs in the air for all to see.
+/// Mixed pixels are found by their distance from an even sampling of the scene at a spacing of some
+/// millimetres. Those that are still drawn must not be wide, because such a disc is visible in the air.
 TEST(ScanNormals, MixedPixelsInTheAirAreLeftOutAndSurfacesAreNot) {
     constexpr double kInTheAir = 0.05;
     for (const char* scene : {"two-rooms", "nave"}) {
-        // In the nave it is the dense walls behind that make points before them hard to tell.
+        // In the nave, points in front of dense walls are hard to tell from them.
         const Scan scan = scan_of(scene, std::string(scene) == "nave" ? 3000000 : 400000);
         const Scan truth = scan_of(scene, 2000000, true);
         NormalOptions options;

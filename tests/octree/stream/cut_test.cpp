@@ -15,7 +15,7 @@ namespace {
 
 using test::PlaneSource;
 
-/// A camera over the square, looking along `forward` with a 60 degree field.
+/// A camera over the square, looking along `forward` with a field of view of 60 degrees.
 View camera(const glm::dvec3& position, const glm::dvec3& forward, uint32_t pixels = 512) {
     View view;
     view.position = position;
@@ -36,7 +36,7 @@ std::map<uint32_t, uint32_t> prefixes(const Cut& cut) {
 
 void expect_sound(const NodeSource& source, const Cut& cut, uint64_t budget) {
     const auto count = prefixes(cut);
-    ASSERT_EQ(count.size(), cut.nodes.size()) << "a node stands twice";
+    ASSERT_EQ(count.size(), cut.nodes.size()) << "a node occurs twice";
     EXPECT_TRUE(std::ranges::is_sorted(cut.nodes, {}, &CutNode::node));
     uint64_t points = 0;
     for (const CutNode& node : cut.nodes) {
@@ -123,7 +123,7 @@ TEST(Cut, LeavesOutWhatTheViewCannotSeeAndHoldsWhatItCan) {
     const PlaneSource source(7, 500, 100.0);
     const View view = camera({50, 50, 10}, kDown);
     const auto count = prefixes(view_cut(source, view, UINT64_MAX, 4.0));
-    const double seen = 10 * view.tan_half_width;  // half the side of the square on the ground that is seen
+    const double seen = 10 * view.tan_half_width;  // half the side of the visible square on the ground
     for (uint32_t node = 0; node < source.nodes().size(); ++node) {
         const NodeInfo& info = source.nodes()[node];
         const Cube cube = source.header().root.of(info.key);
@@ -141,7 +141,7 @@ TEST(Cut, LeavesOutWhatTheViewCannotSeeAndHoldsWhatItCan) {
     }
     View away = camera({50, 50, 10}, {0, 0, 1});
     away.near_plane = 1.0;
-    away.position.z = 101.0 + 1000.0;  // over the root's cube, looking up
+    away.position.z = 101.0 + 1000.0;  // above the root's cube, looking up
     EXPECT_TRUE(view_cut(source, away, UINT64_MAX).nodes.empty());
 }
 
@@ -170,7 +170,7 @@ TEST(Cut, ChangesByNoMoreThanTheStatedBoundWhenTheCameraMovesSlightly) {
         view.position.z = height * (1 - share);
         const auto after = prefixes(view_cut(source, view, UINT64_MAX));
         for (uint32_t node = 0; node < source.nodes().size(); ++node) {
-            // Nodes that enter or leave at the picture's border are not the level of detail's business.
+            // Nodes at the picture's border are culled or not, which is not a change of the level of detail.
             const Cube cube = source.header().root.of(source.nodes()[node].key);
             const double across = glm::length(glm::dvec2(cube.min) + cube.size / 2 - 50.0) + cube.size;
             if (across > height * view.tan_half_width * 0.9) continue;
@@ -186,7 +186,7 @@ TEST(Cut, ChangesSmoothlyUnderAHitBudgetToo) {
     View view = camera({50, 50, 12}, {0.5, 0.2, -0.6});
     auto before = prefixes(view_cut(source, view, 60000, 0.1));
     for (int step = 0; step < 100; ++step) {
-        view.position += glm::dvec3(0.004, 0.002, -0.006);  // .05 % of the distance to the ground and more
+        view.position += glm::dvec3(0.004, 0.002, -0.006);  // at least .05 % of the distance to the ground
         const auto after = prefixes(view_cut(source, view, 60000, 0.1));
         uint64_t changed = 0;
         for (const auto& [node, count] : after)
@@ -209,7 +209,7 @@ TEST(Cut, VisitsOnlyWhatItNeedsOfAMillionNodes) {
     EXPECT_LT(light.visited, 12 * light.nodes.size());
 }
 
-/// The level of the deepest node of a cut that holds a place of the plane.
+/// The level of the deepest node of a cut that contains a position on the plane.
 int level_at(const PlaneSource& source, const Cut& cut, double x, double y) {
     const auto count = prefixes(cut);
     uint32_t node = 0;
@@ -228,10 +228,10 @@ TEST(Cut, TheLightCutIsFineAtItsCentreCoarseFarAwayAndMissesNothing) {
     const Cut cut = light_cut(source, {200, 200, 2}, 400000);
     EXPECT_GT(level_at(source, cut, 200, 200), level_at(source, cut, 950, 950) + 1);
     EXPECT_GE(level_at(source, cut, 950, 950), 1)
-        << "the far corner is behind any camera at the centre and there all the same";
+        << "the far corner is behind a camera at the centre, but must be in the cut";
 }
 
-/// A bird a hundred kilometres away makes the whole large, not what is looked at.
+/// An outlier a hundred kilometres away enlarges the whole scene, but not the robust bounds.
 TEST(Cut, TheLightCutIsFineWhereTheScanIsHoweverFarStraysAre) {
     const PlaneSource source(8, 500, 1000.0);
     const glm::dvec3 centre{200, 200, 2};
@@ -288,8 +288,8 @@ TEST(Cut, KeepsNodesWithoutPointsOfTheirOwnAboveThoseThatHaveThem) {
     expect_sound(source, cut, 50000);
 }
 
-/// What is wrong in the picture while only `held` are loaded: over rays to the plane, the spacing of the
-/// points met, in pixels, above that of the whole cut.
+/// The error of the picture while only `held` are loaded: the spacing of the points along rays to the plane,
+/// in pixels, above that of the whole cut, summed.
 double spacing_error(const PlaneSource& source, const Cut& cut, const std::set<uint32_t>& held,
                      const View& view) {
     const auto count = prefixes(cut);
@@ -302,7 +302,7 @@ double spacing_error(const PlaneSource& source, const Cut& cut, const std::set<u
             const double along = -view.position.z / ray.z;
             const glm::dvec3 point = view.position + ray * along;
             if (point.x < 0 || point.y < 0 || point.x >= 100 || point.y >= 100) continue;
-            double density = 0, here = 0;  // points a unit^2: of the whole cut, of what is held
+            double density = 0, here = 0;  // points a unit^2: of the whole cut, of the resident nodes
             for (uint32_t node = 0, parent_held = 1;;) {
                 if (!count.contains(node)) break;
                 const double side = source.cube(node).size, added = count.at(node) / (side * side);

@@ -128,7 +128,7 @@ TEST(JoinedSource, OneCutOverTwoHundredCachesKeepsToOneBudgetAndAFewHandles) {
         for (const CutNode& node : cut.nodes) of_part[joined->part_of(node.node).index] += node.count;
         EXPECT_GT(std::ranges::min(of_part), 0u) << "every scan is seen";
     }
-    // All of it through a residency with a cap for a part of it.
+    // All of it through a residency whose cap holds only a part.
     const Cut cut = full_cut(*joined);
     const Cut* cuts[] = {&cut};
     Residency residency(*joined, {.memory = uint64_t{1} << 30, .threads = 4});

@@ -14,7 +14,7 @@ namespace {
 
 using test::PlaneSource;
 
-/// At `place`, looking `angle` round from +x in the plane.
+/// A view at `place`, turned by `angle` from +x in the plane.
 View at(const glm::dvec3& place, double angle) {
     View view;
     view.position = place;
@@ -46,15 +46,15 @@ TEST(Motion, OfACameraThatStandsOrHasJumpedIsUnknown) {
     EXPECT_FALSE(motion.ahead(5));
     motion.observe(at({0, 0, 0}, 0));
     motion.observe(at({0, 0, 0}, 0));
-    EXPECT_FALSE(motion.ahead(5)) << "it stands";
+    EXPECT_FALSE(motion.ahead(5)) << "the camera stands still";
     motion.observe(at({1, 0, 0}, 0));
     EXPECT_TRUE(motion.ahead(5));
     motion.forget();
     EXPECT_FALSE(motion.ahead(5));
 }
 
-/// A camera glides over a plane; after each frame the stream has time to load so many nodes. How many of the
-/// nodes wanted were not there in their frame.
+/// Flies a camera over a plane. After each frame there is time to load `loads_a_frame` nodes. Returns how
+/// many wanted nodes were missing in their frames.
 size_t missing_along_a_flight(bool prefetch, size_t loads_a_frame) {
     const PlaneSource source(7, 500, 100.0);
     Motion motion;

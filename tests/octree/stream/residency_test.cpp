@@ -29,7 +29,7 @@ void want(Residency& residency, const Cut& cut) {
     residency.want(cuts);
 }
 
-/// What a caller would hold after the events, checked for order and the cap at every step.
+/// Replays the events as a caller would, and checks their order and the cap at every step.
 class Replay {
  public:
     explicit Replay(uint64_t cap) : cap_(cap) {}
@@ -118,7 +118,8 @@ TEST(Residency, LoadsEverythingWantedThatFits) {
 TEST(Residency, LoadsTheMostImportantFirstAndParentsBeforeChildren) {
     const PlaneSource source(3, kPoints, 10.0);
     Residency residency(source, {.threads = 1});
-    // Node 2's child 9 matters most, so its ancestors come before it and before node 1 with all of its own.
+    // Node 2's child 9 is the most important, so its ancestors come before it, and before node 1 and its
+    // child 5.
     want(residency, cut_of(source, {{0, 1}, {1, 5}, {2, 0}, {3, 4}, {5, 5}, {9, 9}}));
     residency.wait();
     EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 2, 9, 1, 5, 3}));
@@ -134,12 +135,12 @@ TEST(Residency, HoldsTheMostImportantThatFitAndCountsTheRest) {
         residency.wait();
         replay.play(residency.poll());
         std::set<uint32_t> expected;
-        for (uint32_t node = 0; node < kFit; ++node) expected.insert(node);  // breadth first: coarse first
+        for (uint32_t node = 0; node < kFit; ++node) expected.insert(node);  // breadth first, so coarse first
         EXPECT_EQ(replay.held(), expected);
         EXPECT_EQ(residency.stats().refused, source.nodes().size() - kFit);
         EXPECT_EQ(residency.stats().pending, 0u);
     }
-    EXPECT_EQ(residency.stats().loads, kFit) << "the same wish loads nothing twice";
+    EXPECT_EQ(residency.stats().loads, kFit) << "repeating a request loads nothing twice";
     EXPECT_EQ(residency.stats().evictions, 0u);
     EXPECT_LE(residency.stats().bytes_peak, kFit * kNode + kNode / 2);
 }
@@ -177,8 +178,8 @@ TEST(Residency, NeverEvictsAWantedNodeForALessImportantOne) {
         want(residency, cut);
         residency.wait();
         replay.play(residency.poll());
-        // Held: exactly the kFit most important, so whatever went was less important than all that stayed or
-        // came.
+        // The kFit most important nodes are resident, so every evicted node was less important than all
+        // others.
         std::ranges::sort(wishes, [](const auto& a, const auto& b) {
             return a.second != b.second ? a.second > b.second : a.first < b.first;
         });
@@ -230,7 +231,7 @@ TEST(Residency, DropsLoadsNotStartedThatNobodyWantsAnyMore) {
     want(residency, full_cut(source));
     source.await(1);
     want(residency, cut_of(source, {{0, 2}, {3, 1}}));
-    EXPECT_EQ(residency.stats().pending, 2u) << "the root on its way and node 3";
+    EXPECT_EQ(residency.stats().pending, 2u) << "the root, which is being loaded, and node 3";
     source.open();
     residency.wait();
     EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 3}));
@@ -241,7 +242,7 @@ TEST(Residency, WhateverALoadOrItsPreparationThrowsIsAnErrorOfItsNodeAlone) {
     source.throw_at(2);
     Residency residency(source,
                         {.memory = 100 * kNode, .threads = 2, .prepare = [](uint32_t node, NodeData&& data) {
-                             if (node == 3) throw node;  // no std::exception
+                             if (node == 3) throw node;  // not a std::exception
                              return std::move(data);
                          }});
     const Cut cut = full_cut(source);
@@ -255,7 +256,7 @@ TEST(Residency, WhateverALoadOrItsPreparationThrowsIsAnErrorOfItsNodeAlone) {
     const size_t loads = source.order().size();
     want(residency, cut);
     EXPECT_TRUE(residency.wait());
-    EXPECT_EQ(source.order().size(), loads) << "a node that failed is not asked for again";
+    EXPECT_EQ(source.order().size(), loads) << "a failed node is not requested again";
     EXPECT_TRUE(residency.take_error());
 }
 
@@ -273,7 +274,7 @@ TEST(Residency, ReportsAFailedLoadOnceAndDoesNotTryItAgain) {
     EXPECT_EQ(residency.stats().pending, residency.stats().nodes_held) << "not polled yet";
     residency.poll();
     EXPECT_EQ(residency.stats().pending, 0u);
-    EXPECT_EQ(residency.stats().refused, 0u) << "what failed is not short of memory";
+    EXPECT_EQ(residency.stats().refused, 0u) << "failed nodes do not count as refused";
     EXPECT_FALSE(residency.take_error());
     EXPECT_TRUE(residency.take_error()) << "reported once";
     for (const uint32_t node : {2u, 3u, 4u}) {
@@ -366,10 +367,10 @@ TEST(Residency, WhatIsAheadIsLoadedAfterWhatIsWantedAndNeverInItsPlace) {
     residency.want(cuts, ahead);
     ASSERT_TRUE(residency.wait());
     EXPECT_EQ(source.order(), (std::vector<uint32_t>{0, 2, 1, 3})) << "three wanted, and room for one ahead";
-    EXPECT_EQ(residency.stats().refused, 0u) << "what is ahead is no refusal";
+    EXPECT_EQ(residency.stats().refused, 0u) << "prefetched nodes do not count as refused";
     EXPECT_EQ(residency.stats().ahead_loads, 1u);
     residency.poll();
-    // The camera has moved on: what was ahead is wanted, and not read again.
+    // The camera has moved on: the prefetched node is wanted and must not be read again.
     const Cut next = cut_of(source, {{0, 1.0f}, {3, 0.5f}});
     want(residency, next);
     ASSERT_TRUE(residency.wait());
@@ -398,7 +399,7 @@ TEST(Residency, ACameraThatMovesOnEveryFrameReadsNoNodeTwice) {
     Replay replay(uint64_t{1} << 30);
     for (int frame = 0; frame < 200; ++frame) {
         Cut cut = light_cut(source, {0.4 * frame, 30, 1}, 20'000);
-        want(residency, cut);  // long before the last wishes have come
+        want(residency, cut);  // long before the last requests have been loaded
         replay.play(residency.poll(5));
     }
     ASSERT_TRUE(residency.wait());

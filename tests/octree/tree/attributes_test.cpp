@@ -53,7 +53,7 @@ TEST(Attributes, WhatIsNoDirectionIsMarked) {
          {glm::vec3(0.0f), glm::vec3(kNan, 0, 0), glm::vec3(0, kInfinity, 0), glm::vec3(1e30f)})
         EXPECT_EQ(encode_normal(n), kNoNormal);
     EXPECT_FALSE(decode_normal(kNoNormal));
-    // Any other three bytes are some unit vector: caches are read from hostile files.
+    // Any other three bytes are some unit vector: caches may be hostile files.
     for (uint32_t word = 0; word < 0xffffff; word += 97) {
         const auto n = decode_normal(
             {static_cast<uint8_t>(word), static_cast<uint8_t>(word >> 8), static_cast<uint8_t>(word >> 16)});

@@ -55,7 +55,7 @@ TEST(Bulk, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
     const auto [low, high] = bulk_with_strays(9'999, 0);
     EXPECT_LT(high.x - low.x, 9);
     const auto far =
-        bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as everything
+        bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as the whole cloud
     EXPECT_GT(far[1].x - far[0].x, 1e6);
 }
 

@@ -31,7 +31,8 @@ double leak_share(const std::vector<Disc>& discs, double slant = 0) {
         return static_cast<int>(std::clamp(v * kRays + 0.5, 0.0, 1.0 * kRays));
     };
     for (const Disc& disc : discs) {
-        // Where the disc's shadow falls on z = 0; it reaches no farther than the sphere around it.
+        // The position of the disc's shadow on z = 0. The shadow reaches no farther than that of the sphere
+        // around the disc.
         const glm::dvec3 foot = disc.centre + ray * disc.centre.z;
         const double reach = disc.radius * std::sqrt(1 + slant * slant), across = glm::dot(disc.normal, ray);
         for (int y = cell(foot.y - disc.radius); y < cell(foot.y + disc.radius); ++y)
@@ -66,7 +67,7 @@ Cloud lattice(size_t side, double jitter, double stretch = 1) {
     return cloud;
 }
 
-/// Dart throwing to saturation's neighbourhood: an even level of detail.
+/// Dart throwing until nearly saturated: an even level of detail.
 Cloud poisson_disk(size_t count) {
     const double distance = 0.75 / std::sqrt(static_cast<double>(count));
     const auto grid = static_cast<int>(1 / distance);
@@ -90,7 +91,7 @@ Cloud poisson_disk(size_t count) {
     return cloud;
 }
 
-/// An order whose prefixes are even: the cells of ever finer grids, each represented once.
+/// An order whose prefixes are even: ever finer grids, with one point from each cell.
 std::vector<size_t> even_order(const Cloud& cloud) {
     const size_t count = cloud.points.size();
     std::vector<size_t> order;
@@ -281,7 +282,7 @@ TEST(Footprint, RadiusIsThatOfADiscOfCoverageTimesArea) {
     EXPECT_NEAR(coverage(1e-6f, 2), kCoverageEven, 1e-4);
     EXPECT_NEAR(coverage(0, 2), kCoverageUnknown, 1e-5);
     EXPECT_EQ(surfel_radius(0, 0), 0);
-    float last = 0;  // a shorter prefix, a larger floor: discs never shrink
+    float last = 0;  // a shorter prefix has a larger floor: discs never shrink
     for (float floor = 0; floor < 10; floor += 0.01f) {
         const float radius = surfel_radius(1, floor);
         EXPECT_GE(radius, last * 0.999f) << floor;

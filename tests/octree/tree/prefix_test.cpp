@@ -1,4 +1,4 @@
-// How even the prefixes of a node's points are, against blue noise.
+// How even the prefixes of a node's points are, compared with blue noise.
 #include <cmath>
 #include <numbers>
 
@@ -50,8 +50,8 @@ double uncovered(const std::vector<glm::dvec3>& points, const std::vector<glm::d
     return probes.empty() ? 0.0 : static_cast<double>(open) / static_cast<double>(probes.size());
 }
 
-/// Mitchell's best candidates (1991) on a unit square without borders: what a good progressive pattern leaves
-/// open.
+/// The share that Mitchell's best candidates (1991), a good progressive pattern, leave uncovered on a unit
+/// square that wraps around.
 double blue_noise_uncovered(size_t count, double coverage) {
     Random random(7);
     std::vector<glm::dvec3> points;
@@ -97,7 +97,8 @@ bool holds(const Cube& cube, const glm::dvec3& p, double margin) {
     return true;
 }
 
-/// What is drawn where `node` is the deepest of a cut: its prefix, and its ancestors' points in its cube.
+/// The points that are drawn where `node` is the deepest of a cut: its prefix, and its ancestors' points in
+/// its cube.
 std::vector<glm::dvec3> drawn(const NodeSource& source, uint32_t node, size_t prefix) {
     auto points = positions(source, node);
     points.resize(std::min(points.size(), prefix));
@@ -109,7 +110,7 @@ std::vector<glm::dvec3> drawn(const NodeSource& source, uint32_t node, size_t pr
 }
 
 struct Measured {
-    double mean = 0;  ///< uncovered share over all nodes, by probes
+    double mean = 0;  ///< uncovered share over all nodes, weighted by probes
     size_t nodes = 0;
 };
 
@@ -129,7 +130,8 @@ Measured measure(const NodeSource& source, const Surface& surface, uint32_t shar
             surface.area * static_cast<double>(inside) / static_cast<double>(all_probes.size());
         const double radius = std::sqrt(coverage * area / kPi / static_cast<double>(points.size()));
         std::vector<glm::dvec3>
-            probes;  // away from the cube's faces: there its neighbours' points cover as well
+            // Away from the cube's faces, where neighbouring nodes' points cover probes too.
+            probes;
         for (const auto& p : all_probes)
             if (probes.size() < 4000 && holds(cube, p, radius)) probes.push_back(p);
         const auto weight = static_cast<double>(probes.size());
@@ -159,9 +161,9 @@ TEST_P(Prefix, LeavesLittleMoreUncoveredThanBlueNoise) {
     ASSERT_TRUE(report) << report.error().line();
     const auto cache = open_cache(options.output);
     ASSERT_TRUE(cache) << cache.error().line();
-    // A leaf's points are the scan's own, random here: half of them cannot be as even as blue noise, an
-    // eighth can. Coverage is disc area over surface; random points leave e^-coverage of it uncovered: 13.5 %
-    // at 2, 1.8 % at 4.
+    // A leaf's points are the scan's own, here random: half of them cannot be as even as blue noise, an
+    // eighth of them can. Coverage is disc area divided by surface. Random points leave e^-coverage of it
+    // uncovered: 13.5 % at 2, 1.8 % at 4.
     struct Bound {
         uint32_t share;
         double at_2, at_4;
