@@ -1,14 +1,11 @@
 #include "gi/lighting/direct_light.h"
 
 #include "gi/gl_frame.h"
+#include "gi/lighting/bindings.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
-namespace {
-
-enum Binding : uint32_t { kCameraTexels = 3, kLightTexels = 4, kMaterials = 5, kRadiance = 6, kSky = 7 };
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<Material> device_materials(std::vector<Material> materials) {
     if (materials.empty()) materials.push_back({glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)});
@@ -39,10 +36,10 @@ Result<void> upload_sky(const Frame& frame, Sky& sky) {
 Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
     const Defines defines = add ? Defines{{"LUCARNE_ADD", "1"}} : Defines{};
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/own_light.comp", defines));
-    frame.gl.gbuffer.texels.bind(kCameraTexels);
-    materials.bind(kMaterials);
-    frame.gl.radiance.bind(kRadiance);
-    sky.texels.bind(kSky);
+    frame.gl.gbuffer.texels.bind(lighting::kBindCameraTexels);
+    materials.bind(lighting::kBindLightingMaterials);
+    frame.gl.radiance.bind(lighting::kBindLitRadiance);
+    sky.texels.bind(lighting::kBindSky);
     const uint32_t pixels = frame.gl.gbuffer.width * frame.gl.gbuffer.height;
     set(*program, "camera", frame.camera);
     program->set("sky_width", frame.environment ? frame.environment->width : 1u);
@@ -54,10 +51,10 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky
 
 Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/light.comp"));
-    frame.gl.gbuffer.texels.bind(kCameraTexels);
-    seen.texels.bind(kLightTexels);
-    materials.bind(kMaterials);
-    frame.gl.radiance.bind(kRadiance);
+    frame.gl.gbuffer.texels.bind(lighting::kBindCameraTexels);
+    seen.texels.bind(lighting::kBindLightTexels);
+    materials.bind(lighting::kBindLightingMaterials);
+    frame.gl.radiance.bind(lighting::kBindLitRadiance);
     set(*program, "camera", frame.camera);
     set(*program, "light_view", from.view);
     set(*program, "light", from.light);

@@ -1,12 +1,13 @@
 // Adds the reflected light of one light to the picture, as far as one view of the light shows it.
 layout(local_size_x = 8, local_size_y = 8) in;
+#include "gi/lighting/bindings.h"
 #include "gi/lighting/shadow.glsl"
 #include "gi/shared/brdf.h"
 #include "gi/shared/light.h"
 
-layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]; };
-layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindCameraTexels) readonly buffer CameraTexels { GBufferTexel texels[]; };
+layout(std430, binding = kBindLightingMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindLitRadiance) buffer Radiance { vec4 radiance[]; };
 uniform CameraView camera;
 uniform Light light;
 uniform uint face;  // the face of the light that light_view shows

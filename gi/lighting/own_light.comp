@@ -1,14 +1,15 @@
 // Draws the light that reaches the eye without reflection: the emission of surfaces, and the background elsewhere.
 layout(local_size_x = 64) in;
+#include "gi/lighting/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/environment.h"
 #include "gi/shared/gbuffer.glsl"
 #include "gi/shared/material.h"
 
-layout(std430, binding = 3) readonly buffer CameraTexels { GBufferTexel texels[]; };
-layout(std430, binding = 5) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 6) buffer Radiance { vec4 radiance[]; };
-layout(std430, binding = 7) readonly buffer Sky { float sky[]; };  // r, g, b of each texel
+layout(std430, binding = kBindCameraTexels) readonly buffer CameraTexels { GBufferTexel texels[]; };
+layout(std430, binding = kBindLightingMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindLitRadiance) buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindSky) readonly buffer Sky { float sky[]; };  // r, g, b of each texel
 uniform CameraView camera;
 uniform uint sky_width;
 uniform uint sky_height;

@@ -1,8 +1,9 @@
 // Tests whether a light view (gi/lighting/light_view.h) sees a point. The G-buffer of the view serves as the shadow
 // map.
+#include "gi/lighting/bindings.h"
 #include "gi/shared/gbuffer.glsl"
 
-layout(std430, binding = 4) readonly buffer LightTexels { GBufferTexel light_texels[]; };
+layout(std430, binding = kBindLightTexels) readonly buffer LightTexels { GBufferTexel light_texels[]; };
 uniform CameraView light_view;
 
 // Projects a point into the light view: returns its place in texels (centres at .5) and sets its depth.

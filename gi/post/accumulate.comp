@@ -1,11 +1,12 @@
 // The running mean of pictures.
 layout(local_size_x = 256) in;
+#include "gi/post/bindings.h"
 #include "gi/shared/many_threads.glsl"
 
-layout(std430, binding = 0) readonly buffer Sample {
+layout(std430, binding = kBindRadiance) readonly buffer Sample {
     vec4 taken[];
 };
-layout(std430, binding = 1) buffer Mean {
+layout(std430, binding = kBindMean) buffer Mean {
     vec4 mean[];
 };
 uniform uint pixels;

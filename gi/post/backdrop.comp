@@ -1,9 +1,10 @@
 // Fills the pixels that show no point with a gradient from the top colour to the bottom colour.
 layout(local_size_x = 64) in;
+#include "gi/post/bindings.h"
 #include "gi/shared/many_threads.glsl"
 
-layout(binding = 3) uniform usamplerBuffer gbuffer_texels;
-layout(std430, binding = 1) buffer Picture { uint picture[]; };
+layout(binding = kUnitGBuffer) uniform usamplerBuffer gbuffer_texels;
+layout(std430, binding = kBindPicture) buffer Picture { uint picture[]; };
 uniform vec4 top;  // sRGB
 uniform vec4 bottom;
 uniform uint width;

@@ -2,14 +2,16 @@
 
 #include <array>
 
+#include "gi/post/bindings.h"
+
 namespace lucarne::gi {
 
 Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Backdrop& backdrop,
                            Buffer& picture) {
     if (backdrop.kind == Backdrop::Kind::scene) return {};
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/backdrop.comp"));
-    gbuffer.texels.bind_texels(3, TexelView::four_words);
-    picture.bind(1);
+    gbuffer.texels.bind_texels(post::kUnitGBuffer, TexelView::four_words);
+    picture.bind(post::kBindPicture);
     const auto set = [&](std::string_view uniform, const glm::dvec3& colour) {
         const glm::vec3 c(colour);
         program->set_block(uniform, std::array<float, 4>{c.x, c.y, c.z, 1.0f});

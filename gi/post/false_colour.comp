@@ -1,11 +1,12 @@
 // Maps luminances, or the differences of two pictures' luminances, to a ramp of colours.
 layout(local_size_x = 64) in;
+#include "gi/post/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/luminance.h"
 
-layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
-layout(std430, binding = 1) writeonly buffer Picture { uint picture[]; };
-layout(std430, binding = 2) readonly buffer Other { vec4 other[]; };
+layout(std430, binding = kBindRadiance) readonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindPicture) writeonly buffer Picture { uint picture[]; };
+layout(std430, binding = kBindOther) readonly buffer Other { vec4 other[]; };
 uniform uint pixels;
 uniform uint mode;  // 0: logarithm of the luminance, 1: signed difference, 2: absolute difference
 uniform float gain;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gi/post/bindings.h"
 #include "gi/scene/photometry.h"
 
 namespace lucarne::gi {
@@ -29,9 +30,9 @@ Result<void> paint(Device& device, const Buffer& radiance, const Buffer& other, 
         const glm::vec3 colour = mapped_colour(scale.map, static_cast<double>(i) / (kRamp - 1));
         ramp.insert(ramp.end(), {colour.x, colour.y, colour.z, 1.0f});
     }
-    radiance.bind(0);
-    picture.bind(1);
-    other.bind(2);
+    radiance.bind(post::kBindRadiance);
+    picture.bind(post::kBindPicture);
+    other.bind(post::kBindOther);
     program->set("pixels", pixels);
     program->set("mode", scale.mode);
     program->set("gain", static_cast<float>(scale.gain));
@@ -66,8 +67,8 @@ Result<void> difference(Device& device, const Buffer& radiance, const Buffer& ot
 Result<void> split(Device& device, const Buffer& other, uint32_t width, uint32_t height, double border,
                    Buffer& picture) {
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/split.comp"));
-    other.bind(0);
-    picture.bind(1);
+    other.bind(post::kBindOther);
+    picture.bind(post::kBindPicture);
     program->set("pixels", width * height);
     program->set("width", width);
     program->set("border", static_cast<uint32_t>(std::lround(std::clamp(border, 0.0, 1.0) * width)));

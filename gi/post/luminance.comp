@@ -1,9 +1,10 @@
 // Sums luminances over one run of pixels per invocation, in order, so that the result is the same every time.
 layout(local_size_x = 64) in;
+#include "gi/post/bindings.h"
 #include "gi/shared/luminance.h"
 
-layout(std430, binding = 0) readonly buffer Radiance { vec4 radiance[]; };
-layout(std430, binding = 1) writeonly buffer Sums { vec2 sums[]; };
+layout(std430, binding = kBindRadiance) readonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindSums) writeonly buffer Sums { vec2 sums[]; };
 uniform uint pixels;
 uniform uint run;      // pixels an invocation
 uniform float floor_luminance;  // 0: sum luminances; else logarithms of luminances no smaller than this

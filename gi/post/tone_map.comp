@@ -1,13 +1,14 @@
 // Maps radiance to sRGB for the screen.
 layout(local_size_x = 64) in;
+#include "gi/post/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/shared/surfel_code.h"
 #include "gi/shared/tone_curve.h"
 
-layout(std430, binding = 0) readonly buffer Radiance {
+layout(std430, binding = kBindRadiance) readonly buffer Radiance {
     vec4 radiance[];
 };
-layout(std430, binding = 1) writeonly buffer Picture {
+layout(std430, binding = kBindPicture) writeonly buffer Picture {
     uint picture[];
 };
 uniform uint pixels;

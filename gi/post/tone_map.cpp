@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "gi/post/bindings.h"
 #include "gi/shared/luminance.h"
 #include "gi/shared/tone_curve.h"
 
@@ -23,8 +24,8 @@ Result<double> mean_of(Device& device, const Buffer& radiance, uint32_t pixels, 
     const uint32_t parts = (pixels + kRun - 1) / kRun;
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/luminance.comp"));
     LUCARNE_ASSIGN(const Buffer sums, device.buffer(parts * sizeof(glm::vec2), "exposure"));
-    radiance.bind(0);
-    sums.bind(1);
+    radiance.bind(post::kBindRadiance);
+    sums.bind(post::kBindSums);
     program->set("pixels", pixels);
     program->set("run", kRun);
     program->set("floor_luminance", floor);
@@ -60,8 +61,8 @@ Result<void> tone_map(Device& device, const Buffer& radiance, uint32_t pixels, T
                       Buffer& picture) {
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/tone_map.comp"));
     LUCARNE_TRY(device.reserve(picture, size_t{pixels} * sizeof(uint32_t), "picture"));
-    radiance.bind(0);
-    picture.bind(1);
+    radiance.bind(post::kBindRadiance);
+    picture.bind(post::kBindPicture);
     program->set("pixels", pixels);
     program->set("scale", static_cast<float>(std::exp2(ev)));
     program->set("curve", static_cast<uint32_t>(curve));

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/raster/bindings.h"
 #include "gi/raster/queues.h"
 
 namespace lucarne::gi {
@@ -68,12 +69,12 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     target.ids.clear(kNoSurfel);
     target.queues.clear(0);
     cut.bind();
-    target.keys.bind(3);
-    target.keys.bind_texels(3, TexelView::four_words);
-    target.ids.bind(4);
-    target.queues.bind(5);
-    target.texels.bind(6);
-    target.candidates.bind(7);
+    target.keys.bind(raster::kBindKeys);
+    target.keys.bind_texels(raster::kUnitKeys, TexelView::four_words);
+    target.ids.bind(raster::kBindIds);
+    target.queues.bind(raster::kBindQueues);
+    target.texels.bind(raster::kBindTexels);
+    target.candidates.bind(raster::kBindCandidates);
     for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view, size);
     plan->set("blocks", cut.blocks());
     splat->dispatch(places);

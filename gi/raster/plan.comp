@@ -1,9 +1,10 @@
 // Runs after the order pass over all surfels and computes how many workgroups the queues need. The kernel of large
 // discs needs all of them in the queue; otherwise the overflow kernel, which reads no queue, draws them.
 layout(local_size_x = 1) in;
+#include "gi/raster/bindings.h"
 #include "gi/raster/queues.h"
 
-layout(std430, binding = 5) buffer Queues { QueueHeader queues; };
+layout(std430, binding = kBindQueues) buffer Queues { QueueHeader queues; };
 uniform uint blocks;  // of the cut
 
 void main() {

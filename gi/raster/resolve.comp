@@ -1,10 +1,11 @@
 // Writes the texel of the surfel that took each pixel; one invocation a pixel.
 layout(local_size_x = 64) in;
+#include "gi/raster/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/raster/disc.glsl"
 
-layout(std430, binding = 4) readonly buffer Ids { uint ids[]; };
-layout(std430, binding = 6) writeonly buffer Texels { GBufferTexel texels[]; };
+layout(std430, binding = kBindIds) readonly buffer Ids { uint ids[]; };
+layout(std430, binding = kBindTexels) writeonly buffer Texels { GBufferTexel texels[]; };
 
 void main() {
     uint at = thread_number();

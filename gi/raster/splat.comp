@@ -2,9 +2,10 @@
 // splat_large.comp and lists the small discs that were nearest in some pixel when they were drawn. The second pass
 // (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
 layout(local_size_x = 256) in;
+#include "gi/raster/bindings.h"
 #include "gi/raster/splat.glsl"
 
-layout(std430, binding = 7) buffer Candidates { uint candidates[]; };
+layout(std430, binding = kBindCandidates) buffer Candidates { uint candidates[]; };
 
 // A small disc in the picture, to first order about its centre (the error is a share radius/depth of the disc). For
 // pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth has the

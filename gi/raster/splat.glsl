@@ -1,17 +1,18 @@
 // Shared by the splatting kernels: the targets, and how a disc takes a pixel. Without 64-bit atomics this takes two
 // passes of 32 bits each. The first leaves the nearest key in each pixel, the second (LUCARNE_ID_PASS) the smallest
 // id of the discs with that key.
+#include "gi/raster/bindings.h"
 #include "gi/raster/disc.glsl"
 #include "gi/raster/queues.h"
 
-layout(std430, binding = 3) buffer Keys { uint keys[]; };
-layout(std430, binding = 4) buffer Ids { uint ids[]; };
-layout(std430, binding = 5) buffer Queues {
+layout(std430, binding = kBindKeys) buffer Keys { uint keys[]; };
+layout(std430, binding = kBindIds) buffer Ids { uint ids[]; };
+layout(std430, binding = kBindQueues) buffer Queues {
     QueueHeader queues;
     uint large_ids[];
 };
 // The keys again, four a texel; in the first pass perhaps not the latest ones.
-layout(binding = 3) uniform usamplerBuffer key_texels;
+layout(binding = kUnitKeys) uniform usamplerBuffer key_texels;
 
 // Discs of a larger radius, in pixels, are drawn by a workgroup each.
 const float kSmallRadius = 8.0;

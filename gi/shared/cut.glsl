@@ -1,14 +1,15 @@
 // Access to the surfels of a cut. DeviceCut::bind binds pool, items and blocks as texels of four words;
 // Buffer::bind_texels says why.
+#include "gi/shared/cut_bindings.h"
 #include "octree/tree/footprint.h"
 #include "gi/shared/clip.h"
 #include "gi/shared/surfel.h"
 #include "gi/shared/surfel_code.h"
 
-layout(binding = 0) uniform usamplerBuffer cut_pool;    // PackedSurfel
+layout(binding = kUnitCutPool) uniform usamplerBuffer cut_pool;    // PackedSurfel
 // CutItem: (origin, size), (clip, count, area_floor, inner), children, children; the ClipShapes follow the items.
-layout(binding = 1) uniform usamplerBuffer cut_items;
-layout(binding = 2) uniform usamplerBuffer cut_blocks;  // CutBlock
+layout(binding = kUnitCutItems) uniform usamplerBuffer cut_items;
+layout(binding = kUnitCutBlocks) uniform usamplerBuffer cut_blocks;  // CutBlock
 
 // Returns the cube of the item: xyz its origin, w its side (m).
 vec4 cut_item_cube(uint item) { return uintBitsToFloat(texelFetch(cut_items, int(4u * item))); }

@@ -1,11 +1,12 @@
 // Decodes the surfels of a cut with their footprints, in the order of their ids. Ids in gaps get radius and area 0.
 layout(local_size_x = 256) in;
 
+#include "gi/surfels/bindings.h"
 #include "gi/shared/cut.glsl"
 #include "gi/shared/flat_surfel.h"
 #include "gi/shared/many_threads.glsl"
 
-layout(std430, binding = 5) writeonly buffer Flat { FlatSurfel flat_surfels[]; };
+layout(std430, binding = kBindFlatSurfels) writeonly buffer Flat { FlatSurfel flat_surfels[]; };
 uniform uint ids;
 
 void main() {

@@ -7,6 +7,7 @@
 
 #include <xxhash.h>
 
+#include "gi/shared/cut_bindings.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/random.h"
 #include "octree/tree/footprint.h"
@@ -92,9 +93,9 @@ std::optional<PointPlace> CutPoints::find(uint32_t id) const {
 }
 
 void DeviceCut::bind() const {
-    pool_->bind_texels(0, TexelView::four_words);
-    items_.bind_texels(1, TexelView::four_words);
-    blocks_buffer_.bind_texels(2, TexelView::four_words);
+    pool_->bind_texels(kUnitCutPool, TexelView::four_words);
+    items_.bind_texels(kUnitCutItems, TexelView::four_words);
+    blocks_buffer_.bind_texels(kUnitCutBlocks, TexelView::four_words);
 }
 
 Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {

@@ -159,7 +159,7 @@ Result<void> cornell(const BenchRun& run) {
         LUCARNE_TRY(
             judge("cornell, bounce 1, " + preset, picture, first, preset == "high" ? .0125 : .025, .03));
     }
-    for (const int bounce : run.cases({2, 3, 4})) {
+    for (const int bounce : run.cases<int>({2, 3, 4})) {
         const std::string only = fmt::format("--only-bounce {} ", bounce);
         LUCARNE_ASSIGN(const auto truth, scan.truth("b", size + only + samples(run, 128)));
         LUCARNE_ASSIGN(const auto picture, scan.picture("p", size + only));
@@ -205,7 +205,7 @@ Result<void> invariance(gi::Device& device, const BenchRun& run) {
     row("closed furnace, points shuffled, high", "mean against in order",
         gi::mean_luminance(shuffled.radiance) / gi::mean_luminance(in_order.radiance) - 1, .01, true);
     double usual = 0;
-    for (const int millions : run.cases({2, 1, 4})) {
+    for (const int millions : run.cases<int>({2, 1, 4})) {
         LUCARNE_ASSIGN(const Scan scan,
                        Scan::create("cornell", run.points(millions * 1'000'000ull), run.folder));
         LUCARNE_ASSIGN(const auto picture, scan.picture("n", run.picture(256, "high") + "--only-bounce 1"));

@@ -132,6 +132,22 @@ TEST(Structure, NoFileIsADumpingGround) {
         }
 }
 
+/// C++ and shaders take bindings from one header a room (bindings.h).
+TEST(Structure, NoShaderHasABindingOfItsOwn) {
+    const std::regex literal("binding *= *[0-9]");
+    size_t shaders = 0;
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCARNE_SOURCE_DIR) / "gi")) {
+        const auto extension = entry.path().extension();
+        if (extension != ".comp" && extension != ".glsl") continue;
+        ++shaders;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);)
+            EXPECT_FALSE(std::regex_search(line, literal)) << entry.path() << ": " << line;
+    }
+    EXPECT_GT(shaders, 40u);
+}
+
 /// Hostile names and texts reach a terminal only through io/core/terminal.h, which makes them harmless.
 TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
     const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",

@@ -1,8 +1,9 @@
 // Writes the colour of a pixel times the shade of its shape. Pixels without a point keep the background.
 layout(local_size_x = 16, local_size_y = 4) in;
+#include "gi/engines/unlit/bindings.h"
 #include "gi/engines/unlit/texels.glsl"
 
-layout(std430, binding = 6) writeonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindRadiance) writeonly buffer Radiance { vec4 radiance[]; };
 uniform float strength;
 uniform float neighbour;  // distance of the neighbours, pixels
 
@@ -23,7 +24,7 @@ float shade(ivec2 pixel, GBufferTexel texel) {
     return exp(-kEyeDome * strength * sum / 8.0);
 }
 #elif defined(LUCARNE_OCCLUSION)
-layout(std430, binding = 4) readonly buffer Obscurance { float obscurance[]; };
+layout(std430, binding = kBindObscurance) readonly buffer Obscurance { float obscurance[]; };
 // The mean obscurance over the 4 x 4 pixels through which occlusion.comp rotates its samples, counting only pixels of
 // the same surface.
 float shade(ivec2 pixel, GBufferTexel texel) {

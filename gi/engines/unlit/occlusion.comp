@@ -2,9 +2,10 @@
 // ambient obscurance", eq. 1 with the falloff of section 2.4). The samples lie on a spiral that is rotated from pixel
 // to pixel.
 layout(local_size_x = 16, local_size_y = 4) in;
+#include "gi/engines/unlit/bindings.h"
 #include "gi/engines/unlit/texels.glsl"
 
-layout(std430, binding = 4) writeonly buffer Obscurance { float obscurance[]; };
+layout(std430, binding = kBindObscurance) writeonly buffer Obscurance { float obscurance[]; };
 uniform float reach;  // radius of the samples, as a share of the distance to the eye
 
 const int kSamples = 10;

@@ -1,7 +1,8 @@
 // Reads the G-buffer as texels of four words (Buffer::bind_texels says why), at any place of the picture.
+#include "gi/engines/unlit/bindings.h"
 #include "gi/shared/gbuffer.glsl"
 
-layout(binding = 3) uniform usamplerBuffer gbuffer_texels;
+layout(binding = kUnitTexels) uniform usamplerBuffer gbuffer_texels;
 uniform CameraView camera;
 
 // Returns the distance of which lengths are shares, so that a scene looks alike from near and far: the distance to

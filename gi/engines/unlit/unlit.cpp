@@ -2,15 +2,13 @@
 
 #include <algorithm>
 
+#include "gi/engines/unlit/bindings.h"
 #include "gi/gl_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
 namespace {
-
-enum Binding : uint32_t { kObscurance = 4, kRadiance = 6 };
-enum Unit : uint32_t { kTexels = 3 };
 
 constexpr EngineInfo kInfo{
     .name = "unlit",
@@ -43,8 +41,8 @@ Result<void> UnlitEngine::obscure(Frame& frame) {
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
     LUCARNE_TRY(frame.gl.device.reserve(obscurance_, pixels * sizeof(float), "ambient occlusion"));
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/engines/unlit/occlusion.comp"));
-    gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
-    obscurance_.bind(kObscurance);
+    gbuffer.texels.bind_texels(unlit::kUnitTexels, TexelView::four_words);
+    obscurance_.bind(unlit::kBindObscurance);
     set(*program, "camera", frame.camera);
     program->set("reach", static_cast<float>(frame.unlit.occlusion_reach / 100));
     program->dispatch(gbuffer.width, gbuffer.height);
@@ -65,9 +63,9 @@ Result<void> UnlitEngine::render(Frame& frame) {
     static const Defines kDefines[] = {{}, {{"LUCARNE_EYE_DOME", "1"}}, {{"LUCARNE_OCCLUSION", "1"}}};
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/engines/unlit/colours.comp",
                                                                    kDefines[static_cast<size_t>(shading)]));
-    frame.gl.gbuffer.texels.bind_texels(kTexels, TexelView::four_words);
-    if (shading == Shading::occlusion) obscurance_.bind(kObscurance);
-    frame.gl.radiance.bind(kRadiance);
+    frame.gl.gbuffer.texels.bind_texels(unlit::kUnitTexels, TexelView::four_words);
+    if (shading == Shading::occlusion) obscurance_.bind(unlit::kBindObscurance);
+    frame.gl.radiance.bind(unlit::kBindRadiance);
     set(*program, "camera", frame.camera);
     program->set("strength", static_cast<float>(frame.unlit.strength));
     const double pixels = frame.unlit.eye_dome_pixels * frame.camera.height / 1080.0;

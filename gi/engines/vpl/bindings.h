@@ -1,47 +1,56 @@
-#pragma once
+// Bindings of the shaders of this engine, shared by C++ and GLSL.
+#ifndef LUCARNE_GI_ENGINES_VPL_BINDINGS_H
+#define LUCARNE_GI_ENGINES_VPL_BINDINGS_H
 
+#ifdef __cplusplus
 #include <cstdint>
-
 namespace lucarne::gi::vpl {
+using uint = uint32_t;
+#endif
 
 // Storage bindings of this engine's shaders; bindings 0 to 2 belong to the cut.
-inline constexpr uint32_t kBindMaterials = 3;
-inline constexpr uint32_t kBindGBuffer = 4;   // texels of the camera's or the light's G-buffer
-inline constexpr uint32_t kBindLightIds = 5;  // surfel ids of the light's G-buffer
-inline constexpr uint32_t kBindCasters = 5;
-inline constexpr uint32_t kBindLarge = 6;
-inline constexpr uint32_t kBindPoints = 7;    // Halton points
-inline constexpr uint32_t kBindMeetings = 7;  // block-map pairs that pass the culling, queue.glsl
-inline constexpr uint32_t kBindImportance = 8;
-inline constexpr uint32_t kBindSources = 8;
-inline constexpr uint32_t kBindHistory = 8;  // history.glsl
-inline constexpr uint32_t kBindLights = 9;   // VplLight[]
-inline constexpr uint32_t kBindHistorySurfaces = 9;
-inline constexpr uint32_t kBindAtlas = 10;
-inline constexpr uint32_t kBindCoarse = 11;
-inline constexpr uint32_t kBindQueue = 11;
-inline constexpr uint32_t kBindLonely = 11;  // isolated pixels, join.comp
-inline constexpr uint32_t kBindFringe = 12;
-inline constexpr uint32_t kBindFringeSources = 13;
-inline constexpr uint32_t kBindDiffuse = 12;   // irradiance from the VPLs, one a pixel
-inline constexpr uint32_t kBindSpecular = 13;  // radiance by the receiver's lobe, one a pixel
-inline constexpr uint32_t kBindRadiance = 14;
-inline constexpr uint32_t kBindOdds = 14;    // weight sums, redistribute.comp
-inline constexpr uint32_t kBindJoints = 15;  // join.glsl
+const uint kBindMaterials = 3u;
+const uint kBindGBuffer = 4u;   // texels of the camera's or the light's G-buffer
+const uint kBindLightIds = 5u;  // surfel ids of the light's G-buffer
+const uint kBindCasters = 5u;
+const uint kBindBounds = 5u;    // bounds of blocks, queue.glsl
+const uint kBindEmitters = 5u;  // weights of emitting surfels, or those that were drawn
+const uint kBindLarge = 6u;
+const uint kBindPoints = 7u;    // Halton points
+const uint kBindMeetings = 7u;  // block-map pairs that pass the culling, queue.glsl
+const uint kBindImportance = 8u;
+const uint kBindSources = 8u;
+const uint kBindHistory = 8u;  // history.glsl
+const uint kBindLights = 9u;   // VplLight[]
+const uint kBindHistorySurfaces = 9u;
+const uint kBindAtlas = 10u;
+const uint kBindCoarse = 11u;
+const uint kBindQueue = 11u;
+const uint kBindLonely = 11u;  // isolated pixels, join.comp
+const uint kBindFringe = 12u;
+const uint kBindFringeSources = 13u;
+const uint kBindDiffuse = 12u;   // irradiance from the VPLs, one a pixel
+const uint kBindSpecular = 13u;  // radiance by the receiver's lobe, one a pixel
+const uint kBindRadiance = 14u;
+const uint kBindOdds = 14u;    // weight sums, redistribute.comp
+const uint kBindJoints = 15u;  // join.glsl
 
 // Texture units of buffers that are read as texels; units 0 to 2 belong to the cut.
-inline constexpr uint32_t kUnitLights = 3;
-inline constexpr uint32_t kUnitGBuffer = 4;
-inline constexpr uint32_t kUnitAtlas = 5;
-inline constexpr uint32_t kUnitCasters = 6;
-inline constexpr uint32_t kUnitBounds = 7;
-inline constexpr uint32_t kUnitDiffuse = 8;
-inline constexpr uint32_t kUnitSpecular = 9;
-inline constexpr uint32_t kUnitOwnDiffuse = 10;
-inline constexpr uint32_t kUnitOwnSpecular = 11;
-inline constexpr uint32_t kUnitSources = 12;
-inline constexpr uint32_t kUnitOdds = 13;
-inline constexpr uint32_t kUnitHistory = 14;
-inline constexpr uint32_t kUnitHistorySurfaces = 15;
+const uint kUnitLights = 3u;
+const uint kUnitGBuffer = 4u;
+const uint kUnitAtlas = 5u;
+const uint kUnitCasters = 6u;
+const uint kUnitBounds = 7u;
+const uint kUnitDiffuse = 8u;
+const uint kUnitSpecular = 9u;
+const uint kUnitOwnDiffuse = 10u;
+const uint kUnitOwnSpecular = 11u;
+const uint kUnitSources = 12u;
+const uint kUnitOdds = 13u;
+const uint kUnitHistory = 14u;
+const uint kUnitHistorySurfaces = 15u;
 
+#ifdef __cplusplus
 }  // namespace lucarne::gi::vpl
+#endif
+#endif

@@ -5,14 +5,15 @@
 // plane, at most the squared radius.
 layout(local_size_x = 64) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 #include "gi/engines/vpl/vpl_light.h"
 
-layout(std430, binding = 9) buffer Lights {
+layout(std430, binding = kBindLights) buffer Lights {
     VplLight lights[];
 };
-layout(binding = 5) uniform usamplerBuffer atlas_texels;
+layout(binding = kUnitAtlas) uniform usamplerBuffer atlas_texels;
 
 uniform float shrink;
 

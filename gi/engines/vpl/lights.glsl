@@ -1,8 +1,9 @@
 // Reads the VPLs as texels, for loops: llvmpipe fetches texels ten times faster than storage.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.glsl"
 #include "gi/engines/vpl/vpl_light.h"
 
-layout(binding = 3) uniform usamplerBuffer vpl_words;  // VplLight[], five texels each
+layout(binding = kUnitLights) uniform usamplerBuffer vpl_words;  // VplLight[], five texels each
 
 vec4 vpl_word(uint index, uint member) { return uintBitsToFloat(texelFetch(vpl_words, int(5u * index + member))); }
 vec4 vpl_position(uint index) { return vpl_word(index, 0u); }

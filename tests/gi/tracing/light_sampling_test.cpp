@@ -9,8 +9,23 @@
 #include "gi/tracing/scatter.h"
 #include "tests/gi/engines/reference/reference_scene.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
+
+using reference::MeanLuminance;
+using reference::Start;
+using reference::disc_light;
+using reference::kO;
+using reference::kX;
+using reference::kY;
+using reference::kZ;
+using reference::material;
+using reference::rectangle_light;
+using reference::starts_on;
+using reference::sun;
+using reference::traced;
+using reference::tracer_of;
+using reference::uniform_environment;
 
 TEST(AliasTable, DrawsInProportionToTheWeights) {
     const std::vector<double> weights = {3, 0, 1, .01, 10, 0, 2.5};

@@ -8,8 +8,23 @@
 
 #include "tests/gi/engines/reference/reference_scene.h"
 
-namespace lucarne::gi::reference {
+namespace lucarne::gi::tracing {
 namespace {
+
+using reference::MeanLuminance;
+using reference::PathSettings;
+using reference::Start;
+using reference::kO;
+using reference::kX;
+using reference::kY;
+using reference::kZ;
+using reference::material;
+using reference::point;
+using reference::spot;
+using reference::starts_on;
+using reference::sun;
+using reference::traced;
+using reference::tracer_of;
 
 float gauss(Random& random) {
     return static_cast<float>(std::sqrt(-2 * std::log(1 - random.uniform())) *

@@ -5,10 +5,11 @@
 // light, so it keeps the flux of its own race.
 layout(local_size_x = 16) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
 
-layout(std430, binding = 9) buffer Next { VplLight next[]; };
-layout(binding = 13) uniform usamplerBuffer odds;
+layout(std430, binding = kBindLights) buffer Next { VplLight next[]; };
+layout(binding = kUnitOdds) uniform usamplerBuffer odds;
 
 uniform uint light_count;
 

@@ -8,13 +8,14 @@
 // LUCARNE_BEST_CANDIDATE selects the method of the paper.
 layout(local_size_x = 64) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 9) writeonly buffer Next { VplLight next[]; };  // diffuse is still without the flux
-layout(std430, binding = 14) writeonly buffer Odds { float odds[]; };  // weight sum: sum(w) of a map, W
-layout(binding = 12) uniform usamplerBuffer source_texels;
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindLights) writeonly buffer Next { VplLight next[]; };  // diffuse is still without the flux
+layout(std430, binding = kBindOdds) writeonly buffer Odds { float odds[]; };  // weight sum: sum(w) of a map, W
+layout(binding = kUnitSources) uniform usamplerBuffer source_texels;
 
 uniform uint seed, id_bits;
 

@@ -2,14 +2,15 @@
 // emission. Surfels emit on both sides; a VPL has one side, drawn at random.
 layout(local_size_x = 64) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
 #include "gi/shared/luminance.h"
 #include "gi/engines/vpl/vpl_light.h"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 5) readonly buffer Chosen { uint chosen[]; };  // surfel's id << 1 | side
-layout(std430, binding = 9) writeonly buffer Lights { VplLight lights[]; };
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindEmitters) readonly buffer Chosen { uint chosen[]; };  // surfel's id << 1 | side
+layout(std430, binding = kBindLights) writeonly buffer Lights { VplLight lights[]; };
 
 uniform uint first_light, light_count;
 uniform float weight_sum;  // of all surfels, W/sr

@@ -2,12 +2,13 @@
 // emission, W/sr.
 layout(local_size_x = 256) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
 #include "gi/shared/luminance.h"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 5) writeonly buffer Weights { float weights[]; };
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindEmitters) writeonly buffer Weights { float weights[]; };
 
 void main() {
     uint id = gl_GlobalInvocationID.x;

@@ -16,7 +16,7 @@ Result<void> weigh_emitters(Device& device, const DeviceCut& cut, const Buffer& 
     LUCARNE_TRY(device.reserve(target.scratch, ids * sizeof(float), "emitting surfels"));
     cut.bind();
     materials.bind(kBindMaterials);
-    target.scratch.bind(kBindCasters);
+    target.scratch.bind(kBindEmitters);
     weigh->dispatch(ids);
     double sum = 0;
     target.running.reserve(ids);
@@ -54,7 +54,7 @@ Result<void> seed_emitters(Device& device, const DeviceCut& cut, const Buffer& m
     emitters.scratch.upload_all(chosen);
     cut.bind();
     materials.bind(kBindMaterials);
-    emitters.scratch.bind(kBindCasters);
+    emitters.scratch.bind(kBindEmitters);
     target.lights.bind(kBindLights);
     emit->set("first_light", first);
     emit->set("light_count", count);

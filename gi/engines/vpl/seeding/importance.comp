@@ -6,11 +6,12 @@
 // part, ks (n+2)/(2 pi) sqrt(2 pi / (2n+3)) for the specular part, both over the factor of the diffuse part.
 layout(local_size_x = 16, local_size_y = 16) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/luminance.h"
 #include "gi/engines/vpl/seeding/importance.glsl"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;

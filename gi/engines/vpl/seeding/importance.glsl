@@ -4,10 +4,11 @@
 // Level 0 has `importance_side` (a power of two) texels along a side. Each higher level sums 2 x 2 texels of the
 // level below. All levels lie one after the other in one buffer.
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/lighting/shadow.glsl"
 #include "gi/shared/light.h"
 
-layout(std430, binding = 8) buffer Importance { vec2 importance[]; };
+layout(std430, binding = kBindImportance) buffer Importance { vec2 importance[]; };
 
 uniform uint importance_side;
 uniform Light light;

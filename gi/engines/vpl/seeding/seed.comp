@@ -2,15 +2,16 @@
 // I(w) / (M p(w)), p the density per solid angle (Keller 1997; importance as in Preiner 2010, section 4.2).
 layout(local_size_x = 64) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/seeding/importance.glsl"
 #include "gi/engines/vpl/vpl_light.h"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 5) readonly buffer LightIds { uint light_ids[]; };
-layout(std430, binding = 7) readonly buffer Points { vec2 points[]; };
-layout(std430, binding = 9) writeonly buffer Lights { VplLight lights[]; };
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = kBindLightIds) readonly buffer LightIds { uint light_ids[]; };
+layout(std430, binding = kBindPoints) readonly buffer Points { vec2 points[]; };
+layout(std430, binding = kBindLights) writeonly buffer Lights { VplLight lights[]; };
 
 uniform uint first_light, light_count;
 

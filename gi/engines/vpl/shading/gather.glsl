@@ -1,9 +1,10 @@
 // Computes the light of the VPLs at a point, for shading and for isolated pixels.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/engines/vpl/lights.glsl"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
-layout(binding = 5) uniform usamplerBuffer atlas_texels;
+layout(binding = kUnitAtlas) uniform usamplerBuffer atlas_texels;
 
 struct Receiver {
     vec3 position;

@@ -3,10 +3,12 @@
 // the viewer nor on textures. Of the four pixels around the projected point those count that show its surface; if
 // none does, only the light of this frame is used. While the VPLs are kept, the average is over camera positions, in
 // which the patterns of interleaved tiles cancel.
-layout(binding = 14) uniform samplerBuffer last_light;      // irradiance, W/m^2; w: number of frames
-layout(binding = 15) uniform usamplerBuffer last_surfaces;  // depth, normal
-layout(std430, binding = 8) writeonly buffer NextLight { vec4 next_light[]; };
-layout(std430, binding = 9) writeonly buffer NextSurfaces { uvec2 next_surfaces[]; };
+#include "gi/engines/vpl/bindings.h"
+
+layout(binding = kUnitHistory) uniform samplerBuffer last_light;      // irradiance, W/m^2; w: number of frames
+layout(binding = kUnitHistorySurfaces) uniform usamplerBuffer last_surfaces;  // depth, normal
+layout(std430, binding = kBindHistory) writeonly buffer NextLight { vec4 next_light[]; };
+layout(std430, binding = kBindHistorySurfaces) writeonly buffer NextSurfaces { uvec2 next_surfaces[]; };
 
 uniform CameraView last_camera;
 uniform float most_frames;  // largest number of frames in an average; 0: there is no last frame

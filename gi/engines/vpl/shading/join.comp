@@ -1,9 +1,10 @@
 // Decides the geometry-aware gather: see join.glsl.
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shading/join.glsl"
 
-layout(std430, binding = 11) buffer Lonely {  // isolated pixels, which lack too many interleaved tiles
+layout(std430, binding = kBindLonely) buffer Lonely {  // isolated pixels, which lack too many interleaved tiles
     uint lonely_count;
     uint lonely_pixels[];
 };

@@ -1,9 +1,10 @@
 // The geometry-aware gather (Preiner 2010, section 4.4): from which pixels of the interleaved tiles (panes) the light
 // of a pixel is gathered. join.comp decides it once a frame, from geometry alone; shading and merging of every bounce
 // follow it.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shading/pixel.glsl"
 
-layout(std430, binding = 15) buffer Joints { uvec2 joints[]; };  // candidates, 2 bits per pane | mask of missing panes
+layout(std430, binding = kBindJoints) buffer Joints { uvec2 joints[]; };  // candidates, 2 bits per pane | mask of missing panes
 
 // The window about a pixel holds one pixel of every pane. If the pixel of pane i shows another surface, its
 // neighbours of the same pane n pixels away, candidates 1 to 3, may replace it.

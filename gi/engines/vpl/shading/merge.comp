@@ -2,16 +2,17 @@
 // alike, times the reflectance of the receiver, plus its specular light.
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shading/join.glsl"
 #ifdef LUCARNE_HISTORY
 #include "gi/engines/vpl/shading/history.glsl"
 #endif
 
-layout(binding = 8) uniform samplerBuffer diffuse_panes;
-layout(binding = 9) uniform samplerBuffer specular_panes;
-layout(binding = 10) uniform samplerBuffer own_diffuse;
-layout(binding = 11) uniform samplerBuffer own_specular;
-layout(std430, binding = 14) writeonly buffer Radiance { vec4 radiance[]; };
+layout(binding = kUnitDiffuse) uniform samplerBuffer diffuse_panes;
+layout(binding = kUnitSpecular) uniform samplerBuffer specular_panes;
+layout(binding = kUnitOwnDiffuse) uniform samplerBuffer own_diffuse;
+layout(binding = kUnitOwnSpecular) uniform samplerBuffer own_specular;
+layout(std430, binding = kBindRadiance) writeonly buffer Radiance { vec4 radiance[]; };
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;

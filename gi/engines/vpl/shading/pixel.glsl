@@ -1,9 +1,10 @@
 // A pixel of the camera's G-buffer as a receiver, for shading and merging.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/gbuffer.glsl"
 #include "gi/engines/vpl/shading/gather.glsl"
 
-layout(std430, binding = 3) readonly buffer Materials { Material materials[]; };
-layout(binding = 4) uniform usamplerBuffer camera_words;  // GBufferTexel[]
+layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
+layout(binding = kUnitGBuffer) uniform usamplerBuffer camera_words;  // GBufferTexel[]
 
 uniform CameraView camera;
 uniform uint interleave;   // n

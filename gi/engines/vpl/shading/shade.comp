@@ -4,10 +4,11 @@
 // sample. A workgroup shades pixels of one pane, so its invocations read the same VPLs at the same time.
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shading/pixel.glsl"
 
-layout(std430, binding = 12) buffer DiffuseLight { vec4 diffuse_light[]; };    // irradiance, W/m^2
-layout(std430, binding = 13) buffer SpecularLight { vec4 specular_light[]; };  // radiance, W/(sr m^2)
+layout(std430, binding = kBindDiffuse) buffer DiffuseLight { vec4 diffuse_light[]; };    // irradiance, W/m^2
+layout(std430, binding = kBindSpecular) buffer SpecularLight { vec4 specular_light[]; };  // radiance, W/(sr m^2)
 
 void main() {
     uint pane = gl_GlobalInvocationID.z;

@@ -1,15 +1,16 @@
 // Shades isolated pixels, which have too few neighbours of their own surface, with the VPLs of the panes that they
 // lack.
 layout(local_size_x = 64) in;
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/many_threads.glsl"
 #include "gi/engines/vpl/shading/join.glsl"
 
-layout(std430, binding = 11) readonly buffer Lonely {
+layout(std430, binding = kBindLonely) readonly buffer Lonely {
     uint lonely_count;
     uint lonely_pixels[];
 };
-layout(std430, binding = 12) buffer OwnDiffuse { vec4 own_diffuse[]; };
-layout(std430, binding = 13) buffer OwnSpecular { vec4 own_specular[]; };
+layout(std430, binding = kBindDiffuse) buffer OwnDiffuse { vec4 own_diffuse[]; };
+layout(std430, binding = kBindSpecular) buffer OwnSpecular { vec4 own_specular[]; };
 
 void main() {
     uint number = thread_number();

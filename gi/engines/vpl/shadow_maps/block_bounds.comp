@@ -1,10 +1,11 @@
 // Computes the bounds of the casters in a block of the cut: one invocation a block.
 layout(local_size_x = 64) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/surfel.h"
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 
-layout(std430, binding = 5) writeonly buffer Bounds { vec4 bounds[]; };  // layout: queue.glsl
+layout(std430, binding = kBindBounds) writeonly buffer Bounds { vec4 bounds[]; };  // layout: queue.glsl
 
 uniform uint block_count;
 

@@ -1,10 +1,11 @@
 // Decodes the surfels of the light cut to casters for the passes that draw them into the shadow maps.
 layout(local_size_x = 256) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/cut.glsl"
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 
-layout(std430, binding = 5) writeonly buffer Casters { uvec4 codes[]; };
+layout(std430, binding = kBindCasters) writeonly buffer Casters { uvec4 codes[]; };
 
 void main() {
     uint id = gl_GlobalInvocationID.x;

@@ -1,4 +1,5 @@
 // Casters: the surfels of the light cut, decoded once for splatting into the shadow maps; 16 bytes each, by id.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/surfel_code.h"
 
 uniform float cut_size;  // side of the root of the cut, m; radii and areas are coded relative to it
@@ -36,6 +37,6 @@ Caster decode_caster(uvec4 code) {
     return caster;
 }
 
-layout(binding = 6) uniform usamplerBuffer caster_codes;
+layout(binding = kUnitCasters) uniform usamplerBuffer caster_codes;
 
 Caster read_caster(uint id) { return decode_caster(texelFetch(caster_codes, int(id))); }

@@ -3,12 +3,13 @@
 // below the horizon; surfaces are assumed to continue there. The result replaces the fringe buffer.
 layout(local_size_x = 8, local_size_y = 8) in;
 
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shadow_maps/fringe.glsl"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
-layout(binding = 5) uniform usamplerBuffer cores;  // the atlas
+layout(binding = kUnitAtlas) uniform usamplerBuffer cores;  // the atlas
 #ifdef LUCARNE_SOURCES
-layout(std430, binding = 8) readonly buffer Sources { uint sources[]; };  // sources.glsl
+layout(std430, binding = kBindSources) readonly buffer Sources { uint sources[]; };  // sources.glsl
 #endif
 
 // Tolerance for the sine of the angle between the coded normal and that of the surface: the code is off by up to 2

@@ -2,9 +2,11 @@
 // is larger than its surfel, and sticks out at the edge of a surface. Drawn whole, every outline in every map would
 // be a texel and a half too wide. So the core of a splat goes to the atlas and the rest goes here; close.comp takes
 // it only where the surface continues on both sides.
-layout(std430, binding = 12) buffer Fringe { uint fringe[]; };  // same layout as the atlas
+#include "gi/engines/vpl/bindings.h"
+
+layout(std430, binding = kBindFringe) buffer Fringe { uint fringe[]; };  // same layout as the atlas
 #ifdef LUCARNE_SOURCES
-layout(std430, binding = 13) buffer FringeSources { uint fringe_sources[]; };  // sources.glsl
+layout(std430, binding = kBindFringeSources) buffer FringeSources { uint fringe_sources[]; };  // sources.glsl
 #endif
 
 // Radius of the core over that of the splat. With a cover of four, each direction lies in one core on average.

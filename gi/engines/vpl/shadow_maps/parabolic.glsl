@@ -1,3 +1,4 @@
+#include "gi/engines/vpl/bindings.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
 
@@ -7,7 +8,7 @@
 // the stereographic projection: it is conformal, the hemisphere is the unit disc, and d_omega = 4 / (1 + u^2 + v^2)^2
 // du dv.
 
-layout(std430, binding = 10) buffer Atlas { uint atlas[]; };
+layout(std430, binding = kBindAtlas) buffer Atlas { uint atlas[]; };
 
 uniform uint map_side;  // texels along a side of a map; maps lie one after the other
 

@@ -1,7 +1,8 @@
 // The pyramid over every map of the atlas, for pull and push; level 0 is the atlas itself.
+#include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shadow_maps/parabolic.glsl"
 
-layout(std430, binding = 11) buffer Coarse { uint coarse[]; };  // levels 1, 2, ... one after the other
+layout(std430, binding = kBindCoarse) buffer Coarse { uint coarse[]; };  // levels 1, 2, ... one after the other
 
 uniform uint level;  // the level to write
 uniform uint maps;

@@ -187,7 +187,7 @@ Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& ta
     target.casters.bind(kBindCasters);
     casters->dispatch(static_cast<uint32_t>(ids));
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
-    target.bounds.bind(kBindCasters);
+    target.bounds.bind(kBindBounds);
     bounds->dispatch(cut.blocks());
     return {};
 }

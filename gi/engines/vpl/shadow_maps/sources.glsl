@@ -1,6 +1,8 @@
 // The surfel that a texel of the atlas shows: distance | id, so that the smallest code is the nearest surfel, as in
 // the atlas. The distance has the bits that the ids leave: steps of 2 % at 4M surfels.
-layout(std430, binding = 8) buffer Sources { uint sources[]; };
+#include "gi/engines/vpl/bindings.h"
+
+layout(std430, binding = kBindSources) buffer Sources { uint sources[]; };
 
 uniform uint id_bits;
 

@@ -1,0 +1,24 @@
+// Bindings of the shaders that make pictures of radiance, shared by C++ and GLSL.
+#ifndef LUCARNE_GI_POST_BINDINGS_H
+#define LUCARNE_GI_POST_BINDINGS_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace lucarne::gi::post {
+using uint = uint32_t;
+#endif
+
+// Storage buffers.
+const uint kBindRadiance = 0u;
+const uint kBindPicture = 1u;
+const uint kBindSums = 1u;   // of luminance
+const uint kBindMean = 1u;   // of the frames so far
+const uint kBindOther = 2u;  // the other engine's radiance, or its picture
+
+// Texture units.
+const uint kUnitGBuffer = 3u;
+
+#ifdef __cplusplus
+}  // namespace lucarne::gi::post
+#endif
+#endif

@@ -1,0 +1,18 @@
+// Texture units of a cut, shared by C++ and GLSL. No shader uses them for anything else.
+#ifndef LUCARNE_GI_SHARED_CUT_BINDINGS_H
+#define LUCARNE_GI_SHARED_CUT_BINDINGS_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace lucarne::gi {
+using uint = uint32_t;
+#endif
+
+const uint kUnitCutPool = 0u;    // PackedSurfel[]
+const uint kUnitCutItems = 1u;   // CutItem[], then ClipShape[]
+const uint kUnitCutBlocks = 2u;  // CutBlock[]
+
+#ifdef __cplusplus
+}  // namespace lucarne::gi
+#endif
+#endif
