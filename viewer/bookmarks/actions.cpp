@@ -10,7 +10,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// "Bookmark 3": the first number that is free.
+/// Returns a name such as "Bookmark 3" with the first free number.
 std::string free_name(const std::vector<Bookmark>& bookmarks) {
     for (size_t number = 1;; ++number) {
         std::string name = fmt::format("Bookmark {}", number);

@@ -35,11 +35,11 @@ struct CompareOptions {
 
 struct Pictures {
     io::Image picture, reference;
-    std::vector<io::Image> halves;  ///< none or two, of the reference
+    std::vector<io::Image> halves;  ///< none or two half-sample images of the reference
     std::optional<io::Image> gbuffer;
 };
 
-/// A picture, of the size of the first where there is one.
+/// Reads a picture. If `same_size` is given, a picture of another size is an error.
 Result<io::Image> read_alike(const std::string& path, const io::Image* same_size) {
     LUCARNE_ASSIGN(io::Image image, io::read_exr(path));
     if (same_size && (image.width != same_size->width || image.height != same_size->height))
@@ -75,7 +75,7 @@ Result<Pictures> read_pictures(const CompareOptions& options) {
     return read;
 }
 
-/// Figures of all pixels or of those of a mask.
+/// Error metrics over all pixels or over the pixels of a mask.
 struct Figures {
     gi::ImageMetrics metrics;
     double flip = 0;  ///< mean
@@ -147,7 +147,7 @@ Result<void> compare(const CompareOptions& options) {
     LUCARNE_TRY(check_outputs({options.json, options.error_picture}, options.overwrite, inputs));
     LUCARNE_ASSIGN(const Pictures pictures, read_pictures(options));
 
-    // Both are exposed alike, or FLIP could not tell a dark picture from a bright one.
+    // Both pictures get the same exposure; otherwise FLIP could not tell a dark picture from a bright one.
     const double ev =
         options.exposure ? *options.exposure : gi::automatic_exposure(pictures.reference.pixels);
     const auto shown = [&](const io::Image& image) {

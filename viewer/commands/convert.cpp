@@ -37,7 +37,8 @@ struct ConvertOptions {
     bool append = false;
 };
 
-/// A scan that is open only while it is read, so that thousands of inputs do not need thousands of handles.
+/// A scan whose file is open only while it is read, so that thousands of inputs do not need thousands of file
+/// handles.
 class ClosedScan final : public io::PointSource {
  public:
     static Result<std::unique_ptr<io::PointSource>> create(const std::string& path,
@@ -83,7 +84,7 @@ class ClosedScan final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-/// What each input holds, what all of them lost, and which were empty.
+/// The contents of each input, the losses of all inputs, and the inputs without points.
 struct Summary {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
     io::Losses losses;
@@ -123,7 +124,7 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
 
 using Scans = std::vector<std::unique_ptr<io::PointSource>>;
 
-/// Those of the inputs that open; the others are taken out of the list.
+/// Opens the inputs. Removes inputs that cannot be opened from the list and notes them in `aside`.
 Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
     Scans scans;
     for (size_t i = 0; i < options.inputs.size();) {
@@ -139,8 +140,8 @@ Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
     return scans;
 }
 
-/// Builds from what opens, and once more without an input that turns out broken on the way: the first stage
-/// reads all of them.
+/// Builds from the inputs that open. If an input proves to be broken during the first stage, which reads all
+/// inputs, builds again without it.
 template <class Build>
 auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, const Build& build)
     -> decltype(build()) {

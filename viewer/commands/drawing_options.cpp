@@ -13,7 +13,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Takes from `otherwise` what `settings` leaves open.
+/// Fills unset fields of `settings` from `otherwise`.
 void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (settings.engine.empty()) settings.engine = otherwise.engine;
     if (settings.preset.empty()) settings.preset = otherwise.preset;
@@ -21,7 +21,7 @@ void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (!settings.scale) settings.scale = otherwise.scale;
 }
 
-/// "vpl, direct: " before the help of an option that not every engine has.
+/// Returns a prefix such as "vpl, direct: " for the help of an option that not every engine has.
 std::string owners(const gi::OptionInfo& option) {
     std::string names;
     size_t owners = 0, takers = 0;
@@ -34,7 +34,7 @@ std::string owners(const gi::OptionInfo& option) {
     return owners == takers ? "" : names + ": ";
 }
 
-/// Declares --KEY for each option of each engine.
+/// Declares one argument --KEY for each option of each engine.
 void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
     for (const gi::OptionInfo* option : gi::engine_options()) {
         const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
@@ -78,7 +78,8 @@ bool all_have_normals(const octree::NodeSource& source) {
     });
 }
 
-/// Lights, cameras and the device's floats are made for scans of rooms up to those of countries.
+/// Warns of an extent for which lights, cameras and the device's floats are not made: they suit scans from
+/// rooms up to countries.
 void warn_of_extent(const octree::SourceHeader& header) {
     constexpr double kLeast = 0.01, kMost = 1e6;  // m
     const glm::dvec3 extent = (header.max - header.min) * header.metres_per_unit;

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 struct FlyOptions {
-    InputOptions input{.required = false};  // not to compare
+    InputOptions input{.required = false};  // --compare takes no input
     std::vector<std::string> compare;
     std::string path, report, html, frames_folder, video;
     DrawingOptions drawing;
@@ -45,14 +45,15 @@ std::vector<std::string> engines_of(const FlyOptions& options) {
     return names;
 }
 
-/// One of the flights of a call.
+/// One flight of a call.
 struct Plan {
     std::string engine;
     bool cold = false;
-    std::string frames_folder;  ///< empty: none
+    std::string frames_folder;  ///< empty: write no frames
 };
 
-/// Every engine, cold before warm; with several flights each has a folder of its own for its frames.
+/// Plans one flight for every engine, cold before warm. With several flights each writes its frames to its
+/// own folder.
 std::vector<Plan> plans_of(const FlyOptions& options) {
     std::vector<Plan> plans;
     for (const std::string& engine : engines_of(options)) {
@@ -67,7 +68,7 @@ std::vector<Plan> plans_of(const FlyOptions& options) {
     return plans;
 }
 
-/// Everything that can be wrong with arguments and outputs, before long work starts.
+/// Checks arguments and outputs before long work starts.
 Result<void> check(const FlyOptions& options) {
     if (options.input.paths.empty())
         return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
@@ -93,7 +94,7 @@ Result<void> check(const FlyOptions& options) {
     return {};
 }
 
-/// The path once more with every point there is, for what changes from picture to picture.
+/// Flies the path again with all points, to compare the changes from picture to picture.
 Result<FullFlight> fly_at_full_resolution(Pipeline& pipeline, const CameraPath& path, FlightOptions how) {
     const CutBudgets budgets = pipeline.budgets();
     pipeline.set_budgets({.view = UINT64_MAX,
@@ -180,7 +181,7 @@ Result<void> fly_all(FlyOptions options) {
     for (const Plan& plan : plans_of(options)) {
         LUCARNE_ASSIGN(flights.emplace_back(), fly_once(options, plan, path));
     }
-    // One flight is the report itself.
+    // A single flight is the whole report.
     const Json report = flights.size() == 1 ? flights.front() : Json{{"flights", flights}};
     LUCARNE_TRY(write_file(options.report, json_text(report), options.overwrite));
     if (!options.html.empty()) LUCARNE_TRY(write_file(options.html, html_report(flights), options.overwrite));
@@ -188,7 +189,8 @@ Result<void> fly_all(FlyOptions options) {
     return {};
 }
 
-/// B's flights against A's of the same engine, mode and start; where each has but one, those two.
+/// Compares B's flights with A's flights of the same engine, mode and start. If each report has a single
+/// flight, compares these two.
 Result<void> compare(const FlyOptions& options) {
     LUCARNE_ASSIGN(const auto before, read_flights(options.compare[0]));
     LUCARNE_ASSIGN(const auto after, read_flights(options.compare[1]));

@@ -36,7 +36,7 @@ struct InfoOptions {
     bool overwrite = false;
 };
 
-/// File names need not be UTF-8: what is not becomes U+FFFD.
+/// Returns JSON text. File names need not be UTF-8: invalid bytes become U+FFFD.
 std::string text_of(const Json& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -75,7 +75,7 @@ Json describe_octree(const octree::NodeSource& cache, const char* kind) {
 Result<Json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(std::move(file), options.read));
-    // A mesh of a few bytes may have millions of samples.
+    // A mesh of a few bytes may be sampled into millions of points.
     if (options.quick || io::mesh::is_sampled(scan->info()))
         return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
@@ -102,7 +102,7 @@ Result<Json> describe(const std::string& path, const InfoOptions& options) {
     return described;
 }
 
-/// What a double has beyond 15 digits are no digits of the file.
+/// Prints 15 digits: further digits of a double do not come from the file.
 std::string coordinates_text(const Json& vector) {
     std::string text;
     for (const Json& value : vector)

@@ -14,7 +14,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// "1,2.5,-3" as so many finite numbers; their separator is `between`.
+/// Parses `count` finite numbers separated by `between`, for example "1,2.5,-3".
 Result<std::vector<double>> parse_numbers(std::string_view option, std::string_view text, char between,
                                           size_t count) {
     std::vector<double> numbers;
@@ -47,7 +47,7 @@ Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, 
     return box;
 }
 
-/// "scene", "r,g,b" or "r,g,b:r,g,b".
+/// Parses "scene", "r,g,b" or "r,g,b:r,g,b".
 Result<gi::Backdrop> parse_background(const std::string& text) {
     gi::Backdrop backdrop;
     if (text == "scene") return backdrop;

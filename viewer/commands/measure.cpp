@@ -30,7 +30,7 @@ struct MeasureOptions {
     bool snap = false, overwrite = false;
 };
 
-/// The points of the scan nearest to the places asked for, as measurements of single points.
+/// Returns the scan's points nearest to the requested places, as measurements of kind "point".
 Result<std::vector<Measurement>> points_at(const MeasureOptions& options, NodeCache& cache) {
     std::vector<Measurement> all;
     for (const std::vector<double>& place : options.at) {
@@ -54,7 +54,7 @@ Result<void> snap(std::vector<Measurement>& all, NodeCache& cache) {
     return {};
 }
 
-/// section-1.csv and section-1.svg, and so on, in the order of the measurements.
+/// Writes section-1.csv and section-1.svg, and so on, in the order of the measurements.
 Result<void> write_sections(const MeasureOptions& options, const std::vector<Measurement>& all,
                             const UnitChoice& units, NodeCache& cache) {
     size_t number = 0;
@@ -78,7 +78,7 @@ Result<void> measure(const MeasureOptions& options) {
     if (options.measurements.empty() && options.at.empty())
         return bad_arguments("measure", "there is nothing to measure",
                              "give a file of measurements or --at X,Y,Z");
-    // Measurements may be saved back to where they came from, but nothing else may take their place.
+    // Measurements may be saved to the file they came from, but no other output may replace that file.
     LUCARNE_TRY(check_outputs({options.output, options.json_file}, options.overwrite, options.input.paths));
     if (!options.measurements.empty())
         LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, {options.measurements}));

@@ -29,10 +29,10 @@ struct ViewOptions {
     uint32_t frames = 1;
     double frame_time_ms = 100;
     bool overwrite = false;
-    bool size_given = false;  ///< else the window is as large as the last one
+    bool size_given = false;  ///< false: the window is as large as last time
 };
 
-/// Where the view of what is open begins. On a thread: it reads.
+/// Returns the starting view of what is open. Called on a thread, because it reads nodes.
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
@@ -42,7 +42,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     return start;
 }
 
-/// What is wrong with the scene is said at once, and not in a window.
+/// Reports errors of the scene file before a window opens.
 Result<void> check_scene(const ViewOptions& options) {
     if (options.drawing.scene.empty()) return {};
     LUCARNE_ASSIGN(const gi::Scene scene, gi::load_scene(options.drawing.scene));
@@ -102,7 +102,7 @@ Result<void> view(ViewOptions options) {
         [&] {
             if (awake) Window::wake();
         });
-    scans.open(options.input.paths, true);  // while the window starts
+    scans.open(options.input.paths, true);  // loads while the window starts
     LoadedSettings kept = load_settings(config_folder());
     if (!kept.problem.empty()) log::warn("{}", kept.problem);
     for (const std::string& path : options.input.paths) kept.settings.opened(absolute(path));
