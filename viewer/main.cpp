@@ -30,12 +30,12 @@ int main(int argc, char** argv) {
         const log::Operation::Scope scope(command);
         if (const auto done = (*action)(); !done) return fail(done.error());
         if (std::fflush(stdout) != 0) {  // what was printed is the result
-            complain("output: cannot be written; look at where it is sent");
+            complain("output: cannot be written; check where it is redirected");
             return static_cast<int>(ErrorKind::failed);
         }
         return 0;
     } catch (const std::bad_alloc&) {
-        complain("memory: there is not enough; lower --memory or --points");
+        complain("memory: not enough; lower --memory or --points");
     } catch (const std::exception& error) {
         complain(Error{ErrorKind::failed, "internal error", error.what(), ""}.line());
     }

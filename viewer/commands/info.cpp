@@ -159,20 +159,21 @@ Result<void> info(const InfoOptions& options) {
 
 void add_info(CommandLine& line) {
     auto options = std::make_shared<InfoOptions>();
-    Arguments command = line.add("info", "Say what a cache or a scan holds");
+    Arguments command = line.add("info", "Show what a cache or scan contains");
     command
         .add("inputs", options->inputs,
-             "Caches, scan files, folders of scan files. A broken one of several is left out")
+             "Caches, scan files, folders of scan files. Broken files among several are skipped")
         .required()
         .type_name("INPUT");
-    command.flag("--quick", options->quick,
-                 "Do not read the points of scans: no bounds but those that headers state, and what was left "
-                 "out as far as it "
-                 "is known");
+    command.flag(
+        "--quick", options->quick,
+        "Do not read the points of scans: show only the bounds that headers state, and only the losses "
+        "that are known "
+        "without reading");
     add_read_options(command, options->read);
     command
         .add("--json", options->json_file,
-             "Write it there as well, for machines: an object, of several inputs a list")
+             "Also write JSON to this file: an object, or a list for several inputs")
         .type_name("FILE");
     command.flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
     command.run([options] { return info(*options); });

@@ -112,25 +112,26 @@ void add_measure(CommandLine& line) {
         .add("--measurements", options->measurements,
              "What to measure, as the window saves it (data/README.md)")
         .type_name("FILE.json");
-    command.add("--at", options->at, "Say all of the scan's point nearest to this place; may be repeated")
+    command
+        .add("--at", options->at,
+             "Show everything about the scan's point nearest to this place; may be repeated")
         .separator(',')
         .type_name("X,Y,Z");
     command.flag("--snap", options->snap,
-                 "Move the measurements' points to the nearest ones of the scan first");
+                 "First move the measurements' points to the nearest points of the scan");
     command
         .add("-o,--output", options->output,
-             "Write a table (.csv) or the measurements again (.json); else they are printed")
+             "Write a table (.csv) or the measurements (.json); by default they are printed")
         .type_name("FILE");
-    command.add("--json", options->json_file, "Write the results there as well, for machines")
-        .type_name("FILE");
-    command.add("--results", options->results, "In metres or in the scan file's own unit")
+    command.add("--json", options->json_file, "Also write the results as JSON").type_name("FILE");
+    command.add("--results", options->results, "Unit of the results: metres or the scan file's own unit")
         .one_of({"m", "file"})
         .show_default();
     command
         .add("--sections", options->sections,
-             "Write every section into this folder, as points and as a drawing")
+             "Write every section to this folder, as points and as a drawing")
         .type_name("FOLDER");
-    command.add("--section-points", options->section_points, "The most points of a section")
+    command.add("--section-points", options->section_points, "Largest number of points of a section")
         .range(uint64_t{1}, uint64_t{100'000'000})
         .show_default();
     command.flag("--overwrite", options->overwrite, "Replace outputs that exist");

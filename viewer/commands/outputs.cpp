@@ -24,7 +24,7 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, bool overwri
         if (output.empty()) continue;
         for (size_t other = 0; other < i; ++other)
             if (!outputs[other].empty() && name_of(output) == name_of(outputs[other]))
-                return bad_arguments(output, "is to be written twice by this command",
+                return bad_arguments(output, "would be written twice by this command",
                                      "choose another name for one of the outputs");
         for (const std::string& input : inputs) {
             std::error_code neither_is_there;  // equivalent() compares device and inode and follows links

@@ -217,29 +217,33 @@ void add_render(CommandLine& line) {
     Arguments command = line.add("render", "Render one picture without a window");
     add_input_options(command, options->input);
     command.flag("--first", options->first,
-                 "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
+                 "For scans without a cache: render at once from a sample of the points; "
                  "nothing is converted or kept");
     command.add("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
         .required()
         .type_name("FILE");
-    command.add("--camera", options->camera, "One of the scene's; the first when not given")
-        .type_name("NAME");
+    command.add("--camera", options->camera, "A camera of the scene; by default the first").type_name("NAME");
     add_drawing_options(command, options->drawing);
-    command.add("--frames", options->frames, "How many to average").range(1, 1'000'000).type_name("N");
-    command.add("--seconds", options->seconds, "How long to go on averaging").range(0.0, 1e6).type_name("S");
-    command.add("--json", options->json, "Figures of the picture, machine-readable").type_name("FILE");
+    command.add("--frames", options->frames, "Number of frames to average")
+        .range(1, 1'000'000)
+        .type_name("N");
+    command.add("--seconds", options->seconds, "Least time to go on averaging, seconds")
+        .range(0.0, 1e6)
+        .type_name("S");
+    command.add("--json", options->json, "Write figures of the picture as JSON").type_name("FILE");
     command
         .add("--gbuffer", options->gbuffer,
-             "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
+             "Write the G-buffer: unit normal (RGB) and depth in metres (A), for compare")
         .type_name("FILE.exr");
     command.flag("--layers", options->layers,
-                 "Also write what else the engine knows, beside the picture (reference: "
+                 "Also write the engine's further pictures beside the picture (reference: "
                  "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
-                 "OUT.b.exr by half the paths each)");
-    command.flag("--transparent", options->finish.transparent,
-                 "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
+                 "OUT.b.exr, each from half of the paths)");
+    command.flag(
+        "--transparent", options->finish.transparent,
+        "Make the picture transparent (opacity 0) where no point is, instead of drawing a background");
     command.flag("--no-overlay", options->no_overlay,
-                 "Without the legend, axes and scale bar that the scene asks for");
+                 "Leave out the legend, axes and scale bar that the scene requests");
     command.flag("--overwrite", options->overwrite, "Replace files that exist");
     command.run([options] {
         options->finish.overlays = !options->no_overlay;

@@ -126,21 +126,21 @@ Result<void> view(ViewOptions options) {
 
 void add_view(CommandLine& line) {
     auto options = std::make_shared<ViewOptions>();
-    Arguments command = line.add("view", "Look around in caches and scans, lit by their own surfaces");
+    Arguments command = line.add("view", "Explore caches and scans lit by their own surfaces");
     options->input.required = false;
     add_input_options(command, options->input);
     add_drawing_options(command, options->drawing);
     command.add("--camera", options->camera, "Start with this camera of the scene");
     command
         .add("--scale", options->drawing.render.scale,
-             "Share of the window's sides that pictures are made at, and scaled up from: half takes a "
+             "Render pictures at this share of the window's width and height, and scale them up: 0.5 takes a "
              "quarter of "
              "the pixels' time")
         .range(gi::kLeastPictureScale, 1.0)
         .type_name("X");
     command
         .add("--frame-time", options->frame_time_ms,
-             "What a picture should take while something moves; cuts and size follow it")
+             "Target time of a picture while something moves; cuts and size follow it")
         .range(1.0, 1e5)
         .show_default()
         .type_name("MS");
@@ -148,8 +148,8 @@ void add_view(CommandLine& line) {
         .type_name("FILE.json");
     command.add("--path", options->path, "Show and edit this flythrough").type_name("P.json");
     command.add("--screenshot", options->screenshot,
-                "Save the window as this PNG once its picture is whole, and close");
-    command.add("--frames", options->frames, "Whole pictures to average with --screenshot")
+                "Save the window as this PNG once its picture is complete, and close");
+    command.add("--frames", options->frames, "Number of complete pictures to average with --screenshot")
         .range(1u, 256u)
         .show_default();
     command.flag("--overwrite", options->overwrite, "Replace the screenshot's file");

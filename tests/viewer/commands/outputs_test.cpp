@@ -80,7 +80,7 @@ TEST_F(Outputs, NoOutputReplacesAnother) {
     fs::create_directory_symlink(folder_.path(), link);
     for (const auto& json : {cache, dotted, link + "/x.luc"})
         refused(fmt::format("convert {} -o {} --json {} --overwrite", scan_, cache, json),
-                "is to be written twice by this command");
+                "would be written twice by this command");
     EXPECT_FALSE(fs::exists(cache));
 }
 
