@@ -15,18 +15,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kText = ".txt";  ///< may as well be a licence
+constexpr std::string_view kText = ".txt";  ///< may also be other text, for example a licence
 constexpr std::array<std::string_view, 12> kExtensions = {".las", ".laz", ".e57", ".ply", ".pcd", ".ptx",
                                                           ".pts", ".xyz", ".asc", ".csv", ".obj", kText};
-constexpr size_t kNamed = 5;  ///< of a long list
+constexpr size_t kNamed = 5;  ///< names shown of a long list
 
-/// By its rows: licences and notes are no broken scans.
+/// Decides by the rows whether a text file contains points, so that licences and notes do not count as broken
+/// scans.
 bool holds_points(const fs::path& text, io::ReadOptions options) {
     options.quiet = true;
     return io::open_scan(text, options).has_value();
 }
 
-/// The scans in a folder and below. One folder is open at a time, however deep they lie.
+/// Lists the scans in a folder and below. Only one folder is open at a time, whatever the depth.
 void look_through(const std::string& folder, const io::ReadOptions& options, ScanList& list) {
     std::vector<std::string> found, others;
     std::vector<fs::path> folders{folder};
