@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
     using namespace lucarne;
-    // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
+    // Writing beyond `ulimit -f` then fails with an error, as on a full disk, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     handle_interrupts();
     const auto complain = [](const std::string& line) {
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
         const log::Operation command;
         const log::Operation::Scope scope(command);
         if (const auto done = (*action)(); !done) return fail(done.error());
-        if (std::fflush(stdout) != 0) {  // what was printed is the result
+        if (std::fflush(stdout) != 0) {  // the printed text is the command's result
             complain("output: cannot be written; check where it is redirected");
             return static_cast<int>(ErrorKind::failed);
         }

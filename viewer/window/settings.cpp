@@ -23,8 +23,8 @@ constexpr int64_t kLargestWindow = 16384;
 constexpr std::array<const char*, io::SixDofMapping::kAxes> kAxes = {"right",   "up",        "forward",
                                                                      "nose_up", "nose_left", "roll_right"};
 
-/// {"sensitivity": 1, "dead_zone": 0.05, "up": {"from": "forward", "scale": -1}}; axes that are not named are
-/// as the device has them.
+/// {"sensitivity": 1, "dead_zone": 0.05, "up": {"from": "forward", "scale": -1}}; axes that are not listed
+/// keep the device's mapping.
 Result<io::SixDofMapping> read_mapping(JsonObject& object) {
     io::SixDofMapping mapping;
     LUCARNE_ASSIGN(mapping.sensitivity, object.number("sensitivity", {0.01, 100}, mapping.sensitivity));
@@ -48,7 +48,8 @@ nlohmann::json mapping_json(const io::SixDofMapping& mapping) {
     return json;
 }
 
-/// {"shown": true, "width": 24, "open": ["scans", "light"]}; sections of other versions are left out.
+/// {"shown": true, "width": 24, "open": ["scans", "light"]}; unknown sections (of other versions) are
+/// ignored.
 Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
     SideBar bar;
     LUCARNE_ASSIGN(bar.shown, object.boolean("shown", bar.shown));
