@@ -22,7 +22,7 @@ std::string free_name(const std::vector<Bookmark>& bookmarks) {
 void add(ViewModel& model) {
     Shell& shell = model.shell;
     if (shell.bookmarks.size() >= kMostBookmarks) {
-        model.message = "there are as many bookmarks as there can be";
+        model.message = "the list of bookmarks is full";
         return;
     }
     Bookmark bookmark{model.rig.camera(), thumbnail_of(*model.picture), 0};

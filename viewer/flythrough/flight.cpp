@@ -202,7 +202,7 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
     const bool known_length = options.wait && options.soak == 0;
     Flying flying{pipeline, path, options,
-                  Progress(options.wait ? "flying" : "flying by the clock", known_length ? path.frames() : 0,
+                  Progress(options.wait ? "flying" : "flying in real time", known_length ? path.frames() : 0,
                            "frames")};
     Flight flight;
     LUCARNE_TRY(flying.lap(0));

@@ -165,7 +165,7 @@ Result<void> VideoWriter::wait_to_write() {
 
 Result<void> VideoWriter::add(const io::Image8& picture) {
     if (picture.width != size_.width || picture.height != size_.height)
-        return failed(file_.string(), "the frames are not all of one size");
+        return failed(file_.string(), "the frames differ in size");
     for (size_t done = 0; done < picture.bytes.size();) {
         LUCARNE_TRY(wait_to_write());
         const ssize_t n =
@@ -189,7 +189,7 @@ Result<void> VideoWriter::finish() {
         if (ended >= 0) continue;
         pid_ = -1;  // if SIGCHLD is ignored, the exit status is unknown
         return failed(file_.string(),
-                      "how ffmpeg ended is not known: " + std::generic_category().message(errno));
+                      "ffmpeg's exit status is unknown: " + std::generic_category().message(errno));
     }
     pid_ = -1;
     for (size_t before = said_.size() + 1; words_ >= 0 && said_.size() != before;) {

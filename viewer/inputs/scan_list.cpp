@@ -48,8 +48,8 @@ void look_through(const std::string& folder, const io::ReadOptions& options, Sca
                                  (entry->is_directory(unknown) ? " (a link to a folder)" : ""));
         }
         if (error)
-            list.problems.push_back({ErrorKind::input_rejected, here.string(),
-                                     "cannot be looked through: " + error.message(), ""});
+            list.problems.push_back(
+                {ErrorKind::input_rejected, here.string(), "cannot be searched: " + error.message(), ""});
     }
     std::ranges::sort(found);
     std::ranges::sort(others);
@@ -100,7 +100,7 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     for (const std::string& input : once_each(inputs)) {
         std::error_code error;
         if (input.empty())
-            list.problems.push_back({ErrorKind::input_rejected, "''", "is no name of a file", ""});
+            list.problems.push_back({ErrorKind::input_rejected, "''", "is not a file name", ""});
         else if (fs::is_directory(input, error))
             look_through(input, options, list);
         else
@@ -109,7 +109,7 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     list.files = once_each(list.files);
     if (list.files.empty() && list.problems.size() == 1) return tl::unexpected(list.problems.front());
     for (const Error& problem : list.problems) log::warn("{}; it is left out", problem.line());
-    if (list.files.empty()) return rejected("inputs", "none of them holds a scan");
+    if (list.files.empty()) return rejected("inputs", "none of them contains a scan");
     return list;
 }
 

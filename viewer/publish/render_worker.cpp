@@ -38,7 +38,7 @@ Result<void> check(const RenderOrder& order) {
     if (const auto* still = std::get_if<StillOrder>(&order.what)) {
         const auto extension = still->file.extension();
         if (extension != ".png" && extension != ".PNG")
-            return bad_arguments(still->file.string(), "is no PNG by its name", "name it .png");
+            return bad_arguments(still->file.string(), "is not named .png", "name it .png");
         return check_output(still->file, false);
     }
     const auto& flight = std::get<FlightOrder>(order.what);

@@ -36,9 +36,10 @@ bool is_folder(const std::string& path) {
 Result<std::vector<std::string>> expanded(const InputOptions& how, bool together) {
     LUCARNE_ASSIGN(ScanList list, expand_folders(how.paths, how.read));
     if (list.files.size() > kMostScans)
-        return rejected(how.paths.front(),
-                        fmt::format("holds {} scans, {} can be open", list.files.size(), kMostScans),
-                        "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
+        return rejected(
+            how.paths.front(),
+            fmt::format("contains {} scans, but at most {} can be open", list.files.size(), kMostScans),
+            "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
     if (!together)
         for (const Error& problem : list.problems)
             if (std::ranges::find(how.paths, problem.what) == how.paths.end())
@@ -161,7 +162,7 @@ void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t i
         row.state = ScanState::failed;
         row.error =
             Error{ErrorKind::failed, row.paths.front(),
-                  fmt::format("{} scans are open, which is the most", kMostScans), "close some first"};
+                  fmt::format("{} scans are open, which is the limit", kMostScans), "close some first"};
     }
     rows_.insert(place, std::move(row));
     if (full) return;

@@ -144,8 +144,7 @@ bool Desk::closing(bool at_once) {
     model_.close = false;
     window_.stay();
     shell.closing_problem.clear();
-    if (!std::exchange(shell.ask_to_close, true))
-        log::info("{}: asked whether to close all the same", reason);
+    if (!std::exchange(shell.ask_to_close, true)) log::info("{}: asked whether to close anyway", reason);
     return false;
 }
 

@@ -59,7 +59,7 @@ Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
     if (!open->is_array()) return object.wrong("is no list", "open");
     bar.open.fill(false);
     for (const auto& name : *open) {
-        if (!name.is_string()) return object.wrong("holds what is no text", "open");
+        if (!name.is_string()) return object.wrong("contains a value that is not text", "open");
         const auto at = std::ranges::find(kSectionNames, name.get_ref<const std::string&>());
         if (at != kSectionNames.end()) bar.open[static_cast<size_t>(at - kSectionNames.begin())] = true;
     }
@@ -95,7 +95,7 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     if (const auto recent = json.find("recent"); recent != json.end()) {
         if (!recent->is_array()) return object.wrong("is no list", "recent");
         for (const auto& path : *recent) {
-            if (!path.is_string()) return object.wrong("holds what is no text", "recent");
+            if (!path.is_string()) return object.wrong("contains a value that is not text", "recent");
             if (settings.recent.size() < kMostRecent) settings.recent.push_back(path.get<std::string>());
         }
     }

@@ -96,8 +96,8 @@ Result<void> ViewSession::recover() {
     follow_device();
     if (!window_.lost()) return {};
     if (!tries_.take(Clock::now()))
-        return failed("window", "the graphics driver loses it again and again",
-                      "see that the driver is up to date");
+        return failed("window", "the graphics driver has lost it repeatedly",
+                      "check that the driver is up to date");
     const log::Operation::Scope scope{log::Operation()};
     log::warn("the graphics driver has lost the window; it is made again");
     LUCARNE_TRY(window_.recover());
@@ -121,7 +121,7 @@ void ViewSession::follow_device() {
     given_up_ = true;
     model_.message.clear();
     model_.health.device = fmt::format(
-        "There are no more pictures: the graphics device was lost again and again ({}). Start Lucarne anew.",
+        "There are no more pictures: the graphics device was lost repeatedly ({}). Restart Lucarne.",
         lost->why);
     log::warn("{}", model_.health.device);
 }
