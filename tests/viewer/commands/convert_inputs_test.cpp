@@ -1,4 +1,4 @@
-// Many inputs at once: folders, and broken files among sound ones.
+// Many inputs at once: folders, and broken files among good ones.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -112,7 +112,7 @@ TEST_F(ConvertInputs, AFolderWithoutScansAndAnUnreadableOneStopOnlyThemselves) {
               std::string::npos)
         << done.output;
     EXPECT_TRUE(fs::exists(cache_));
-    // Too deep to be opened by its whole name, for whoever runs this.
+    // Too deep for the full path to be opened, whoever runs the test.
     int deepest = open(scans_.c_str(), O_DIRECTORY);
     for (int i = 0; i < 30; ++i) {
         const std::string step(200, 'd');
