@@ -17,8 +17,7 @@ constexpr double kFast = 4;                 ///< factor of the speed while Shift
 constexpr double kWalking = 2.0;            ///< m/s
 constexpr double kEyeHeight = 1.65;         ///< m
 constexpr double kSettling = 8.0;           ///< 1/s: rate at which the camera approaches eye height
-constexpr double kLongestStep =
-    0.25;  ///< s: longest step, so that a slow frame does not throw the camera out of the house
+constexpr double kLongestStep = 0.25;       ///< s: limit, so that a slow frame makes no huge step
 
 constexpr std::array kNames = {"orbit", "turntable", "fly", "walk"};
 

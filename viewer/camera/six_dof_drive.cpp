@@ -12,8 +12,7 @@ namespace {
 constexpr double kTurnRate = std::numbers::pi / 2;  ///< radians a second
 constexpr double kPan = 1;                          ///< shift at full travel, picture heights a second
 constexpr double kZoomRate = 2;                     ///< zoom at full travel, factor of the distance a second
-constexpr double kLongestReport =
-    0.25;  ///< s: longest step, so that a slow frame does not throw the camera out of the house
+constexpr double kLongestReport = 0.25;             ///< s: limit, so that a slow frame makes no huge step
 
 }  // namespace
 

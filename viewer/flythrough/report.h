@@ -30,7 +30,7 @@ struct FlownFrame {
 struct Soak {
     size_t laps = 0, frames = 0;
     MemoryUse first,
-        last;  ///< at the end of the first lap, when everything has been used once, and of the last lap
+        last;  ///< at the end of the first lap (everything has been used once), of the last
 };
 
 /// How the flight started, up to the first picture.

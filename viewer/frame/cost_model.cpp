@@ -8,16 +8,13 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr size_t kRemembered = 24;  ///< frames that are remembered; changes are learned in half as many
-constexpr double kLeastSpread =
-    .1;  ///< relative difference of a cut's points that two frames need for a slope
+constexpr size_t kRemembered = 24;       ///< frames that are remembered; changes are learned in half as many
+constexpr double kLeastSpread = .1;      ///< relative difference of a cut's points needed for a slope
 constexpr double kLeastView = 1.0 / 16;  ///< least share of the largest view's points
-constexpr double kFall = 0.4,
-                 kRise = 1.25;  ///< limits of the change of the view's points from frame to frame
-constexpr double kCalm = 0.04;  ///< smaller changes are ignored: unchanged cuts are not sent again
-constexpr double kWholeEnough =
-    0.8;  ///< least complete share of the cuts: frames with more nodes missing are not representative
-constexpr int kPatience = 8;  ///< consecutive frames needed before the lights' budgets change
+constexpr double kFall = 0.4, kRise = 1.25;  ///< limits of the view's change from frame to frame
+constexpr double kCalm = 0.04;        ///< smaller changes are ignored: unchanged cuts are not sent again
+constexpr double kWholeEnough = 0.8;  ///< least complete share of the cuts of a representative frame
+constexpr int kPatience = 8;          ///< consecutive frames needed before the lights' budgets change
 constexpr int kMostHalvings = 4;
 constexpr double kSpare = 0.6;  ///< share of the target below which the lights' budgets may grow
 

@@ -30,8 +30,7 @@ struct CutPurpose {
     uint32_t light_resolution;
     CutBudgets budgets;
     double extent;  ///< extent of the scan without far outliers (octree/tree/bulk.h); world units
-    const gi::Clip* clip =
-        nullptr;  ///< nodes that are clipped completely are left out of the view cut; null: no clip
+    const gi::Clip* clip = nullptr;  ///< the view cut leaves out fully clipped nodes; null: no clip
 };
 
 /// Limit on the memory of the nodes of all cuts together.

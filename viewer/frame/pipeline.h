@@ -26,10 +26,9 @@ struct PipelineOptions {
 
 /// Memory use, bytes.
 struct MemoryUse {
-    uint64_t host = 0;    ///< largest use so far
-    uint64_t device = 0;  ///< now
-    uint64_t resident =
-        0;  ///< of the process, as reported by the kernel; includes the device of a software driver
+    uint64_t host = 0;      ///< largest use so far
+    uint64_t device = 0;    ///< now
+    uint64_t resident = 0;  ///< of the process, by the kernel; with a software driver includes `device`
 };
 
 struct FrameRequest {
@@ -49,9 +48,8 @@ struct FrameStats {
     uint64_t wanted_points = 0, ready_points = 0;  ///< summed over all cuts: points chosen and drawn
     uint64_t bytes_loaded = 0;                     ///< since the pipeline was opened
     uint64_t nodes_pending = 0;                    ///< wanted nodes that are still on their way
-    uint64_t ahead_loads = 0,
-             ahead_hits = 0;  ///< nodes loaded ahead of the camera; those that became visible later
-    double cut_share = 1;     ///< share of the points allowed by the budgets that fits the caps
+    uint64_t ahead_loads = 0, ahead_hits = 0;      ///< nodes loaded ahead; later visible
+    double cut_share = 1;  ///< share of the points allowed by the budgets that fits the caps
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture
     uint64_t nodes_lost = 0;   ///< unreadable nodes, which are left out with their descendants

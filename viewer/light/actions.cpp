@@ -86,9 +86,8 @@ void shift_light(ViewModel& model, const glm::dvec2& shift) {
     gi::SceneLight* light = model.selected_light();
     if (!light) return;
     const gi::SceneCamera camera = model.rig.camera();
-    const double depth =
-        std::max(std::abs(glm::dot(light->position - camera.position, model.rig.forward())),
-                 model.scene_size / 100);  // least distance, so that a light at the camera moves as well
+    const double depth = std::max(std::abs(glm::dot(light->position - camera.position, model.rig.forward())),
+                                  model.scene_size / 100);  // so that a light at the camera moves
     const double height = 2 * std::tan(camera.vertical_fov / 2) * depth;
     const glm::dvec3 step = (model.rig.right() * shift.x + model.rig.up() * shift.y) * height;
     light->position += step;

@@ -49,8 +49,7 @@ class PathEditor {
     void put(CameraPath path);
 
     CameraPath path_;
-    uint64_t revision_ = 0, newest_ = 0,
-             saved_ = 0;  ///< revision of the path; the newest number in use; revision in the file
+    uint64_t revision_ = 0, newest_ = 0, saved_ = 0;  ///< of the path; the newest; in the file
     std::optional<size_t> selected_;
     std::vector<Before> before_;  ///< for undo
 };

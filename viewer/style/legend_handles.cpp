@@ -11,10 +11,8 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float
-    kReach = 7,
-    kThick =
-        3;  ///< distances from a handle's centre that the mouse grabs and that are drawn, before scaled()
+constexpr float kReach = 7,
+                kThick = 3;  ///< half sizes that the mouse grabs, and that are drawn, before scaled()
 constexpr ImU32 kInk = IM_COL32(255, 240, 200, 255), kLit = IM_COL32(255, 140, 40, 255),
                 kRim = IM_COL32(20, 20, 20, 230);
 

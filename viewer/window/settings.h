@@ -21,8 +21,7 @@ struct Settings {
     double text_size = 1;             ///< factor in addition to the screen's scale
     SideBar side_bar;
     io::SixDofMapping controller;
-    nlohmann::json others =
-        nlohmann::json::object();  ///< keys that this version does not know; they are written back
+    nlohmann::json others = nlohmann::json::object();  ///< unknown keys; written back
 
     /// Puts a path at the front of `recent`.
     void opened(const std::string& path);
