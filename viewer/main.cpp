@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     };
     try {
         viewer::CommandLine line("lucarne",
-                                 "Lucarne: point clouds of any size in the light of their own surfaces.");
+                                 "Lucarne: shows point clouds of any size with global illumination.");
         for (const auto add : viewer::commands()) add(line);
         const auto action = line.parse(argc, argv);
         if (!action) return fail(action.error());

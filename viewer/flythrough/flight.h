@@ -17,8 +17,7 @@ struct FlightOptions {
     /// False: draws what a user sees: the camera follows the clock, and a frame shows the nodes loaded by
     /// then.
     bool wait = true;
-    std::optional<std::filesystem::path>
-        frames_folder;  ///< frames are written here: frame_00001.png and so on
+    std::optional<std::filesystem::path> frames_folder;  ///< gets frame_00001.png and so on
     bool overwrite = false;
     /// Called with the picture of every frame; the first frame has the number 1. An error ends the flight.
     std::function<Result<void>(const io::Image8& picture, size_t number)> take_frame{};

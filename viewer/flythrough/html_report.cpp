@@ -139,7 +139,7 @@ std::string html_report(const Flights& flights) {
     html += fmt::format("<p>{} along {}, {} x {}, preset {}, {}.</p>\n", text_of(first["input"]),
                         text_of(first["path"]), text_of(first["size"][0]), text_of(first["size"][1]),
                         text_of(first["preset"]),
-                        first["mode"] == "wait" ? "every cut whole before it is drawn" : "by the clock");
+                        first["mode"] == "wait" ? "with complete cuts" : "in real time");
     html += figures(flights) + "<h2>Along the flight</h2>\n";
     html += plot_of(flights, "frame", "ms", "ms", 1);
     html += plot_of(flights, "points drawn", "of all cuts", "points", 1);

@@ -29,8 +29,7 @@ struct FlownFrame {
 /// The result of a soak, which repeats the path.
 struct Soak {
     size_t laps = 0, frames = 0;
-    MemoryUse first,
-        last;  ///< at the end of the first lap (everything has been used once), of the last
+    MemoryUse first, last;  ///< at the end of the first lap, when everything has been used, and of the last
 };
 
 /// How the flight started, up to the first picture.
