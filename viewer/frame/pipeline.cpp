@@ -117,8 +117,7 @@ struct Pipeline::State {
     LocalFrame local;
     bool cuts_stale = true;  // the device's cuts differ from the chosen and resident nodes
 
-    std::unique_ptr<gi::Engine> engine,
-        other;  ///< the picture's engine; the compared one, or null
+    std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
