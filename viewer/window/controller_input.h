@@ -7,8 +7,8 @@
 
 namespace lucarne::viewer {
 
-/// Input of a 6-DoF controller: moves the model's camera by the user's mapping. The first button fits the
-/// view. The second button switches the cap between moving the camera and moving the object.
+/// Input of a 6-DoF controller: moves the model's camera by the user's mapping. The first button returns to
+/// the starting view. The second button switches the cap between moving the camera and moving the object.
 class ControllerInput {
  public:
     /// `wake` is called, by any thread, when take() has new input.
