@@ -1,1 +1,1 @@
-// Exists for the precompiled header alone.
+// Exists only for the precompiled header.

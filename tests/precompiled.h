@@ -1,4 +1,4 @@
-// Precompiled for every test, as cmake/precompiled.h is for the program.
+// The precompiled header of every test, like cmake/precompiled.h for the program.
 #pragma once
 
 #include <gmock/gmock.h>

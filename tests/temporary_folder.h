@@ -8,8 +8,8 @@
 
 namespace lucarne::test {
 
-/// An empty folder that goes with the test. Unlike the program's own (io/files/temporary_folder.h) it stays
-/// when a signal ends a child of the test.
+/// An empty folder that is removed at the end of the test. Unlike the program's own class
+/// (io/files/temporary_folder.h), it stays when a signal ends a child process of the test.
 class Folder {
  public:
     Folder() {

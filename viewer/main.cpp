@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
     using namespace lucarne;
-    // Writing beyond `ulimit -f` shall fail as on a full disk, with an error, instead of ending the program.
+    // Writing beyond `ulimit -f` then fails with an error, as on a full disk, instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     handle_interrupts();
     const auto complain = [](const std::string& line) {
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     };
     try {
         viewer::CommandLine line("lucarne",
-                                 "Lucarne: point clouds of any size in the light of their own surfaces.");
+                                 "Lucarne: shows point clouds of any size with global illumination.");
         for (const auto add : viewer::commands()) add(line);
         const auto action = line.parse(argc, argv);
         if (!action) return fail(action.error());
@@ -29,13 +29,13 @@ int main(int argc, char** argv) {
         const log::Operation command;
         const log::Operation::Scope scope(command);
         if (const auto done = (*action)(); !done) return fail(done.error());
-        if (std::fflush(stdout) != 0) {  // what was printed is the result
-            complain("output: cannot be written; look at where it is sent");
+        if (std::fflush(stdout) != 0) {  // the printed text is the command's result
+            complain("output: cannot be written; check where it is redirected");
             return static_cast<int>(ErrorKind::failed);
         }
         return 0;
     } catch (const std::bad_alloc&) {
-        complain("memory: there is not enough; lower --memory or --points");
+        complain("memory: not enough; lower --memory or --points");
     } catch (const std::exception& error) {
         complain(Error{ErrorKind::failed, "internal error", error.what(), ""}.line());
     }

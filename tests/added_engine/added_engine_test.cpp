@@ -1,5 +1,5 @@
-// An engine that is one folder and one line of the list of engines: its options are on the command line, in
-// scene files, presets, reports and the window without a word about them elsewhere.
+// An engine that consists of one folder and one line in the list of engines. Its options appear on the
+// command line, in scene files, presets, reports and the window without further code.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Runs a command of the program in this one, which has the added engine.
+/// Runs a command in this program, which contains the added engine.
 Result<void> run(const std::vector<std::string>& arguments) {
     CommandLine line("lucarne", "");
     for (const auto add : commands()) add(line);
@@ -36,7 +36,7 @@ Result<void> run(const std::vector<std::string>& arguments) {
 class AddedEngine : public ::testing::Test {
  protected:
     void SetUp() override { cache_ = test::make_cornell(folder_, "20k"); }
-    /// The most of each channel in a picture by the engine.
+    /// Returns the maximum of each channel in a picture of the engine.
     glm::vec3 brightest(std::vector<std::string> options) {
         options.insert(options.begin(), {"render", cache_, "-o", folder_ / "out.exr", "--overwrite", "--size",
                                          "64x48", "--engine", "paint"});
@@ -117,7 +117,7 @@ TEST_F(AddedEngine, StandsInReports) {
     EXPECT_FALSE(report["settings"].contains("vpls"));
 }
 
-/// Draws the panel without a window, once a call.
+/// Draws the panel once for each call, without a window.
 class Panel {
  public:
     Panel() {
@@ -138,14 +138,14 @@ class Panel {
         ImGui::SetNextWindowPos(ImVec2(0, 0));
         ImGui::SetNextWindowSize(ImVec2(400, 900));
         ImGui::Begin("panel");
-        ImGui::GetStateStorage()->SetInt(ImGui::GetID("Effort"), 1);  // opened, as by a click
+        ImGui::GetStateStorage()->SetInt(ImGui::GetID("Effort"), 1);  // opened as if clicked
         draw_rendering_panel(model);
         ImGui::End();
         ImGui::EndFrame();
     }
     void click(ViewModel& model, ImVec2 at) {
-        // A window hears of the mouse from its second frame on. A short drag to the right: numbers are
-        // dragged.
+        // A window reacts to the mouse from its second frame on. Make a short drag to the right, since
+        // numbers change by dragging.
         const ImVec2 to(at.x + 20, at.y);
         for (const bool pressed : {false, false, false, true}) draw(model, at, pressed);
         for (const bool pressed : {true, true, false, false}) draw(model, to, pressed);
@@ -158,8 +158,8 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
         for (const gi::OptionInfo* option : gi::engine_options())
             if (model.settings.get(*option) != before.get(*option)) changed.insert(std::string(option->key));
     };
-    // Wherever a control is, a click on it changes something; one more below chooses from a list that has
-    // opened.
+    // Click at all heights: a click on a control changes something, and another click below chooses from an
+    // open list.
     for (float y = 20; y < 500; y += 6) {
         Panel panel;
         ViewModel model(10);

@@ -1,4 +1,4 @@
-// In the place of gi/engine_list.cpp: the same with one line more.
+// Replaces gi/engine_list.cpp; it has one more line.
 #include <array>
 
 #include "gi/engines/direct/direct.h"

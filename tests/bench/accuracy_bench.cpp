@@ -1,6 +1,6 @@
 // The accuracy of the `vpl` engine against analytic truth and against the reference, as a table: every row
-// with its preset, its figure and its target. A program and no test: `./run accuracy` takes some minutes, and
-// misses are printed, not hidden. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go into FOLDER (default:
+// with its preset, its figure and its target. This is a program and not a test: `./run accuracy` takes some
+// minutes and prints missed targets. `lucarne_accuracy [FOLDER] [--scale S]`: pictures go to FOLDER (default:
 // a temporary one that is removed).
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ void row(const std::string& scene, const std::string& measure, double value, dou
 gi::EngineSettings high(const BenchRun& run) {
     return viewer::find_preset(run.trial() ? "preview" : "high")->engine;
 }
-/// The side of a square picture, pixels.
+/// Returns the side of a square picture, pixels.
 uint32_t side(const BenchRun& run, uint32_t full) {
     return run.trial() ? 32 : full;
 }
@@ -83,8 +83,8 @@ Result<void> furnace(gi::Device& device, const BenchRun& run) {
     return {};
 }
 
-/// The mean radiance of a unit square of albedo .5 by another that shines with radiance 1, over .5: the form
-/// factor between them (Howell's catalogue, C-11 and C-14).
+/// Measures the mean radiance of a unit square of albedo .5 lit by another square that emits radiance 1,
+/// divided by .5: the form factor between them (Howell's catalogue, C-11 and C-14).
 Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::string& name,
                          const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, double truth) {
     gi::scenes::AnalyticScene scene;
@@ -92,8 +92,8 @@ Result<void> form_factor(gi::Device& device, const BenchRun& run, const std::str
     gi::scenes::add_rectangle(scene.surfels, o, x, y, 150, glm::vec3(.5f), 0);
     gi::scenes::add_rectangle(scene.surfels, corner, u, v, 150, glm::vec3(0.0f), 1);
     scene.materials = {gi::scenes::material(1, 0, 1, 0), gi::scenes::material(0, 0, 1, 1)};
-    // From far away and low, so that every part of the receiver counts alike and the emitter is not in the
-    // way.
+    // The camera is far away and low, so that all parts of the receiver have the same weight and the emitter
+    // hides none.
     scene.camera = gi::scenes::look(glm::vec3(40, .5f, 10), glm::vec3(.5f, .5f, 0), .02f, side(run, 256));
     scene.settings = high(run);
     scene.settings.set(gi::kOnlyBounce, 1);
@@ -130,7 +130,7 @@ Result<void> judge(const std::string& what, const std::vector<glm::vec4>& pictur
     return {};
 }
 
-/// Lights with a size, direct and with one bounce: one frame, and the average of `frames`.
+/// Measures lights with a size, direct and with one bounce: one frame, and the average of `frames`.
 Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string& camera, const BenchRun& run,
                          double rel_mse) {
     scan.light_by(bench::scene_file(scene));
@@ -191,7 +191,7 @@ Result<void> cornell(const BenchRun& run) {
     return soft_lights(scan, "cornell-area", "front", run, .0125);
 }
 
-/// The same VPLs over points in another order, and over half and twice as many points.
+/// Measures the same VPLs on points in another order, and on half and twice as many points.
 Result<void> invariance(gi::Device& device, const BenchRun& run) {
     gi::scenes::AnalyticScene scene;
     scene.surfels = gi::scenes::closed_box(2, 100, glm::vec3(0.5f));
@@ -217,7 +217,7 @@ Result<void> invariance(gi::Device& device, const BenchRun& run) {
     return {};
 }
 
-/// A second of either engine, after the cloud is loaded.
+/// Compares one second of each engine, after the cloud is loaded.
 Result<void> equal_time(const BenchRun& run) {
     LUCARNE_ASSIGN(const Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
     const std::string common = run.picture(256, "interactive") + "--only-bounce 1 ";
@@ -243,12 +243,12 @@ Result<void> nave(const BenchRun& run) {
     return soft_lights(scan, "nave-sky", "nave", run, .03);
 }
 
-/// One bounce in the Cornell box, all of it glossy, averaged for a minute. A path tracer finds lobes by
-/// chance: the picture is small, so that the reference can have many paths a pixel.
+/// Measures one bounce in an entirely glossy Cornell box, averaged for a minute. A path tracer hits lobes by
+/// chance; the picture is small, so that the reference can have many paths a pixel.
 Result<void> glossy(const BenchRun& run) {
     LUCARNE_ASSIGN(Scan scan, Scan::create("cornell", run.points(2'000'000), run.folder));
     const std::string common = run.picture(64, "high") + "--only-bounce 1 ";
-    using Glossy = std::pair<int, int>;  // the lobe's exponent, paths a pixel of the reference
+    using Glossy = std::pair<int, int>;  // the lobe's exponent, the reference's paths a pixel
     for (const auto& [exponent, paths] : run.cases<Glossy>({{10, 4096}, {100, 8192}, {1000, 32768}})) {
         std::ifstream file(bench::scene_file("cornell-glossy"));
         auto scene = nlohmann::json::parse(file);

@@ -1,4 +1,4 @@
-// How every benchmark program is called: `PROGRAM [FOLDER] [--scale S] [--OPTION NUMBER]...`.
+// The command line of every benchmark program: `PROGRAM [FOLDER] [--scale S] [--OPTION NUMBER]...`.
 #pragma once
 
 #include <algorithm>
@@ -18,26 +18,25 @@
 
 namespace lucarne::bench {
 
-/// One call of a benchmark program. Everything with a size is asked for at its full size and comes back times
-/// the scale, so that a test can run the whole program in seconds. Figures beside targets count at scale 1
-/// alone.
+/// One call of a benchmark program. Functions take full sizes and return them multiplied by the scale, so
+/// that a test can run the whole program in seconds. Figures can be compared with targets only at scale 1.
 struct BenchRun {
     std::filesystem::path folder;           ///< for scans, caches and pictures
-    double scale = 1;                       ///< of the full size, in (0, 1]
-    std::map<std::string, double> options;  ///< the program's own, without the dashes
+    double scale = 1;                       ///< factor of the full size, in (0, 1]
+    std::map<std::string, double> options;  ///< the program's own options, without the dashes
 
     uint64_t points(uint64_t full) const { return std::max<uint64_t>(scaled(full), 10'000); }
     uint64_t count(uint64_t full) const { return std::max<uint64_t>(scaled(full), 1); }
     double seconds(double full) const { return full * scale; }
-    /// Whether the run shall only show that the program works.
+    /// Whether the run only checks that the program works.
     bool trial() const { return scale < 0.05; }
-    /// Of the cases that a benchmark measures one after the other: all, or the first alone in a trial.
+    /// Returns the cases to measure: all, or only the first in a trial.
     template <class Case>
     std::vector<Case> cases(std::vector<Case> all) const {
         if (trial()) all.resize(1);
         return all;
     }
-    /// Options for a square picture: of `side` pixels by the preset, or small and fast in a trial.
+    /// Returns options for a square picture: `side` pixels with the preset, or small and fast in a trial.
     std::string picture(unsigned side, const std::string& preset) const {
         return trial() ? "--size 32x32 --preset preview "
                        : fmt::format("--size {0}x{0} --preset {1} ", side, preset);
@@ -51,7 +50,7 @@ struct BenchRun {
     uint64_t scaled(uint64_t full) const { return static_cast<uint64_t>(scale * static_cast<double>(full)); }
 };
 
-/// Reads the arguments into `run`. Returns the first that is wrong; empty: none.
+/// Reads the arguments into `run`. Returns the first wrong argument, or an empty text.
 inline std::string read_arguments(int argc, char** argv, std::initializer_list<const char*> options,
                                   BenchRun& run) {
     for (int i = 1; i < argc; ++i) {
@@ -75,8 +74,8 @@ inline std::string read_arguments(int argc, char** argv, std::initializer_list<c
 }
 
 /// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed.
-/// `options` are the names of the program's own options. Returns the exit status: 1 where something failed,
-/// never for a missed target.
+/// `options` are the names of the program's own options. Returns the exit status: 1 if something failed, but
+/// not for a missed target.
 inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
                       std::initializer_list<const char*> options = {}) {
     const std::string program = std::filesystem::path(argv[0]).filename();

@@ -14,11 +14,12 @@
 
 namespace lucarne {
 
-/// Nanoseconds of one core to load a point: read, checked and decoded, the file in the page cache.
+/// Returns the nanoseconds that one core takes to load a point (read, check, decode) with the file in the
+/// page cache.
 inline Result<double> decode_nanoseconds(const std::filesystem::path& cache) {
     LUCARNE_ASSIGN(const auto source, octree::open_cache(cache));
     double least = 0;
-    for (int round = 0; round < 3; ++round) {  // the first one warms the page cache
+    for (int round = 0; round < 3; ++round) {  // the first round warms the page cache
         const std::clock_t start = std::clock();
         for (uint32_t node = 0; node < source->nodes().size(); ++node) LUCARNE_TRY(source->load(node));
         const double spent = 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC /
@@ -29,12 +30,12 @@ inline Result<double> decode_nanoseconds(const std::filesystem::path& cache) {
 }
 
 struct ConversionTargets {
-    const char* name;     ///< of --normals, as the table says it
-    const char* normals;  ///< the option
+    const char* name;     ///< name of --normals' value in the table
+    const char* normals;  ///< the value of --normals
     double cpu_seconds, bytes_a_point;
 };
 
-/// Converts the scan, prints each stage's share and the figures of `targets`, which count for 20M points.
+/// Converts the scan. Prints each stage's share, and the figures beside `targets`, which are for 20M points.
 inline Result<void> bench_conversion_of(const std::filesystem::path& scan, double points,
                                         const ConversionTargets& targets) {
     const std::string cache = scan.string() + ".luc", report_file = scan.string() + ".json";
@@ -60,7 +61,7 @@ inline Result<void> bench_conversion_of(const std::filesystem::path& scan, doubl
     return {};
 }
 
-/// The survey converted without and with normals.
+/// Converts the survey without and with normals.
 inline Result<void> bench_conversion(const bench::BenchRun& run) {
     const uint64_t points = run.points(20'000'000);
     const auto scan = run.folder / "survey.las";

@@ -1,6 +1,6 @@
-// What a conversion costs: `bench_convert [FOLDER] [--scale S]` converts the survey of 20M points without and
-// with normals and prints each stage's share, CPU time, memory, bytes a point and the time to load a point
-// beside their targets, which follow the scale.
+// Measures the cost of a conversion: `bench_convert [FOLDER] [--scale S]` converts the survey of 20M points
+// without and with normals and prints each stage's share, CPU time, memory, bytes a point and the time to
+// load a point beside their targets, which follow the scale.
 #include "tests/bench/conversion.h"
 
 int main(int argc, char** argv) {

@@ -1,8 +1,8 @@
-// The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, made anew:
-// the light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
+// The experiments of Preiner 2010 ("Real-Time Global Illumination in Point Clouds"), section 5, repeated: the
+// light of each bounce (fig. 9), times by bounces, VPLs and interleaving in a Cornell box and a cathedral
 // (figs 10 to 12), caustics (fig. 13) and a glossy box (fig. 14). `lucarne_figures [FOLDER] [--scale S]
-// [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). A program and
-// no test; about ten minutes on two cores.
+// [--only N]` prints tables and leaves scans and pictures in FOLDER (./run figures: figures). This is a
+// program and not a test; it takes about ten minutes on two cores.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,7 +38,7 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// A scan in a pipeline of its own, as the viewer has it.
+/// A scan in its own pipeline, as in the viewer.
 class Stage {
  public:
     Stage(gi::Device& device, const Scan& scan) : device_(device), scan_(scan) {}
@@ -59,11 +59,11 @@ class Stage {
 
     struct Measured {
         double milliseconds = 0;  ///< median
-        double processor = 0;     ///< of all cores, ms: median
+        double processor = 0;     ///< time of all cores, ms: median
         double luminance = 0;     ///< mean over pixels and frames
-        size_t points = 0;        ///< of the cut that is drawn into the shadow maps
+        size_t points = 0;        ///< points of the cut that is drawn into the shadow maps
     };
-    /// Frames of which none serves the next: other VPLs each, the same in every call.
+    /// Draws frames that share nothing: each has other VPLs, but every call uses the same ones.
     Result<Measured> frames(gi::EngineSettings settings, int count) {
         Measured measured;
         std::vector<double> times, processor;
@@ -83,7 +83,7 @@ class Stage {
         return measured;
     }
 
-    /// Of the last frame, tone-mapped.
+    /// Writes the last frame, tone-mapped.
     Result<void> write(const std::filesystem::path& path) const {
         const size_t pixels = size_t{request_.size.width} * request_.size.height;
         const auto rgba = pipeline_->picture().download_all<uint32_t>(pixels);
@@ -100,7 +100,7 @@ class Stage {
     std::unique_ptr<viewer::Pipeline> pipeline_;
 };
 
-/// Maps of about 64 x 64 texels whatever their number, as in the paper.
+/// Sets the number of VPLs and an atlas that gives each map about 64 x 64 texels, as in the paper.
 void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
     settings.set(gi::vpl::kVpls, vpls);
     settings.set(gi::vpl::kAtlas,
@@ -114,7 +114,7 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesyste
     Stage stage(device, scan);
     LUCARNE_TRY(stage.open("cornell", {512, 512}));
     gi::EngineSettings settings = stage.settings();
-    LUCARNE_TRY(stage.frames(settings, 1));  // shaders, first loads
+    LUCARNE_TRY(stage.frames(settings, 1));  // warm-up: shaders, first loads
     double before = 0;
     for (uint32_t bounces = 0; bounces <= 4; ++bounces) {
         settings.set(gi::kBounces, bounces);
@@ -128,8 +128,8 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesyste
     return {};
 }
 
-/// Figs 10 (a box) and 11, 12 (a cathedral). The interleaved pictures of the paper's fig. 12 lack their
-/// factor n^2; here the indirect light must be the same for every n.
+/// Measures figs 10 (a box) and 11, 12 (a cathedral). The interleaved pictures of the paper's fig. 12 lack
+/// the factor n^2; here the indirect light must be the same for every n.
 Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scene, const std::string& figure,
                    const BenchRun& run) {
     Stage stage(device, scan);
@@ -153,7 +153,7 @@ Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scen
             fmt::print("{:>6} {:>12}", vpls, fmt::format("{0} x {0}", interleave));
             for (uint32_t bounces = 1; bounces <= 3; ++bounces) {
                 settings.set(gi::kBounces, bounces);
-                // A thousand VPLs take seconds, which vary less.
+                // A frame with a thousand VPLs takes seconds, which vary less, so one frame is enough.
                 LUCARNE_ASSIGN(const auto measured,
                                stage.frames(settings, vpls < 1024 ? static_cast<int>(run.count(3)) : 1));
                 const double indirect = measured.luminance - direct.luminance;
@@ -177,8 +177,8 @@ double brightest(const std::vector<glm::vec4>& picture) {
     return most;
 }
 
-/// Means of 4 x 4 pixels of a square picture: a path tracer finds caustics by chance, and single pixels of
-/// its own are too noisy to divide by.
+/// Returns means of 4 x 4 pixels of a square picture. A path tracer hits caustics by chance, so its single
+/// pixels are too noisy to divide by.
 std::vector<glm::vec4> coarse(const std::vector<glm::vec4>& picture, size_t side) {
     constexpr size_t kBlock = 4;
     std::vector<glm::vec4> means(picture.size() / (kBlock * kBlock), glm::vec4(0.0f));
@@ -188,7 +188,7 @@ std::vector<glm::vec4> coarse(const std::vector<glm::vec4>& picture, size_t side
     return means;
 }
 
-/// Where the light is gathered: its share of a picture, and its middle.
+/// Where the light is concentrated: its share of a picture, and its centre.
 struct Spot {
     double light = 0, x = 0, y = 0;
 };
@@ -226,7 +226,7 @@ Result<void> figure_13(const BenchRun& run) {
         LUCARNE_ASSIGN(Scan::Truth truth,
                        scan.truth("truth", common + fmt::format("--samples {}", run.count(2048))));
         for (auto* picture : {&truth.whole, &truth.first, &truth.second}) *picture = coarse(*picture, kSide);
-        // The caustic: what is brighter than a third of the brightest.
+        // The caustic: pixels brighter than a third of the brightest.
         std::vector<bool> mask;
         const double limit = brightest(truth.whole) / 3;
         for (const glm::vec4& pixel : truth.whole) mask.push_back(gi::luminance(pixel) > limit);

@@ -8,8 +8,8 @@
 
 namespace lucarne {
 
-/// From the start of the process to the picture on disk, of a scan that has no cache: the median of five
-/// runs, the scan in the page cache. 520 MB: 20M points of 26 bytes.
+/// Measures the time from the start of the process to the picture on disk for a scan without a cache: the
+/// median of five runs, with the scan in the page cache. The scan has 520 MB: 20M points of 26 bytes.
 inline Result<void> bench_first_picture(const std::filesystem::path& scan) {
     const std::string picture = scan.string() + ".png";
     const double megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(scan));
@@ -19,7 +19,7 @@ inline Result<void> bench_first_picture(const std::filesystem::path& scan) {
             const auto start = std::chrono::steady_clock::now();
             LUCARNE_ASSIGN(const Usage used, run_lucarne({"render", scan.string(), "--first", "--no-cache",
                                                           "--engine", engine, "-o", picture, "--overwrite"}));
-            if (run == 0) continue;  // brings the scan and the shaders into their caches
+            if (run == 0) continue;  // warms the caches of the scan and the shaders
             seconds.push_back(
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
             cpu.push_back(used.cpu_seconds);

@@ -1,8 +1,8 @@
-// Out of core and global illumination together at full size, as a table: `lucarne_headline [FOLDER] [--scale
-// S]`. A virtual scan of 40M points is made once in FOLDER (default: a temporary one that is removed; 5 GB)
-// and flown through with three bounces under caps of 128 MiB, a twelfth of the cache; then with the whole
-// cloud on the device, at the same places; then slowly, for the flicker. A program and no test: misses are
-// printed.
+// Measures out-of-core global illumination at full size and prints a table: `lucarne_headline [FOLDER]
+// [--scale S]`. Makes a virtual scan of 40M points once in FOLDER (default: a temporary one that is removed;
+// 5 GB). Flies through it with three bounces under caps of 128 MiB, a twelfth of the cache; then with the
+// whole cloud on the device, at the same places; then slowly, to measure flicker. This is a program and not a
+// test: it prints missed targets.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -63,7 +63,7 @@ struct Flown {
             if (frame.flicker) sum += frame.flicker->change;
         return sum / static_cast<double>(frames.size() - 1);
     }
-    /// The most of a member of MemoryUse over frames [first, end), MiB.
+    /// Returns the maximum of a member of MemoryUse over frames [first, end), MiB.
     double most(uint64_t viewer::MemoryUse::*member, size_t first, size_t end) const {
         uint64_t most = 0;
         for (size_t i = first; i < end; ++i) most = std::max(most, frames[i].stats.memory.*member);
@@ -78,7 +78,7 @@ struct Way {
     ImageSize size{384, 216};
 };
 
-/// A flight with a device of its own.
+/// Flies with a new device.
 template <class Change>
 Result<Flown> fly(const std::string& cache, const Way& way, const viewer::PipelineOptions& caps,
                   const Change& change) {
@@ -121,8 +121,8 @@ Result<void> energy(const std::string& cache, double seconds) {
     LUCARNE_ASSIGN(const Flown same, fly(cache, {.seconds = seconds}, all, as_is));
     row("energy against the same budgets without caps", 100 * (capped.luminance() / same.luminance() - 1),
         "%", 3);
-    // As fine as this device's buffers let it: what casts light and shadow is held in one of 16 bytes a
-    // surfel.
+    // As fine as the device's buffers allow: the surfels that cast light and shadow are held in one buffer,
+    // with 16 bytes a surfel.
     const auto fine = [](viewer::Preset& preset) {
         preset.budgets = {
             .view = 16'000'000, .light_view = 16'000'000, .light = 7'000'000, .pixel_spacing = 0.5};

@@ -1,5 +1,5 @@
-// How fast scan files are decoded, by one core. The files are made here; real ones are no larger than the
-// shared tests' data.
+// How fast one core decodes scan files. The files are generated here, because the real ones of the shared
+// test data are too small.
 #pragma once
 
 #include <ctime>
@@ -23,7 +23,8 @@ inline Result<uint64_t> read_whole(const std::filesystem::path& path) {
     }
 }
 
-/// Millions of points a second of one core: of all cores' time, the best of three.
+/// Measures millions of points for each second of one core, from the time of all cores; the best of three
+/// runs.
 inline Result<void> bench_reading(const std::string& what, const std::filesystem::path& path,
                                   const char* unit, double target) {
     double best = 0;
@@ -38,7 +39,7 @@ inline Result<void> bench_reading(const std::string& what, const std::filesystem
     return {};
 }
 
-/// Gives every record of a scan to `take`.
+/// Passes every record of a scan to `take`.
 inline Result<void> for_each_record(const io::PointSource& source,
                                     const std::function<void(const std::byte*)>& take) {
     LUCARNE_ASSIGN(const auto reader, source.open());
@@ -50,7 +51,7 @@ inline Result<void> for_each_record(const io::PointSource& source,
     }
 }
 
-/// Rows of position and colour behind `header`.
+/// Writes `header` and rows of position and colour.
 inline Result<void> write_text(const io::PointSource& source, const std::filesystem::path& path,
                                const std::string& header, bool normals) {
     const io::Attribute* color = source.schema().find(io::names::color);
@@ -69,7 +70,7 @@ inline Result<void> write_text(const io::PointSource& source, const std::filesys
     return out.flush() ? Result<void>() : failed(path.string(), "cannot be written");
 }
 
-/// Coordinates as scaled integers of 24 bits, colours as bytes, in packets as large as they may be.
+/// Writes coordinates as scaled integers of 24 bits and colours as bytes, in packets of the largest size.
 inline Result<void> write_e57(const io::PointSource& source, const std::filesystem::path& path) {
     namespace e57 = io::testing;
     constexpr size_t kPacketPoints = 4000;
@@ -107,7 +108,8 @@ inline Result<void> write_e57(const io::PointSource& source, const std::filesyst
     return out.flush() ? Result<void>() : failed(path.string(), "cannot be written");
 }
 
-/// Reading 4M points of the nave in every format that has a target. Page cache: only the processor counts.
+/// Reads 4M points of the nave in every format that has a target. The files are in the page cache, so only
+/// the processor matters.
 inline Result<void> bench_formats(const BenchRun& run) {
     const std::string scan = run.folder / "formats.las";
     LUCARNE_TRY(run_lucarne(

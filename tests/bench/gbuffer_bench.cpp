@@ -1,6 +1,6 @@
-// How long the G-buffer takes: a nave seen from inside, its surfels at a constant spacing in the picture as a
-// view cut has them. Prints the median of several runs, and the processor time of all cores, which other work
-// on the machine changes less. `bench_gbuffer [--scale S]`.
+// Measures the time of the G-buffer for a nave seen from inside, with surfels at a constant spacing in the
+// picture, as in a view cut. Prints the median of several runs, and the processor time of all cores, which
+// depends less on other work on the machine. `bench_gbuffer [--scale S]`.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -47,9 +47,9 @@ std::vector<Patch> nave() {
     return patches;
 }
 
-constexpr float kThinned = 16;  // surface shares of the surfels in the cut over their own at full resolution
+constexpr float kThinned = 16;  // a surfel's share of the surface in the cut, over that at full resolution
 
-/// About `wanted` surfels of the part that the camera sees, hidden or not, with a density of 1/distance^2.
+/// Returns about `wanted` surfels within the camera's view, hidden or not, with a density of 1/distance^2.
 std::vector<Surfel> sample(const CameraView& view, size_t wanted) {
     const glm::vec3 eye(view.origin.x, view.origin.y, view.origin.z),
         f(view.forward.x, view.forward.y, view.forward.z);
@@ -61,7 +61,7 @@ std::vector<Surfel> sample(const CameraView& view, size_t wanted) {
     };
     const auto patches = nave();
     std::vector<Surfel> surfels;
-    double total = 0;  // integral of dA / d^2 over what is seen
+    double total = 0;  // integral of dA / d^2 over the view
     for (const bool count_only : {true, false}) {
         Random random(7);
         const auto each = [&](const auto& take) {
@@ -85,7 +85,7 @@ std::vector<Surfel> sample(const CameraView& view, size_t wanted) {
         each([&](const Patch& patch, float a, float b, float area, float d2) {
             const double expected = area / d2 / total * static_cast<double>(wanted);
             const auto n = static_cast<int>(expected + random.uniform());
-            // Stratified within the cell, as an even level of detail is.
+            // Stratified within the cell, like an even level of detail.
             const int side = std::max(1, static_cast<int>(std::ceil(std::sqrt(n))));
             for (int k = 0; k < n; ++k) {
                 const float ja = (static_cast<float>(k % side) + static_cast<float>(random.uniform())) /

@@ -1,5 +1,5 @@
-// Clouds larger than any memory, built with --memory 1G: their points are made while they are read, so that
-// only the cache and its scratch file need disk. `lucarne_large [FOLDER] [--scale S]`: a scale of 0.1
+// Builds clouds larger than any memory with --memory 1G. Their points are computed while they are read, so
+// only the cache and its scratch file need disk space. `lucarne_large [FOLDER] [--scale S]`: a scale of 0.1
 // makes everything a tenth as large. At 1 it takes some 40 GB of disk in FOLDER (default: a temporary one)
 // and an hour.
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr uint64_t kMemory = uint64_t{1} << 30;
 
 using Place = std::function<glm::dvec3(uint64_t index)>;
 
-/// As a LAS file would have them: millimetres, colour, intensity; 20 bytes.
+/// Returns a scan with records like a LAS file's: millimetres, colour, intensity; 20 bytes.
 test::ComputedSource scan_of(uint64_t points, double metres_per_step, const Place& place) {
     io::Schema schema;
     schema.position = io::PositionType::i32_scaled;
@@ -43,7 +43,7 @@ test::ComputedSource scan_of(uint64_t points, double metres_per_step, const Plac
             }};
 }
 
-/// Streets of houses: floor and walls, scanned house by house.
+/// Returns a point in streets of houses with floors and walls, scanned house by house.
 glm::dvec3 in_a_town(uint64_t index, uint64_t points) {
     constexpr uint64_t kHouses = 1000, kARow = 32;
     Random random(3, index);
@@ -90,7 +90,7 @@ std::vector<Cloud> clouds() {
     };
 }
 
-/// Builds one cloud in this process and prints its row; returns whether that worked.
+/// Builds one cloud in this process and prints its row. Returns whether that succeeded.
 bool build(const Cloud& cloud, uint64_t points, const std::filesystem::path& folder) {
     const auto source =
         scan_of(points, cloud.metres_per_step, [&](uint64_t index) { return cloud.place(index, points); });
@@ -130,7 +130,7 @@ Result<void> measure(const bench::BenchRun& run) {
     Progress::set_silent(true);
     std::string failures;
     for (const Cloud& cloud : clouds()) {
-        // A process each: what the last one had resident must not count.
+        // Each cloud has its own process, so that the resident memory of the last one does not count.
         const uint64_t points = run.points(cloud.points);
         const pid_t child = fork();
         if (child == 0) _exit(build(cloud, points, run.folder) ? 0 : 1);

@@ -1,6 +1,6 @@
-// Normals: PCL's own estimator with its usual search and with ours in turn, the whole stage, and how many
-// points of virtual scans are oriented right. Prints figures beside their targets.
-// `lucarne_normals [--scale S]`, of a million points a scan.
+// Measures normals: PCL's estimator with its own search and with ours in turn, the whole stage, and the share
+// of correctly oriented points of virtual scans. Prints figures beside their targets. `lucarne_normals
+// [--scale S]`, of a million points a scan.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -34,7 +34,7 @@ void row(const std::string& what, double value, const char* unit, const char* ta
     std::fflush(stdout);
 }
 
-/// The share of normals that are the same lines within a degree.
+/// Returns the share of normals that agree within a degree, up to their sign.
 double agreeing(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
     const float degree = std::cos(std::numbers::pi_v<float> / 180);
     size_t same = 0;
@@ -42,7 +42,8 @@ double agreeing(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b
     return static_cast<double>(same) / static_cast<double>(a.size());
 }
 
-/// In the order of the scan, where the next point is nearly always in the cache, or in none at all.
+/// Compares in the order of the scan, where the next point is nearly always in the processor's cache, or in
+/// random order.
 void compare_with_pcl(const Scan& scan, bool shuffled) {
     std::vector<glm::vec3> points;
     for (const auto& p : scan.cloud.points) points.emplace_back(p);

@@ -17,7 +17,7 @@ struct Usage {
     double cpu_seconds = 0, peak_mebibytes = 0;
 };
 
-/// Runs `lucarne` with these arguments as a process of its own, so that its memory is its own.
+/// Runs `lucarne` with these arguments in a separate process, so that its memory can be measured.
 inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), LUCARNE_BINARY);
     std::vector<char*> argv;
@@ -46,11 +46,11 @@ inline void print_row(const std::string& what, double value, const std::string& 
                kept ? "kept" : "MISSED");
     std::fflush(stdout);
 }
-/// What is to be small.
+/// Prints a figure that should be at most the target.
 inline void row(const std::string& what, double value, const std::string& unit, double target) {
     print_row(what, value, unit, target, value <= target);
 }
-/// What is to be large.
+/// Prints a figure that should be at least the target.
 inline void row_at_least(const std::string& what, double value, const std::string& unit, double target) {
     print_row(what, value, unit, target, value >= target);
 }

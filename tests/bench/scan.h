@@ -1,4 +1,4 @@
-// Virtual scans and pictures of them by the program, for the benchmarks that hold `vpl` against the
+// Virtual scans, and pictures of them rendered by the program, for benchmarks that compare `vpl` with the
 // reference.
 #pragma once
 
@@ -20,7 +20,7 @@ inline std::string scene_file(const std::string& name) {
     return std::string(LUCARNE_SOURCE_DIR) + "/data/scenes/" + name + ".json";
 }
 
-/// A scan of a scene as a cache in `folder`.
+/// The cache of a virtual scan of a scene in `folder`.
 class Scan {
  public:
     static Result<Scan> create(const std::string& scene, uint64_t points,
@@ -35,7 +35,7 @@ class Scan {
     }
 
     const std::string& cache() const { return cache_; }
-    /// Pictures from now on are of another scene file than the scan's own, and called after it.
+    /// Renders further pictures with another scene file, and names them after it.
     void light_by(const std::filesystem::path& file) {
         scene_ = file.stem();
         lit_by_ = file;
@@ -60,7 +60,7 @@ class Scan {
         return Truth{std::move(whole.pixels), std::move(first.pixels), std::move(second.pixels)};
     }
 
-    /// The path of the picture FOLDER/SCENE-NAME, `name` with the ending of its kind.
+    /// Renders the picture FOLDER/SCENE-NAME and returns its path. `name` includes the extension.
     Result<std::string> render(const std::string& name, const std::string& arguments) const {
         const std::string file = folder_ / (scene_ + "-" + name);
         LUCARNE_TRY(

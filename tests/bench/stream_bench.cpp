@@ -1,7 +1,7 @@
-// What streaming is held to, measured by `lucarne fly` and printed beside its target: what loading takes of a
-// frame, cold starts, what loading ahead wins, popping, memory over a long flight, many caches.
-// `lucarne_stream [FOLDER] [--scale S] [--soak SECONDS]`: caches in FOLDER (default: a temporary one, 1 GB),
-// seconds of the long flight (default 60; an hour is 3600).
+// Measures streaming with `lucarne fly` and prints the figures beside their targets: time of loading in a
+// frame, cold starts, the gain of loading ahead, popping, memory over a long flight, many caches.
+// `lucarne_stream [FOLDER] [--scale S] [--soak SECONDS]`: FOLDER holds the caches (default: a temporary
+// folder, 1 GB); SECONDS is the duration of the long flight (default 60; an hour is 3600).
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The scan to fly through and where its files are.
+/// The scan to fly through and its files.
 struct Ground {
     const bench::BenchRun& run;
 
@@ -44,7 +44,7 @@ Result<void> make_cache(const Ground& ground) {
     return {};
 }
 
-/// A flight's report.
+/// Flies and returns the report.
 Result<json> fly(const Ground& ground, std::vector<std::string> arguments) {
     const std::string report = ground.file("report.json");
     for (const char* also :
@@ -86,7 +86,7 @@ Result<void> bench_prefetch(const Ground& ground) {
 }
 
 Result<void> bench_popping(const Ground& ground) {
-    // A slow way: every picture nearly the one before.
+    // A slow path: every picture is nearly the one before.
     const std::string slow = ground.file("slow.json");
     std::ofstream(slow) << R"({"frames_per_second": 25, "keys": [
         {"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65},
@@ -118,7 +118,7 @@ Result<void> bench_soak(const Ground& ground) {
     return {};
 }
 
-/// Moves a LAS file by its header's offsets and bounds (LAS 1.4 R15, table 3).
+/// Moves a LAS file by changing its header's offsets and bounds (LAS 1.4 R15, table 3).
 void move_las(const std::string& file, double x, double y) {
     std::fstream las(file, std::ios::in | std::ios::out | std::ios::binary);
     const auto add = [&](std::streamoff at, double by) {
@@ -131,7 +131,7 @@ void move_las(const std::string& file, double x, double y) {
     for (const std::streamoff at : {163, 195, 203}) add(at, y);
 }
 
-/// Side by side, as the scans of a town are. The flight is through the first of them.
+/// Flies through the first of many caches that lie side by side like the scans of a town.
 Result<void> bench_many_caches(const Ground& ground) {
     const std::string scan = ground.file("small.las");
     const uint64_t caches = ground.run.count(200);

@@ -1,6 +1,6 @@
-// Every figure of the project's targets for speed and memory, measured and printed beside its target. A
-// program and no test: nothing here fails because a machine is busy. `lucarne_bench [FOLDER] [--scale S]`
-// puts its scans into FOLDER (default: a temporary one, removed afterwards; it needs 4 GB).
+// Measures every figure that the project has a target for (speed and memory) and prints it beside the target.
+// This is a program and not a test, so that it does not fail on a busy machine. `lucarne_bench [FOLDER]
+// [--scale S]` puts its scans into FOLDER (default: a temporary one, removed afterwards; it needs 4 GB).
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -43,12 +43,12 @@ Result<void> bench_normals(const bench::BenchRun& run) {
 }
 
 struct FrameTimes {
-    double wall = 0, cpu = 0;  ///< medians, ms; `cpu` is that of all cores over the whole frame
+    double wall = 0, cpu = 0;  ///< medians, ms; `cpu` is the time of all cores over the whole frame
     viewer::FrameStats last;
 };
 
-/// One frame after another with the camera a little further each time, as a user sees them. `pass` picks one;
-/// with `anew` nothing of a frame serves the next.
+/// Draws frames with a moving camera, as a user sees them. `pass` selects the measured pass. With `anew` a
+/// frame reuses nothing of the one before.
 Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameRequest request, int frames,
                                  std::string_view pass, bool anew = false) {
     std::vector<double> wall, cpu;
@@ -92,7 +92,7 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     LUCARNE_ASSIGN(auto pipeline, viewer::open_pipeline(*device, source, options, drawing, scene));
 
     request.size = {512, 512};
-    LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // shaders, first loads
+    LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // warm-up: shaders, first loads
     const auto frames = [&](const std::string& what, uint32_t bounces, bool anew,
                             double target) -> Result<void> {
         gi::EngineSettings settings = pipeline->settings();

@@ -1,5 +1,4 @@
-// Bad scans through the program: exit code 3, one line that names the file and the reason, nothing left
-// behind.
+// The program on bad scans: exit code 3, one line that names the file and the reason, no files left behind.
 #include <gmock/gmock.h>
 
 #include "tests/fault/run_lucarne.h"
@@ -15,7 +14,7 @@ using test::lucarne;
 using test::quoted;
 using ::testing::HasSubstr;
 
-/// What is said last: warnings may stand before it.
+/// Returns the last line of the output; warnings may precede it.
 std::string last_line(const std::string& text) {
     const size_t end = text.find_last_not_of('\n');
     const size_t before = text.find_last_of('\n', end);

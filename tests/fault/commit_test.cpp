@@ -1,5 +1,5 @@
-// Programs that are killed or lose their power between any two calls of a commit, from the last write before
-// the first sync to the end of the program: the cache is the old state or the new one, and sound.
+// Kills the program or cuts its power between any two calls of a commit, from the last write before the first
+// sync to the end of the program. The cache must be in the old or the new state, and sound.
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class Commit : public ::testing::Test {
             ASSERT_EQ(
                 lucarne("convert --normals none " + quoted(scan(name)) + " -o " + quoted(built(name))).code,
                 0);
-        // With some that is not in use, for compacting.
+        // A cache with unused space, for compacting.
         fs::copy_file(built("a"), folder_ / "appended.luc");
         ASSERT_EQ(
             lucarne("convert --append " + quoted(scan("b")) + " -o " + quoted(folder_ / "appended.luc")).code,
@@ -57,7 +57,7 @@ class Commit : public ::testing::Test {
                 {"delete most", "delete --box=-100,-100,-100,1.9,100,100 " + cache, start_with(built("a"))},
                 {"compact", "compact " + cache, start_with(folder_ / "appended.luc")}};
     }
-    /// Leaves what a resumed conversion goes on from.
+    /// Leaves the stages from which a resumed conversion continues.
     void interrupt(const std::string& convert) {
         const auto calls = trace(convert);
         const auto sync = std::find(calls.begin(), calls.end(), "fsync") - calls.begin();
@@ -71,7 +71,8 @@ class Commit : public ::testing::Test {
     std::vector<std::string> trace(const std::string& arguments) const {
         return test::traced_calls(folder_ / "calls", arguments);
     }
-    /// Every position in the cache, sorted; none where there is no cache. It verifies.
+    /// Returns all positions in the cache, sorted, or none if there is no cache. Expects that the cache
+    /// verifies.
     std::vector<std::string> state(const std::string& when) const {
         if (!fs::exists(cache_)) return {};
         const auto verified = octree::verify_cache(cache_, [](uint64_t) {});
@@ -79,7 +80,8 @@ class Commit : public ::testing::Test {
         const auto cache = octree::open_cache(cache_);
         return cache ? test::sorted_records(**cache, 12) : std::vector<std::string>{"damaged"};
     }
-    /// Runs the operation with this fault before every call of its commit; `again`: and then without any.
+    /// Runs the operation with this fault before each call of its commit. `again`: runs it afterwards without
+    /// a fault.
     void expect_old_or_new(const Operation& operation, const std::string& fault, const std::string& more,
                            bool again) {
         clear();
@@ -127,7 +129,8 @@ TEST_F(Commit, WithoutPowerBeforeAnyCallLeavesTheOldStateOrTheNewAndBothVerify) 
 }
 
 TEST_F(Commit, WithoutNamelessFilesIsAsSafe) {
-    // Where a file system cannot make nameless files, an output has a name beside its own until it is whole.
+    // If a file system cannot make nameless files, an output has a temporary name beside its own until it is
+    // complete.
     ::setenv("LUCARNE_NO_TMPFILE", "1", 1);
     for (const auto& operation : operations())
         if (operation.name != "append" && operation.name != "delete")

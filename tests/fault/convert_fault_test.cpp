@@ -1,5 +1,4 @@
-// Conversion when the disk fills or the arguments are wrong: one clear line, the right exit code, nothing
-// left behind.
+// Conversion with a full disk or wrong arguments: one clear line, the right exit code, no files left behind.
 #include <csignal>
 #include <string>
 
@@ -34,7 +33,7 @@ std::unique_ptr<io::PointSource> scan_of(uint64_t points) {
     return source ? std::move(*source) : nullptr;
 }
 
-/// No file of this process may grow beyond `bytes`: what a full disk looks like, without filling one.
+/// Limits the size of this process's files to `bytes`, which looks like a full disk.
 class FileSizeLimit {
  public:
     explicit FileSizeLimit(rlim_t bytes) {
@@ -59,7 +58,8 @@ TEST(ConvertFaults, LeaveNothingBehindWhereverWritingFails) {
     const auto source = scan_of(100'000);
     ASSERT_TRUE(source);
     const uint64_t whole = 100'000 * source->schema().stride;
-    // In the scratch file: the cache is smaller. resume_test.cpp has every other place.
+    // The limit strikes in the scratch file, since the cache is smaller. resume_test.cpp tests all other
+    // places.
     for (const uint64_t limit : {uint64_t{0}, whole / 3, whole - 1}) {
         const TempFolder folder;
         octree::BuildOptions options{
@@ -178,7 +178,7 @@ TEST(ConvertFaults, NeedNoHandleForEveryInput) {
     const TempFolder folder;
     ASSERT_EQ(lucarne("generate cornell --even --points 1000 -o " + quoted(folder / "a.las")).code, 0);
     std::string inputs;
-    for (int i = 0; i < 60; ++i) {  // the same file would be taken once
+    for (int i = 0; i < 60; ++i) {  // distinct files, because a file that is given twice is read once
         const auto copy = folder / (std::to_string(i) + ".las");
         std::filesystem::copy_file(folder / "a.las", copy);
         inputs += quoted(copy) + " ";
@@ -186,7 +186,7 @@ TEST(ConvertFaults, NeedNoHandleForEveryInput) {
     rlimit before{}, few{};
     ::getrlimit(RLIMIT_NOFILE, &before);
     few = before;
-    few.rlim_cur = 30;  // inherited by the program
+    few.rlim_cur = 30;  // the program inherits the limit
     ::setrlimit(RLIMIT_NOFILE, &few);
     const auto outcome = lucarne("convert --normals none " + inputs + " -o " + quoted(folder / "a.luc"));
     ::setrlimit(RLIMIT_NOFILE, &before);
@@ -216,7 +216,7 @@ TEST(Commands, GoOnWhereTheirProgressCannotBeWrittenAndFailWhereTheirResultCanno
     const TempFolder folder;
     const auto scan = quoted(folder / "a.las"), cache = quoted(folder / "a.luc");
     ASSERT_EQ(lucarne("generate cornell --even --points 50k -o " + scan).code, 0);
-    // The comment sign keeps lucarne() from joining stderr again.
+    // The '#' comments out the redirection of stderr that lucarne() appends.
     EXPECT_EQ(lucarne("convert --normals none " + scan + " -o " + cache + " 2>/dev/full #").code, 0);
     EXPECT_EQ(lucarne("verify " + cache).code, 0);
     const auto info = lucarne("info " + cache + " 2>&1 >/dev/full #");

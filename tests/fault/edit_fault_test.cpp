@@ -1,5 +1,5 @@
-// Updates of a cache that are killed, run out of space or lose what was not synced: the old state is there,
-// or the new one, and nothing between.
+// Updates of a cache that are killed, run out of space or lose unsynced data: the cache has the old state or
+// the new one, and nothing in between.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -41,15 +41,15 @@ class Updates : public testing::Test {
                 {"delete", "delete --box=-100,-100,-100,0.7,100,100 " + quoted(cache_)},
                 {"compact", "compact " + quoted(cache_)}};
     }
-    /// Every record in the cache, sorted; empty where it is not sound.
+    /// Returns all records in the cache, sorted, or nothing if it is not sound.
     std::vector<std::string> points() const {
         const auto cache = octree::open_cache(cache_);
         EXPECT_TRUE(cache) << cache.error().line();
         if (!cache) return {};
-        // The schema may have got wider: the first attributes are those of before.
+        // The schema may have more attributes now; the first ones are the old ones.
         return test::sorted_records(**cache, 12);
     }
-    /// The state after the update, done on a copy; and how many calls it makes that change files.
+    /// Runs the update on a copy to learn the new state. Returns the number of calls that change files.
     uint64_t try_out(const Update& update) {
         write_bytes(cache_, before_);
         const auto counted = lucarne_with_fault("count:" + (folder_ / "calls").string(), update.arguments);
@@ -62,7 +62,7 @@ class Updates : public testing::Test {
         const auto now = points();
         ASSERT_TRUE(now == old_points_ || now == new_points_) << when << ": " << now.size() << " points";
     }
-    /// Whatever happened, the same update can be done again and leaves a cache that verifies.
+    /// Expects that the same update can be repeated and leaves a cache that verifies.
     void expect_repairable(const Update& update, const std::string& when) {
         write_bytes(folder_ / "now.luc", read_bytes(cache_));
         const bool old = points() == old_points_;
@@ -70,7 +70,7 @@ class Updates : public testing::Test {
             ASSERT_EQ(lucarne(update.arguments).code, 0) << when;
         }
         ASSERT_TRUE(points() == new_points_) << when;
-        // Both superblocks are sound again when one more update is through.
+        // After one more update both superblocks are sound again.
         ASSERT_EQ(lucarne("compact " + quoted(cache_)).code, 0) << when;
         const auto verified = lucarne("verify " + quoted(cache_));
         ASSERT_EQ(verified.code, 0) << when << verified.text;
@@ -118,7 +118,7 @@ TEST_F(Updates, ThatFailAtAnyCallSaySoAndLeaveTheOldState) {
                 write_bytes(cache_, before_);
                 const auto outcome = lucarne_with_fault(fault, update.arguments);
                 expect_old_or_new(update.name + (" " + fault));
-                if (outcome.code == 0) {  // a hint failed
+                if (outcome.code == 0) {  // the failed call was only a hint
                     ASSERT_TRUE(points() == new_points_) << update.name << fault;
                     continue;
                 }

@@ -1,4 +1,4 @@
-// One flipped bit anywhere in a cache: found by verify, and never taken for a point.
+// One flipped bit anywhere in a cache is found by verify and never read as a point.
 #include <gtest/gtest.h>
 
 #include "io/core/random.h"
@@ -46,7 +46,7 @@ TEST_F(FlippedBit, AnywhereIsFoundByVerifyAndGivesNoWrongPoint) {
     Random random(3);
     size_t unreadable = 0, kept = 0;
     for (int round = 0; round < 1500; ++round) {
-        // Half of them where little stands: superblocks, metadata and directory.
+        // Half of the bits are in small structures: superblocks, metadata and directory.
         const size_t at = round % 4 == 0   ? random.next() % octree::format::kFirstPayload
                           : round % 4 == 1 ? bytes_.size() - 1 - random.next() % 2000
                                            : random.next() % bytes_.size();

@@ -1,4 +1,4 @@
-// SIGINT, SIGTERM and SIGHUP: what can be gone on from is kept and said, nothing else is left.
+// SIGINT, SIGTERM and SIGHUP: resumable work is kept and reported; no other files are left.
 #include <array>
 #include <csignal>
 
@@ -28,7 +28,7 @@ class Interrupt : public ::testing::Test {
         ASSERT_EQ(lucarne("generate two-rooms --points 5k -o " + quoted(scan_)).code, 0);
         fs::create_directory(out_);
     }
-    /// The number of the call of this name, from 1; the last of them, or the first.
+    /// Returns the number (from 1) of the last or first call of this name.
     size_t call_of(const std::string& name, bool last, const std::string& arguments,
                    const std::string& before = {}) {
         const auto calls = test::traced_calls(folder_ / "calls", arguments, before);
@@ -78,7 +78,7 @@ TEST_F(Interrupt, OfAConversionKeepsItsStagesAndSaysHowToGoOn) {
 }
 
 TEST_F(Interrupt, OfAConversionThatHasFinishedNoStageLeavesNothing) {
-    const size_t call = call_of("pwrite", false, convert_);  // into the journal
+    const size_t call = call_of("pwrite", false, convert_);  // the journal's write
     for (const int signal : kSignals) {
         const auto outcome = interrupted(call, signal, convert_);
         EXPECT_TRUE(left().empty()) << outcome.text;
@@ -142,11 +142,11 @@ TEST_F(Interrupt, OfAFlightLeavesWholeFramesAndNoPartOfAVideo) {
                      quoted(folder_ / "path.json") + " -o " + quoted(out_ / "report.json");
     const auto frames = fly + " --frames-dir " + quoted(out_ / "frames");
     const size_t second =
-        call_of("linkat", false, frames) + 2;  // a frame is synced and named, and its folder synced
+        call_of("linkat", false, frames) + 2;  // a frame has been synced and named, and its folder synced
     interrupted(second, SIGINT, frames);
     ASSERT_EQ(left().size(), 1u);
     EXPECT_EQ(std::distance(fs::directory_iterator(out_ / "frames"), {}), 1);
-    // What it needs of ffmpeg: to write what it is given.
+    // A replacement for ffmpeg that writes its input.
     fs::create_directory(folder_ / "bin");
     write_bytes(folder_ / "bin" / "ffmpeg",
                 "#!/bin/sh\nfor last; do :; done\nexec cat > \"${last#file:}\"\n");

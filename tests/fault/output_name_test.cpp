@@ -1,4 +1,4 @@
-// Outputs whose data is on the disk, but whose name in the folder cannot be synced.
+// Outputs whose data is synced, but whose name in the folder cannot be synced.
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -15,7 +15,7 @@ using io::testing::read_bytes;
 using test::lucarne_with_fault;
 using test::quoted;
 
-/// Commands that write one file; their last sync is that of its folder.
+/// Commands that write one file; their last sync is the sync of its folder.
 class OutputNames : public testing::Test {
  protected:
     struct Case {
@@ -28,7 +28,7 @@ class OutputNames : public testing::Test {
                 {cache, "convert --normals none " + quoted(scan) + " -o " + quoted(cache)},
                 {text, "export " + quoted(cache) + " -o " + quoted(text)}};
     }
-    /// Runs the command with its last sync failing.
+    /// Runs the command and lets its last sync fail.
     test::Outcome run_with(const Case& tested, int error) {
         std::filesystem::remove(tested.output);
         const auto calls = test::traced_calls(folder_ / "calls", tested.command);

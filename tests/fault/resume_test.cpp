@@ -1,4 +1,4 @@
-// Conversions that are killed, run out of space or lose what was not synced, and go on.
+// Conversions that are killed, run out of space or lose unsynced data, and are resumed.
 #include <algorithm>
 #include <string>
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLeft = ".lucarne-work";
 
-/// A scan, what its cache shall be, and how many calls that change files its conversion makes.
+/// A scan, its expected cache, and the number of calls that change files in its conversion.
 class Conversion : public testing::Test {
  protected:
     void SetUp() override {
@@ -36,7 +36,7 @@ class Conversion : public testing::Test {
         ASSERT_GT(calls_, 10u);
         ASSERT_TRUE(leftovers().empty());
     }
-    /// Enough memory for several chunks and no more.
+    /// The memory is so small that there are several chunks.
     std::string convert(const std::string& options) const {
         return "convert --memory 32M " + options + " " + quoted(scan_) + " -o " + quoted(cache_);
     }
@@ -53,11 +53,11 @@ class Conversion : public testing::Test {
         ASSERT_TRUE(leftovers().empty()) << when;
         fs::remove(cache_);
     }
-    /// Kills a conversion after its chunks are dealt out, before its normals are found.
+    /// Kills a conversion after the chunks are written and before normals are estimated.
     void interrupt() {
         for (uint64_t call = 1; call <= calls_; ++call) {
             ASSERT_EQ(lucarne_with_fault("kill:" + std::to_string(call), convert("")).code, -1);
-            const auto left = leftovers();  // none before the folder is made
+            const auto left = leftovers();  // empty before the folder is made
             if (!left.empty() && read_bytes(left[0] / "journal").find("chunk") != std::string::npos) return;
         }
         FAIL() << "no chunks were ever finished";
@@ -65,7 +65,7 @@ class Conversion : public testing::Test {
 
     const io::testing::TemporaryFolder folder_;
     const fs::path scan_ = folder_ / "a.las", cache_ = folder_ / "a.luc";
-    uint64_t calls_ = 0, last_write_ = 0;  ///< the latter before the output is synced
+    uint64_t calls_ = 0, last_write_ = 0;  ///< the last write before the output is synced
     std::string reference_;
 };
 
@@ -92,7 +92,7 @@ TEST_F(Conversion, KilledOverAnOldCacheLeavesThatOrTheNewOne) {
 }
 
 TEST_F(Conversion, GoesOnOverAndOverUntilItIsDone) {
-    // Killed a little later each time, it always goes on from what the one before had finished.
+    // Each run is killed a little later and continues from the stages that the previous run finished.
     for (uint64_t call = 1; call < 8; ++call)
         ASSERT_EQ(lucarne_with_fault("kill:" + std::to_string(call), convert("--resume")).code, -1);
     expect_resumed("killed seven times");
@@ -112,7 +112,7 @@ TEST_F(Conversion, GoesOnToTheSameBytesAfterAPowerCut) {
 TEST_F(Conversion, ReportsADiskThatIsFullAtAnyWriteAndLeavesNothing) {
     for (uint64_t call = 1; call < calls_; call += 1 + calls_ / 30) {
         const auto full = lucarne_with_fault("full:" + std::to_string(call), convert(""));
-        if (full.code == 0) {  // what failed was a hint
+        if (full.code == 0) {  // the failed call was only a hint
             ASSERT_TRUE(read_bytes(cache_) == reference_) << call;
             fs::remove(cache_);
             continue;
@@ -127,7 +127,7 @@ TEST_F(Conversion, ReportsADiskThatIsFullAtAnyWriteAndLeavesNothing) {
 TEST_F(Conversion, ReportsAnyCallThatFails) {
     for (uint64_t call = 1; call <= calls_; call += 1 + calls_ / 30) {
         const auto outcome = lucarne_with_fault("error:" + std::to_string(call), convert(""));
-        // A hint may fail, and behind the name there is only the folder's sync.
+        // A failed hint is no error. After the output is named, only the folder's sync remains.
         const bool named = fs::exists(cache_);
         ASSERT_EQ(outcome.code, named && outcome.text.find("cannot be synced") == std::string::npos ? 0 : 1)
             << call << outcome.text;
@@ -169,7 +169,8 @@ TEST_F(Conversion, StartsAgainWhereOptionsOrInputsAreOthers) {
     const auto changed = lucarne(convert("--resume"));
     ASSERT_EQ(changed.code, 0) << changed.text;
     EXPECT_NE(changed.text.find("starting from the beginning"), std::string::npos) << changed.text;
-    const std::string resumed = read_bytes(cache_);  // not the reference: it tells when its scan was written
+    const std::string resumed = read_bytes(
+        cache_);  // not equal to the reference, which contains another modification time of the scan
     fs::remove(cache_);
     ASSERT_EQ(lucarne(convert("")).code, 0);
     EXPECT_TRUE(read_bytes(cache_) == resumed);

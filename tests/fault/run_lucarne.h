@@ -10,12 +10,12 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-// The program as a user runs it.
+// Runs the program as a user does.
 namespace lucarne::test {
 
 struct Outcome {
-    int code = -1;     ///< -1 where a signal ended it
-    int signal = 0;    ///< which one
+    int code = -1;     ///< exit code; -1 if a signal ended the program
+    int signal = 0;    ///< that signal
     std::string text;  ///< stderr and stdout
 };
 
@@ -31,22 +31,22 @@ inline Outcome run(const std::string& command) {
     return outcome;
 }
 
-/// `before`: a command of the shell, such as "ulimit -f 1; ".
+/// Runs the program. `before`: a shell command such as "ulimit -f 1; ".
 inline Outcome lucarne(const std::string& arguments, const std::string& before = {}) {
     return run(before + LUCARNE_BINARY + " " + arguments);
 }
 
-/// The same with files that fail, as fault/preload/faults.cpp has it. `before`: variables of the environment.
+/// Runs the program with a fault of fault/preload/faults.cpp. `before`: environment variables.
 inline Outcome lucarne_with_fault(const std::string& fault, const std::string& arguments,
                                   const std::string& before = {}) {
-    // The sanitizers' library wants to be the first, but does not need to.
+    // The sanitizers' library asks to be loaded first, but need not be.
     return run(before +
                " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" LUCARNE_FAULTS "' LUCARNE_FAULT='" +
                fault + "' exec " LUCARNE_BINARY " " + arguments);
 }
 
-/// The calls that change files, by name and in order, of a command that succeeds. `scratch` is a file for the
-/// preloaded library to write to.
+/// Returns the names of the calls that change files, in order, for a command that succeeds. The preloaded
+/// library writes to the file `scratch`.
 inline std::vector<std::string> traced_calls(const std::filesystem::path& scratch,
                                              const std::string& arguments, const std::string& before = {}) {
     const auto traced = lucarne_with_fault("trace:" + scratch.string(), arguments, before);
@@ -56,13 +56,13 @@ inline std::vector<std::string> traced_calls(const std::filesystem::path& scratc
     for (std::string call; std::getline(lines, call);) calls.push_back(call);
     return calls;
 }
-/// The number of the last call of this name, from 1, as faults count; 0: there is none.
+/// Returns the number of the last call of this name, counted from 1 as in faults, or 0 if there is none.
 inline size_t last_call(const std::vector<std::string>& calls, const std::string& name) {
     return static_cast<size_t>(calls.rend() - std::find(calls.rbegin(), calls.rend(), name));
 }
 
 inline std::string quoted(const std::filesystem::path& path) {
-    std::string name = "'";  // added to piece by piece: g++ 12 warns of the sum of two temporaries
+    std::string name = "'";  // appended piece by piece, because g++ 12 warns of the sum of two temporaries
     name += path.string();
     return name += '\'';
 }

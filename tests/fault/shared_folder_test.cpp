@@ -1,5 +1,5 @@
-// Conversions in a folder where others can write: what others put there under names that can be guessed is
-// never written to.
+// Conversions in a folder that others can write to. The program never writes to files that others put there
+// under guessable names.
 #include <array>
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ class SharedFolder : public ::testing::Test {
         ASSERT_EQ(convert("").code, 0);
         reference_ = read_bytes(cache_);
         fs::remove(cache_);
-        // Killed before its first call that changes a file in it, a conversion leaves its folder.
+        // A conversion that is killed before it changes a file in its folder leaves the folder.
         for (int call = 1; work_.empty(); ++call) {
             ASSERT_EQ(lucarne_with_fault("kill:" + std::to_string(call), arguments("")).code, -1);
             for (const auto& entry : fs::directory_iterator(folder_.path()))
@@ -46,7 +46,7 @@ class SharedFolder : public ::testing::Test {
                quoted(cache_);
     }
     Outcome convert(const std::string& options) const { return lucarne(arguments(options)); }
-    /// The folder that another made for us.
+    /// Makes the folder as an attacker would.
     void make_trap() const {
         fs::create_directory(work_);
         for (const char* file : kFiles) fs::create_symlink(folder_ / "mine" / file, work_ / file);
@@ -54,7 +54,7 @@ class SharedFolder : public ::testing::Test {
     void expect_untouched() const {
         for (const char* file : kFiles) EXPECT_EQ(read_bytes(folder_ / "mine" / file), kPrecious) << file;
     }
-    /// The conversion is done without the folder, and says so in one line.
+    /// Expects that the conversion succeeds without the folder and reports that in one line.
     void expect_done_without_it(const std::string& why) const {
         for (const std::string options : {"", "--resume"}) {
             const auto done = convert(options);

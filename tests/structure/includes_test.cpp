@@ -1,4 +1,4 @@
-// Folders include one way only: io <- octree <- gi <- viewer; no engine's room includes another's.
+// Folders include one way only: io <- octree <- gi <- viewer. No engine's folder includes another's.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -60,10 +60,10 @@ TEST(Structure, NoEngineIncludesAnother) {
         }
 }
 
-/// Which folders and files of one folder include which others of it.
+/// For each folder or file of one folder: the others of that folder that it includes.
 using Graph = std::map<std::string, std::set<std::string>>;
 
-/// The nodes of some cycle; empty where there is none.
+/// Returns the nodes of a cycle, or nothing if there is none.
 std::vector<std::string> find_cycle(const Graph& graph) {
     std::set<std::string> done;
     std::vector<std::string> path;
@@ -87,10 +87,10 @@ std::vector<std::string> find_cycle(const Graph& graph) {
     return {};
 }
 
-/// Within each folder the folders and loose files in it include each other one way only. A header and its
-/// .cpp are two files, so that what implements an interface may use those who include it.
+/// Within each folder, its folders and files include each other one way only. A header and its .cpp count as
+/// two files, so that an implementation may use files that include its interface.
 TEST(Structure, NoFolderHasCyclesAmongItsParts) {
-    // The window's model holds every feature's, and the features' panels take the whole model.
+    // The window's model contains the models of all features, and the features' panels use the whole model.
     const std::set<std::string> known = {"viewer"};
     const std::filesystem::path root = LUCARNE_SOURCE_DIR;
     std::map<std::string, Graph> folders;
@@ -148,7 +148,7 @@ TEST(Structure, NoShaderHasABindingOfItsOwn) {
     EXPECT_GT(shaders, 40u);
 }
 
-/// Hostile names and texts reach a terminal only through io/core/terminal.h, which makes them harmless.
+/// Hostile names and texts reach a terminal only through io/core/terminal.h, which neutralises them.
 TEST(Structure, OnlyFewFilesWriteToTheTerminal) {
     const std::set<std::string> allowed = {"io/core/terminal.cpp", "io/core/progress.cpp", "io/core/log.cpp",
                                            "viewer/main.cpp"};

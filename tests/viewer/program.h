@@ -16,7 +16,7 @@
 
 namespace lucarne::test {
 
-/// Its files by names that commands are made of.
+/// Returns names of its files as text for commands.
 class TemporaryFolder : public Folder {
  public:
     std::string operator/(const std::string& name) const { return (path() / name).string(); }

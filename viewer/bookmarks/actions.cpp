@@ -10,7 +10,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// "Bookmark 3": the first number that is free.
+/// Returns a name such as "Bookmark 3" with the first free number.
 std::string free_name(const std::vector<Bookmark>& bookmarks) {
     for (size_t number = 1;; ++number) {
         std::string name = fmt::format("Bookmark {}", number);
@@ -22,7 +22,7 @@ std::string free_name(const std::vector<Bookmark>& bookmarks) {
 void add(ViewModel& model) {
     Shell& shell = model.shell;
     if (shell.bookmarks.size() >= kMostBookmarks) {
-        model.message = "there are as many bookmarks as there can be";
+        model.message = "the list of bookmarks is full";
         return;
     }
     Bookmark bookmark{model.rig.camera(), thumbnail_of(*model.picture), 0};

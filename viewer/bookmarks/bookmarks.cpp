@@ -78,7 +78,7 @@ Result<void> save_bookmarks(const std::vector<Bookmark>& bookmarks, const fs::pa
         if (bookmarks[i].thumbnail.width)
             LUCARNE_TRY(io::write_png(thumbnail_file(folder, i), bookmarks[i].thumbnail, true));
         else
-            fs::remove(thumbnail_file(folder, i), error);  // of a bookmark that was there before
+            fs::remove(thumbnail_file(folder, i), error);  // left over from a bookmark that was removed
     }
     return write_file(folder / "bookmarks.json", json_text(nlohmann::json{{"cameras", cameras}}), true);
 }

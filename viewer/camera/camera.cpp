@@ -10,7 +10,8 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr double kSteepest = std::numbers::pi / 2 - 1e-5;
-constexpr double kNearestDepth = 1e-6;  ///< of the pivot, share of its distance: a pivot behind still pans
+constexpr double kNearestDepth = 1e-6;  ///< least depth of the pivot as a share of its distance, so that
+                                        ///< panning works with the pivot behind the camera
 
 }  // namespace
 
@@ -37,7 +38,7 @@ gi::SceneCamera CameraRig::camera() const {
     return camera;
 }
 
-/// Of the picture, where the pivot lies.
+/// Returns the picture's height at the pivot's depth, world units.
 double CameraRig::height_at_pivot() const {
     if (orthographic()) return height_;
     const glm::dvec3 offset = pivot_ - position_;

@@ -9,7 +9,7 @@
 
 namespace lucarne::viewer {
 
-/// A camera that keeps the horizon level (z is up), in world units, and the point it turns about.
+/// A camera that keeps the horizon level (z is up), and its pivot, the point it turns about. World units.
 class CameraRig {
  public:
     CameraRig() : CameraRig(gi::SceneCamera{}) {}
@@ -23,7 +23,8 @@ class CameraRig {
     glm::dvec3 right() const;
     glm::dvec3 up() const;
 
-    /// Through a place of the picture, [-1, 1] to the right and up; dot(along, forward) = 1.
+    /// The ray through a place of the picture, which is given in [-1, 1] to the right and up. `along` is
+    /// scaled so that dot(along, forward) = 1.
     struct Ray {
         glm::dvec3 from, along;
     };
@@ -32,35 +33,38 @@ class CameraRig {
     void set_position(const glm::dvec3& position) { position_ = position; }
 
     bool orthographic() const { return height_ > 0; }
-    /// What lies at the pivot's depth keeps its size.
+    /// Switches between orthographic and perspective projection. What lies at the pivot's depth keeps its
+    /// size in the picture.
     void set_orthographic(bool parallel);
-    /// How far an orthographic view stands back from the pivot at least, so that nothing lies behind it.
+    /// Sets the least distance between an orthographic camera and the pivot, so that nothing lies behind the
+    /// camera.
     void set_clearance(double distance) { clearance_ = distance; }
-    /// Looks from another side at the pivot, from as far.
+    /// Looks at the pivot from the given direction and keeps the distance.
     void look_along(double yaw, double pitch);
-    /// Shows the whole of a box, from where the view looks now; its middle becomes the pivot.
+    /// Shows the whole box and keeps the direction of the view. The box's centre becomes the pivot.
     void fit(const std::array<glm::dvec3, 2>& box);
 
-    /// Turns about the pivot, which stays where it is in the picture; radians to the left and up. Stops short
-    /// of straight up and down.
+    /// Turns about the pivot, which stays where it is in the picture. Angles are radians to the left and up.
+    /// The pitch stops short of straight up and straight down.
     void orbit(double yaw, double pitch);
     /// Turns in place.
     void look(double yaw, double pitch);
-    /// Shifts so that what lies at the pivot's depth follows the pointer; shares of the picture's height,
-    /// right and up.
+    /// Shifts the camera so that what lies at the pivot's depth follows the pointer. `shift` is in shares of
+    /// the picture's height, to the right and up.
     void pan(const glm::dvec2& shift);
-    /// Goes toward `point` (factor < 1) or away from it; what lies there stays where it is in the picture.
+    /// Moves toward `point` (factor < 1) or away from it (factor > 1). The point stays where it is in the
+    /// picture.
     void zoom(double factor, const glm::dvec3& point);
-    /// Moves by a step right, up (z) and forward; the pivot comes along.
+    /// Moves the camera and the pivot by a step right, up (z) and forward.
     void fly(const glm::dvec3& step);
-    /// The same on the level, whatever the pitch.
+    /// Like fly(), but forward is horizontal whatever the pitch.
     void walk(const glm::dvec3& step);
 
  private:
     glm::dvec3 position_{0.0}, pivot_{0.0};
-    double yaw_ = 0, pitch_ = 0;  ///< of the view: from +x toward +y, and upward
+    double yaw_ = 0, pitch_ = 0;  ///< direction of the view: yaw from +x toward +y, pitch upward
     double vertical_fov_ = 1;
-    double height_ = 0;  ///< of an orthographic picture, world units; 0: perspective
+    double height_ = 0;  ///< height of an orthographic picture, world units; 0: perspective
     double clearance_ = 0;
 
     double height_at_pivot() const;

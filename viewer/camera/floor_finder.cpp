@@ -8,16 +8,16 @@
 namespace lucarne::viewer {
 namespace {
 
-// Shares of the eye's height (1.65 m).
-constexpr double kFoot = 0.15;   ///< half the side of what is looked at: a quarter of a metre
-constexpr double kStep = 0.35;   ///< that one climbs
-constexpr double kSlab = 0.03;   ///< points of one floor
-constexpr double kMoved = 0.1;   ///< until it is looked for again
-constexpr size_t kAgreeing = 3;  ///< points that make a floor, and no stray one
+// The following are shares of the eye height (1.65 m).
+constexpr double kFoot = 0.15;   ///< half the side of the column that is searched: a quarter of a metre
+constexpr double kStep = 0.35;   ///< the highest step that the walker climbs
+constexpr double kSlab = 0.03;   ///< points within this height belong to one floor
+constexpr double kMoved = 0.1;   ///< the eye's move after which the floor is searched again
+constexpr size_t kAgreeing = 3;  ///< points that make a floor; fewer may be outliers
 constexpr size_t kMostNodes = 64;
 
-/// Heights of points in the column, up to `highest`, the highest first; coarse nodes first, so that few will
-/// do.
+/// Returns the heights of points in the column up to `highest`, the highest first. Reads coarse nodes first,
+/// so that few nodes suffice.
 std::vector<double> heights(const octree::NodeSource& source, const glm::dvec3& at, double half,
                             double highest) {
     std::vector<uint32_t> open = source.roots();
@@ -33,7 +33,7 @@ std::vector<double> heights(const octree::NodeSource& source, const glm::dvec3& 
             if (const uint32_t child = nodes[node].child(octant); child != octree::kNoNode)
                 open.push_back(child);
         const auto data = source.load(node);
-        if (!data) continue;  // the picture lacks it as well
+        if (!data) continue;  // the node cannot be read; the picture lacks it as well
         const octree::SourcePart part = source.part_of(node);
         const io::Schema& schema = part.header.schema;
         for (uint32_t i = 0; i < data->count; ++i) {

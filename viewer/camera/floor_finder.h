@@ -11,15 +11,15 @@
 
 namespace lucarne::viewer {
 
-/// The floor under an eye, world z: the highest place below that several points agree on, as wide as a foot
-/// stands, no higher than a step above where the feet would be. `eye_height` in world units. Reads nodes, so
-/// it may block. None: there is nothing below.
+/// Returns the floor under an eye, world z: the highest level on which several points agree, in a column as
+/// wide as a foot and no higher than one step above the feet. `eye_height` is in world units. Reads nodes, so
+/// it may block. Returns nothing where there are no points below.
 std::optional<double> floor_below(const octree::NodeSource& source, const glm::dvec3& eye, double eye_height);
 
-/// The same by a thread, for a window: the newest answer is at hand at once.
+/// Runs floor_below() on a thread for the window. found() returns the newest answer at once.
 class FloorFinder {
  public:
-    /// Looks again where the eye has gone some way; never waits.
+    /// Starts a new search when the eye has moved far enough. Never waits.
     void look(const std::shared_ptr<const octree::NodeSource>& source, const glm::dvec3& eye,
               double eye_height);
     std::optional<double> found() const;

@@ -10,14 +10,14 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kTurn = std::numbers::pi;  ///< radians for a drag over the window's height
-constexpr double kZoom = 0.85;              ///< of the distance, a notch
-constexpr double kFaster = 1.25;            ///< flying speed, a notch
-constexpr double kFast = 4;                 ///< with Shift
+constexpr double kTurn = std::numbers::pi;  ///< radians turned by a drag over the window's height
+constexpr double kZoom = 0.85;              ///< factor of the distance for one notch of scrolling
+constexpr double kFaster = 1.25;            ///< factor of the flying speed for one notch
+constexpr double kFast = 4;                 ///< factor of the speed while Shift is held
 constexpr double kWalking = 2.0;            ///< m/s
 constexpr double kEyeHeight = 1.65;         ///< m
-constexpr double kSettling = 8.0;           ///< 1/s: of the way to eye height
-constexpr double kLongestStep = 0.25;       ///< s: a slow frame does not throw the camera out of the house
+constexpr double kSettling = 8.0;           ///< 1/s: rate at which the camera approaches eye height
+constexpr double kLongestStep = 0.25;       ///< s: limit, so that a slow frame makes no huge step
 
 constexpr std::array kNames = {"orbit", "turntable", "fly", "walk"};
 
@@ -38,7 +38,7 @@ void Navigation::set_scene(double scene_size, double metres_per_unit) {
     eye_height_ = kEyeHeight / metres_per_unit;
 }
 
-/// Over stairs in a glide, not by leaps.
+/// Brings the camera to eye height gradually, so that stairs do not make it jump.
 bool Navigation::settle(double seconds, CameraRig& rig) const {
     if (mode_ != NavigationMode::walk || !gravity_ || !floor_) return false;
     const double lacking = *floor_ + eye_height_ - rig.position().z;

@@ -10,9 +10,9 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr double kTurnRate = std::numbers::pi / 2;  ///< radians a second
-constexpr double kPan = 1;                          ///< heights of the picture a second
-constexpr double kZoomRate = 2;                     ///< times the distance a second
-constexpr double kLongestReport = 0.25;  ///< s: a slow frame does not throw the camera out of the house
+constexpr double kPan = 1;                          ///< shift at full travel, picture heights a second
+constexpr double kZoomRate = 2;                     ///< zoom at full travel, factor of the distance a second
+constexpr double kLongestReport = 0.25;             ///< s: limit, so that a slow frame makes no huge step
 
 }  // namespace
 

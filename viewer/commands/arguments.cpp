@@ -122,7 +122,7 @@ Argument Arguments::add_choice(const std::string& names, const std::vector<std::
         set(static_cast<size_t>(std::ranges::find(words, text) - words.begin()));
     };
     auto* option = app_->add_option_function<std::string>(names, take, help);
-    // The check's own description would repeat the words that stand as the type.
+    // The check's own description would repeat the words that are shown as the type.
     option->check(CLI::IsMember(words).description(""));
     option->type_name(fmt::format("{}", fmt::join(words, "|")));
     return Argument(option);

@@ -19,29 +19,29 @@ class Option;
 
 namespace lucarne::viewer {
 
-// CLI11 behind a small interface: its headers take ten seconds to compile, so only arguments.cpp includes
+// A small interface to CLI11. CLI11's headers take ten seconds to compile, so only arguments.cpp includes
 // them.
 
-/// One declared argument; each function adds a rule or a text and returns the argument.
+/// One declared argument. Each function adds a rule or a text and returns the argument.
 class Argument {
  public:
     explicit Argument(CLI::Option* option) : option_(option) {}
 
     Argument& required(bool is_required = true);
-    Argument& type_name(const std::string& name);  ///< the placeholder in the help: FILE
+    Argument& type_name(const std::string& name);  ///< the placeholder in the help, for example FILE
     Argument& description(const std::string& text);
     Argument& show_default();                         ///< shows the variable's current value in the help
     Argument& show_default(const std::string& text);  ///< shows `text` as the default in the help
-    /// Both ends are allowed. T: int, uint32_t, uint64_t, double.
+    /// Accepts values from `low` to `high`, both included. T: int, uint32_t, uint64_t, double.
     template <class T>
     Argument& range(T low, T high);
     Argument& positive();
     Argument& one_of(std::initializer_list<int> values);
     Argument& one_of(std::initializer_list<const char*> values);
     Argument& excludes(const Argument& other);
-    Argument& values(int count);          ///< takes exactly so many
-    Argument& separator(char character);  ///< between the values in one word
-    Argument& repeatable();               ///< may be given several times, one value each
+    Argument& values(int count);          ///< takes exactly `count` values
+    Argument& separator(char character);  ///< separates the values within one word
+    Argument& repeatable();               ///< may be given several times, with one value each
 
  private:
     CLI::Option* option_;
@@ -52,18 +52,20 @@ class Arguments {
  public:
     explicit Arguments(CLI::App& app) : app_(&app) {}
 
-    /// `names` are "-o,--output", or "inputs" for a positional argument. `value` outlives the parsing and
-    /// keeps its value where the argument is absent. T: std::string, std::filesystem::path, an integer,
-    /// double, an optional or a vector of these; arguments.cpp lists the types.
+    /// Declares an argument. `names` is "-o,--output", or "inputs" for a positional argument. `value` must
+    /// outlive the parsing; it keeps its value when the argument is absent. T: std::string,
+    /// std::filesystem::path, an integer, double, an optional or a vector of these; arguments.cpp lists the
+    /// types.
     template <class T>
     Argument add(const std::string& names, T& value, const std::string& help);
     Argument flag(const std::string& names, bool& value, const std::string& help);
     Argument flag(const std::string& names, std::function<void()> set, const std::string& help);
-    /// `set` takes the text; its error, where it returns one, rejects the argument.
+    /// Declares an argument whose text is passed to `set`. If `set` returns an error, the argument is
+    /// rejected with it.
     Argument parsed(const std::string& names,
                     std::function<std::optional<std::string>(const std::string& text)> set,
                     const std::string& help);
-    /// One of the named values of an enumeration. The help shows "a|b|c".
+    /// Declares an argument that takes one of the named values of an enumeration. The help shows "a|b|c".
     template <class Enum>
     Argument choice(const std::string& names, Enum& value, std::vector<std::pair<std::string, Enum>> choices,
                     const std::string& help) {
@@ -72,10 +74,10 @@ class Arguments {
         return add_choice(
             names, words, [&value, choices](size_t index) { value = choices[index].second; }, help);
     }
-    Argument find(const std::string& name);          ///< one that was declared
-    bool given(const std::string& name) const;       ///< on the parsed command line
-    void footer(const std::string& text);            ///< below the help
-    void run(std::function<Result<void>()> action);  ///< what the command does once its arguments are parsed
+    Argument find(const std::string& name);          ///< returns an argument that was declared
+    bool given(const std::string& name) const;       ///< whether the parsed command line has it
+    void footer(const std::string& text);            ///< text below the help
+    void run(std::function<Result<void>()> action);  ///< sets what the command does after parsing
 
  private:
     friend class CommandLine;
@@ -87,15 +89,15 @@ class Arguments {
         std::make_shared<std::function<Result<void>()>>();
 };
 
-/// The program's command line: one command and its arguments.
+/// The program's command line: a command and its arguments.
 class CommandLine {
  public:
     CommandLine(const std::string& program, const std::string& description);
     ~CommandLine();
 
     Arguments add(const std::string& name, const std::string& help);
-    /// The action of the chosen command; empty where the help was asked for and printed. Errors
-    /// (ErrorKind::arguments): the arguments are wrong.
+    /// Parses the command line and returns the action of the chosen command. The action is empty if help was
+    /// asked for; it has been printed then. Errors (ErrorKind::arguments): the arguments are wrong.
     Result<std::function<Result<void>()>> parse(int argc, char** argv);
 
  private:

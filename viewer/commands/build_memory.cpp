@@ -7,8 +7,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// What the program itself has resident before it reads a point: its libraries, for the most part. 14 to 16
-/// MiB measured.
+/// The program's resident memory before it reads a point, mostly its libraries: 14 to 16 MiB measured.
 constexpr uint64_t kProgram = uint64_t{16} << 20;
 constexpr uint64_t kLeastCap = uint64_t{32} << 20;
 

@@ -7,8 +7,8 @@
 
 namespace lucarne::viewer {
 
-/// What a build may hold under a cap on the memory of the whole process, "512M". Errors: no number of bytes;
-/// less than the program can work with.
+/// Returns the memory that a build may use, bytes, given a cap on the whole process such as "512M". Errors:
+/// the text is not a number of bytes; the cap is less than the program needs.
 Result<uint64_t> build_memory(const std::string& cap);
 
 }  // namespace lucarne::viewer

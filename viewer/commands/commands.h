@@ -6,10 +6,10 @@
 
 namespace lucarne::viewer {
 
-/// Declares one command, its options and what it does.
+/// Declares one command, its options and its action.
 using AddCommand = void (*)(CommandLine& line);
 
-/// One function a command, each in a file of its own, in the order of the help.
+/// All commands, in the order of the help. Each command is declared in its own file.
 std::span<const AddCommand> commands();
 
 }  // namespace lucarne::viewer

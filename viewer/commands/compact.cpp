@@ -14,8 +14,8 @@ void add_compact(CommandLine& line) {
         std::filesystem::path cache, temp_folder;
     };
     auto options = std::make_shared<Options>();
-    Arguments command = line.add("compact", "Give back the space of what was deleted or replaced in a cache");
-    command.add("cache", options->cache, "The cache to write anew").required().type_name("CACHE");
+    Arguments command = line.add("compact", "Free the space of deleted or replaced points in a cache");
+    command.add("cache", options->cache, "The cache to rewrite").required().type_name("CACHE");
     command.add("--temp", options->temp_folder, "Folder for temporary files (default: the cache's)")
         .type_name("DIR");
     const auto compact = [](const Options& given) -> Result<void> {

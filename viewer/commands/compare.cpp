@@ -35,11 +35,11 @@ struct CompareOptions {
 
 struct Pictures {
     io::Image picture, reference;
-    std::vector<io::Image> halves;  ///< none or two, of the reference
+    std::vector<io::Image> halves;  ///< none or two half-sample images of the reference
     std::optional<io::Image> gbuffer;
 };
 
-/// A picture, of the size of the first where there is one.
+/// Reads a picture. If `same_size` is given, a picture of another size is an error.
 Result<io::Image> read_alike(const std::string& path, const io::Image* same_size) {
     LUCARNE_ASSIGN(io::Image image, io::read_exr(path));
     if (same_size && (image.width != same_size->width || image.height != same_size->height))
@@ -75,7 +75,7 @@ Result<Pictures> read_pictures(const CompareOptions& options) {
     return read;
 }
 
-/// Figures of all pixels or of those of a mask.
+/// Error metrics over all pixels or over the pixels of a mask.
 struct Figures {
     gi::ImageMetrics metrics;
     double flip = 0;  ///< mean
@@ -147,7 +147,7 @@ Result<void> compare(const CompareOptions& options) {
     LUCARNE_TRY(check_outputs({options.json, options.error_picture}, options.overwrite, inputs));
     LUCARNE_ASSIGN(const Pictures pictures, read_pictures(options));
 
-    // Both are exposed alike, or FLIP could not tell a dark picture from a bright one.
+    // Both pictures get the same exposure; otherwise FLIP could not tell a dark picture from a bright one.
     const double ev =
         options.exposure ? *options.exposure : gi::automatic_exposure(pictures.reference.pixels);
     const auto shown = [&](const io::Image& image) {
@@ -181,29 +181,32 @@ Result<void> compare(const CompareOptions& options) {
 
 void add_compare(CommandLine& line) {
     auto options = std::make_shared<CompareOptions>();
-    Arguments command = line.add("compare", "Hold a picture of linear radiance against a reference");
+    Arguments command = line.add("compare", "Compare a picture of linear radiance with a reference");
     command.add("picture", options->picture, "EXR").required().type_name("A.exr");
-    command.add("reference", options->reference, "EXR: the truth; the mean of --halves if not given")
+    command.add("reference", options->reference, "EXR: the reference; by default the mean of --halves")
         .type_name("B.exr");
     command
         .add("--halves", options->halves,
-             "Two independent halves of the reference, for an error free of its noise")
+             "Two independent halves of the reference, for an error without the reference's noise")
         .values(2)
         .type_name("R1.exr R2.exr");
     command
         .add("--gbuffer", options->gbuffer,
-             "What render --gbuffer wrote: edges are those of depth and normal, not of luminance")
+             "Output of render --gbuffer: find edges by depth and normal instead of luminance")
         .type_name("G.exr");
     command
         .add("--exposure", options->exposure,
-             "Stops by which FLIP sees both pictures; measured from the reference if not given")
+             "Exposure of both pictures for FLIP, stops; by default measured from the reference")
         .range(-64.0, 64.0)
         .type_name("EV");
-    command.add("--error-picture", options->error_picture, "Where the error lies").type_name("FILE.png");
-    command.add("--error-kind", options->error_kind, "FLIP, or luminance too dark (blue) or bright (red)")
+    command.add("--error-picture", options->error_picture, "Write a picture of the error")
+        .type_name("FILE.png");
+    command
+        .add("--error-kind", options->error_kind,
+             "Kind of the error picture: FLIP, or signed luminance (blue: too dark, red: too bright)")
         .one_of({"flip", "signed"})
         .show_default();
-    command.add("--json", options->json, "The figures, machine-readable").type_name("FILE");
+    command.add("--json", options->json, "Write the figures as JSON").type_name("FILE");
     command.flag("--overwrite", options->overwrite, "Replace files that exist");
     command.run([options] { return compare(*options); });
 }

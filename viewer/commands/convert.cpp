@@ -37,7 +37,8 @@ struct ConvertOptions {
     bool append = false;
 };
 
-/// A scan that is open only while it is read, so that thousands of inputs do not need thousands of handles.
+/// A scan whose file is open only while it is read, so that thousands of inputs do not need thousands of file
+/// handles.
 class ClosedScan final : public io::PointSource {
  public:
     static Result<std::unique_ptr<io::PointSource>> create(const std::string& path,
@@ -83,7 +84,7 @@ class ClosedScan final : public io::PointSource {
     io::ScanInfo info_;
 };
 
-/// What each input holds, what all of them lost, and which were empty.
+/// The contents of each input, the losses of all inputs, and the inputs without points.
 struct Summary {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::array();
     io::Losses losses;
@@ -123,7 +124,7 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
 
 using Scans = std::vector<std::unique_ptr<io::PointSource>>;
 
-/// Those of the inputs that open; the others are taken out of the list.
+/// Opens the inputs. Removes inputs that cannot be opened from the list and notes them in `aside`.
 Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
     Scans scans;
     for (size_t i = 0; i < options.inputs.size();) {
@@ -139,8 +140,8 @@ Result<Scans> open_scans(ConvertOptions& options, SetAside& aside) {
     return scans;
 }
 
-/// Builds from what opens, and once more without an input that turns out broken on the way: the first stage
-/// reads all of them.
+/// Builds from the inputs that open. If an input proves to be broken during the first stage, which reads all
+/// inputs, builds again without it.
 template <class Build>
 auto build_of_the_sound(ConvertOptions& options, SetAside& aside, Scans& scans, const Build& build)
     -> decltype(build()) {
@@ -162,7 +163,7 @@ Result<void> append(ConvertOptions options, SetAside& aside) {
     LUCARNE_ASSIGN(auto report, build_of_the_sound(options, aside, scans, [&] {
                        return octree::append_to_cache(build.inputs, edit);
                    }));
-    log::info("{}: {} added, {} in all; {} were written anew, {} of {} nodes stayed{}", build.output.string(),
+    log::info("{}: {} added, {} in all; {} were rewritten, {} of {} nodes stayed{}", build.output.string(),
               counted(report.added, "points"), report.points, report.rewritten_points, report.kept_nodes,
               report.nodes, Summary(report.appended, report.inputs).text());
     compact_after_update(edit, report);
@@ -211,7 +212,8 @@ void add_convert(CommandLine& line) {
     Arguments command = line.add("convert", "Build an octree cache from scans");
     command
         .add("inputs", options->inputs,
-             "Scan files, or folders of them; several become one cache. A broken one of several is left out")
+             "Scan files, or folders of them; several become one cache. Broken files among several are "
+             "skipped")
         .required()
         .type_name("INPUT");
     add_read_options(command, options->read);
@@ -223,36 +225,41 @@ void add_convert(CommandLine& line) {
              {"keep", NormalsMode::keep},
              {"estimate", NormalsMode::estimate},
              {"none", NormalsMode::none}},
-            "auto keeps the inputs' own and estimates those of points without; keep wants all inputs to have "
-            "them; estimate puts estimated ones in place of the inputs' own, which stay as normal_in_file")
+            "auto: keep the inputs' normals and estimate missing ones; keep: require normals in all inputs; "
+            "estimate: estimate all normals and keep the inputs' as normal_in_file; none: no normals")
         .show_default("auto");
     command
         .add("--memory", options->memory,
-             "Cap on the memory of the process, however large the input is (32M or more)")
+             "Cap on the memory of the process, whatever the size of the input (at least 32M)")
         .show_default()
         .type_name("BYTES");
-    command.add("--threads", options->build.threads, "0: all cores").show_default().type_name("N");
+    command.add("--threads", options->build.threads, "Number of threads; 0: all cores")
+        .show_default()
+        .type_name("N");
     command.add("--temp", options->build.temp_folder, "Folder for temporary files (default: the cache's)")
         .type_name("DIR");
-    command.add("--neighbours", options->build.neighbours, "Nearest points that make a normal")
+    command
+        .add("--neighbours", options->build.neighbours,
+             "Number of nearest points that a normal is estimated from")
         .show_default()
         .range(3u, octree::kMostNormalNeighbours)
         .type_name("K");
     command
         .choice<NeighbourSearch>("--neighbours-search", options->build.neighbour_search,
                                  {{"leaf", NeighbourSearch::leaf}, {"flann", NeighbourSearch::flann}},
-                                 "How these are found: leaf is fast, flann is the kd-tree that PCL takes by "
-                                 "default, to compare with")
+                                 "How neighbours are found: leaf is fast; flann is PCL's default kd-tree, "
+                                 "for comparison")
         .show_default("leaf");
     command.flag(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
-        "Go on from the last stage that an interrupted conversion finished; if this one fails, keep its "
+        "Continue after the last finished stage of an interrupted conversion; if this one fails, "
+        "keep its "
         "stages");
     command.flag("--overwrite", options->build.overwrite, "Replace the outputs if they exist");
     Argument append_flag =
         command.flag("--append", options->append,
-                     "Add the inputs to a cache that exists, in place; it keeps its unit and its kind of "
-                     "normals. Files that it holds already are left out");
+                     "Add the inputs to an existing cache, in place; its unit and its kind of normals "
+                     "stay. Files that it contains already are skipped");
     for (const char* other : {"--resume", "--overwrite", "--normals"})
         append_flag.excludes(command.find(other));
     command.add("--json", options->json, "Write what was done and how long it took").type_name("FILE");

@@ -30,7 +30,7 @@ Result<octree::Selection> selection_of(const DeleteOptions& options) {
     selection.box = octree::Box{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
     for (size_t axis = 0; axis < 3; ++axis)
         if (!(b[axis] <= b[axis + 3]))
-            return bad_arguments("--box", "its lower corner lies above its upper one",
+            return bad_arguments("--box", "the lower corner lies above the upper one",
                                  "give x0,y0,z0,x1,y1,z1");
     return selection;
 }
@@ -39,11 +39,11 @@ Result<void> erase(const DeleteOptions& given) {
     auto options = given;
     LUCARNE_ASSIGN(options.edit.memory, build_memory(options.memory));
     if (options.box.empty() && options.scan.empty())
-        return bad_arguments("delete", "nothing says which points", "give --box, --scan or both");
+        return bad_arguments("delete", "no points are named", "give --box, --scan or both");
     if (!options.json.empty()) LUCARNE_TRY(check_output(options.json, false));
     LUCARNE_ASSIGN(const auto selection, selection_of(options));
     LUCARNE_ASSIGN(auto report, octree::delete_from_cache(selection, options.edit));
-    log::info("{}: {} points deleted, {} left; lucarne compact gives their space back",
+    log::info("{}: {} points deleted, {} left; lucarne compact frees their space",
               options.edit.cache.string(), report.removed, report.points);
     compact_after_update(options.edit, report);
     if (options.json.empty()) return {};
@@ -56,22 +56,25 @@ void add_delete(CommandLine& line) {
     auto options = std::make_shared<DeleteOptions>();
     Arguments command = line.add("delete", "Delete points from a cache");
     command.add("cache", options->edit.cache, "The cache to change").required().type_name("CACHE");
-    command.add("--box", options->box, "Those in a box, in the file's unit; its faces belong to it")
+    command.add("--box", options->box, "Delete points in a box, faces included; in the file's unit")
         .separator(',')
         .values(6)
         .type_name("x0,y0,z0,x1,y1,z1");
-    command.add("--scan", options->scan, "Those of one input, counted from 0 as `lucarne info` does")
+    command
+        .add("--scan", options->scan, "Delete the points of one input, counted from 0 as in `lucarne info`")
         .values(1)
         .type_name("N");
     command
         .add("--memory", options->memory,
-             "Cap on the memory of the process, besides the cache's directory (32M or more)")
+             "Cap on the memory of the process, without the cache's directory (at least 32M)")
         .show_default()
         .type_name("BYTES");
-    command.add("--threads", options->edit.threads, "0: all cores").show_default().type_name("N");
+    command.add("--threads", options->edit.threads, "Number of threads; 0: all cores")
+        .show_default()
+        .type_name("N");
     command.add("--temp", options->edit.temp_folder, "Folder for temporary files (default: the cache's)")
         .type_name("DIR");
-    command.add("--json", options->json, "Write what was done").type_name("FILE");
+    command.add("--json", options->json, "Write what was done as JSON").type_name("FILE");
     command.run([options] { return erase(*options); });
 }
 

@@ -13,7 +13,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Takes from `otherwise` what `settings` leaves open.
+/// Fills unset fields of `settings` from `otherwise`.
 void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (settings.engine.empty()) settings.engine = otherwise.engine;
     if (settings.preset.empty()) settings.preset = otherwise.preset;
@@ -21,7 +21,7 @@ void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
     if (!settings.scale) settings.scale = otherwise.scale;
 }
 
-/// "vpl, direct: " before the help of an option that not every engine has.
+/// Returns a prefix such as "vpl, direct: " for the help of an option that not every engine has.
 std::string owners(const gi::OptionInfo& option) {
     std::string names;
     size_t owners = 0, takers = 0;
@@ -34,7 +34,7 @@ std::string owners(const gi::OptionInfo& option) {
     return owners == takers ? "" : names + ": ";
 }
 
-/// Declares --KEY for each option of each engine.
+/// Declares one argument --KEY for each option of each engine.
 void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
     for (const gi::OptionInfo* option : gi::engine_options()) {
         const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
@@ -78,7 +78,8 @@ bool all_have_normals(const octree::NodeSource& source) {
     });
 }
 
-/// Lights, cameras and the device's floats are made for scans of rooms up to those of countries.
+/// Warns of an extent for which lights, cameras and the device's floats are not made: they suit scans from
+/// rooms up to countries.
 void warn_of_extent(const octree::SourceHeader& header) {
     constexpr double kLeast = 0.01, kMost = 1e6;  // m
     const glm::dvec3 extent = (header.max - header.min) * header.metres_per_unit;
@@ -88,7 +89,7 @@ void warn_of_extent(const octree::SourceHeader& header) {
         log::warn(
             "the points span {:.3g} m: pictures are right from 1 cm to 1000 km; convert with the right "
             "--unit, or "
-            "remove stray points with lucarne delete",
+            "remove outliers with lucarne delete",
             widest);
 }
 
@@ -97,28 +98,28 @@ void warn_of_extent(const octree::SourceHeader& header) {
 void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
         .type_name("FILE");
-    command.add("--engine", options.render.engine, "How light is computed, see below")
+    command.add("--engine", options.render.engine, "Method of lighting, see below")
         .show_default(std::string(gi::default_engine().name))
         .type_name("NAME");
-    command.add("--preset", options.render.preset, "Effort, see below")
+    command.add("--preset", options.render.preset, "Quality against speed, see below")
         .show_default(std::string(kDefaultPreset))
         .type_name("NAME");
-    command.add("--size", options.size, "Of the picture in pixels").show_default().type_name("WxH");
+    command.add("--size", options.size, "Size of the picture in pixels").show_default().type_name("WxH");
     add_engine_options(command, options.render.options);
-    command.add("--points", options.points, "Most points that a cut takes: 200000, 2M").type_name("N");
-    command.add("--exposure", options.exposure, "Stops; the scene's or automatic when not given")
+    command.add("--points", options.points, "Largest number of points of a cut: 200000, 2M").type_name("N");
+    command.add("--exposure", options.exposure, "Exposure in stops; by default the scene's, or automatic")
         .range(-100.0, 100.0)
         .type_name("EV");
     command
         .add("--memory", options.memory,
-             "Most that the cloud takes of the memory on its way to the device (512M)")
+             "Cap on host memory for the octree's directory and nodes on their way to the device (512M)")
         .type_name("SIZE");
     command
         .add("--device-memory", options.device_memory,
-             "Most of the device's memory, for surfels, pictures and maps together (2G)")
+             "Cap on device memory for surfels, pictures and maps together (2G)")
         .type_name("SIZE");
     command.flag("--no-prefetch", options.no_prefetch,
-                 "Load nothing ahead of a camera that moves (for measuring)");
+                 "Do not load nodes ahead of a moving camera (for measurements)");
     add_look_options(command, options.look);
     add_light_options(command, options.light);
     command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
@@ -157,7 +158,8 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     apply(options.render, drawing.preset.engine);
     if (!options.points.empty()) {
         LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
-        if (points == 0) return bad_arguments("--points", "a cut of none shows nothing", "allow 1 or more");
+        if (points == 0)
+            return bad_arguments("--points", "a cut without points shows nothing", "allow 1 or more");
         drawing.preset.budgets.cap(points);
     }
     return drawing;
@@ -203,7 +205,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
                                                 gi::Scene scene) {
     if (!all_have_normals(*source))
         log::warn(
-            "the points have no normals: surfaces are lit as if they faced whoever looks at them; "
+            "the points have no normals: surfaces are lit as if they faced the camera; "
             "convert with --normals estimate for correct light");
     warn_of_extent(source->header());
     LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));

@@ -6,11 +6,11 @@
 
 namespace lucarne::viewer {
 
-/// What an update did, for `--json`.
-/// Compacts a cache of which an update left less than half in use, and says so. Where it cannot, the update
-/// is done all the same: that is a warning.
+/// Compacts the cache if an update left less than half of it in use, and reports that. If compacting fails,
+/// only warns: the update itself has been done.
 void compact_after_update(const octree::EditOptions& edit, octree::EditReport& report);
 
+/// Writes what an update did as JSON (`--json`).
 Result<void> write_edit_report(const std::string& path, bool overwrite, const octree::EditReport& report);
 
 }  // namespace lucarne::viewer

@@ -52,8 +52,9 @@ void add_export(CommandLine& line) {
              "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         .required()
         .type_name("FILE");
-    command.flag("--normals", options->content.normals,
-                 "Write estimated normals, too, as normal (always where convert was told to estimate them)");
+    command.flag(
+        "--normals", options->content.normals,
+        "Also write estimated normals, as normal (always done if convert ran with --normals estimate)");
     command.flag("--overwrite", options->overwrite, "Replace the output if it exists");
     command.run([options] { return export_cache(*options); });
 }

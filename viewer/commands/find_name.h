@@ -11,7 +11,8 @@
 
 namespace lucarne::viewer {
 
-/// The index of `name`. Errors (ErrorKind::arguments): it is none of them; the message lists them.
+/// Returns the index of `name` in `names`. Errors (ErrorKind::arguments): `name` is not among them; the
+/// message lists `names`.
 inline Result<size_t> find_name(std::string_view option, const std::string& name,
                                 std::span<const std::string_view> names) {
     for (size_t i = 0; i < names.size(); ++i)

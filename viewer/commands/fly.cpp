@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 struct FlyOptions {
-    InputOptions input{.required = false};  // not to compare
+    InputOptions input{.required = false};  // --compare takes no input
     std::vector<std::string> compare;
     std::string path, report, html, frames_folder, video;
     DrawingOptions drawing;
@@ -45,14 +45,15 @@ std::vector<std::string> engines_of(const FlyOptions& options) {
     return names;
 }
 
-/// One of the flights of a call.
+/// One flight of a call.
 struct Plan {
     std::string engine;
     bool cold = false;
-    std::string frames_folder;  ///< empty: none
+    std::string frames_folder;  ///< empty: write no frames
 };
 
-/// Every engine, cold before warm; with several flights each has a folder of its own for its frames.
+/// Plans one flight for every engine, cold before warm. With several flights each writes its frames to its
+/// own folder.
 std::vector<Plan> plans_of(const FlyOptions& options) {
     std::vector<Plan> plans;
     for (const std::string& engine : engines_of(options)) {
@@ -67,7 +68,7 @@ std::vector<Plan> plans_of(const FlyOptions& options) {
     return plans;
 }
 
-/// Everything that can be wrong with arguments and outputs, before long work starts.
+/// Checks arguments and outputs before long work starts.
 Result<void> check(const FlyOptions& options) {
     if (options.input.paths.empty())
         return bad_arguments("INPUT", "is missing", "name a cache or a scan file");
@@ -81,7 +82,7 @@ Result<void> check(const FlyOptions& options) {
     LUCARNE_TRY(check_outputs({options.report, options.html, options.video}, options.overwrite, inputs));
     if (!options.video.empty()) {
         if (options.realtime || options.soak > 0 || plans_of(options).size() > 1)
-            return bad_arguments("--video", "is of one flight that waits for its frames",
+            return bad_arguments("--video", "needs a single flight with --wait",
                                  "leave out --realtime, --soak, --cold and further engines");
         LUCARNE_TRY(VideoWriter::check(options.video, options.overwrite));
     }
@@ -93,7 +94,7 @@ Result<void> check(const FlyOptions& options) {
     return {};
 }
 
-/// The path once more with every point there is, for what changes from picture to picture.
+/// Flies the path again with all points, to compare the changes from picture to picture.
 Result<FullFlight> fly_at_full_resolution(Pipeline& pipeline, const CameraPath& path, FlightOptions how) {
     const CutBudgets budgets = pipeline.budgets();
     pipeline.set_budgets({.view = UINT64_MAX,
@@ -165,7 +166,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     conditions.build = build_info();
     conditions.machine = machine_info();
     Json report = flight_report(conditions, flight.frames);
-    log::info("{}: {} frames, {:.1f} ms in the middle, {:.1f} ms at 95 %; {}", flight_name(report),
+    log::info("{}: {} frames, median {:.1f} ms, 95th percentile {:.1f} ms; {}", flight_name(report),
               flight.frames.size(), report["frame_ms"]["p50"].get<double>(),
               report["frame_ms"]["p95"].get<double>(),
               memory_text(drawing.caps, flight.frames.back().stats.memory));
@@ -180,7 +181,7 @@ Result<void> fly_all(FlyOptions options) {
     for (const Plan& plan : plans_of(options)) {
         LUCARNE_ASSIGN(flights.emplace_back(), fly_once(options, plan, path));
     }
-    // One flight is the report itself.
+    // A single flight is the whole report.
     const Json report = flights.size() == 1 ? flights.front() : Json{{"flights", flights}};
     LUCARNE_TRY(write_file(options.report, json_text(report), options.overwrite));
     if (!options.html.empty()) LUCARNE_TRY(write_file(options.html, html_report(flights), options.overwrite));
@@ -188,7 +189,8 @@ Result<void> fly_all(FlyOptions options) {
     return {};
 }
 
-/// B's flights against A's of the same engine, mode and start; where each has but one, those two.
+/// Compares B's flights with A's flights of the same engine, mode and start. If each report has a single
+/// flight, compares these two.
 Result<void> compare(const FlyOptions& options) {
     LUCARNE_ASSIGN(const auto before, read_flights(options.compare[0]));
     LUCARNE_ASSIGN(const auto after, read_flights(options.compare[1]));
@@ -221,44 +223,46 @@ void add_fly(CommandLine& line) {
     add_input_options(command, options->input);
     command.add("--path", options->path, "The camera path (data/README.md, Flythroughs)");
     command.add("-o,--output", options->report, "The report, JSON");
-    command.add("--html", options->html, "The report as a page with plots, too").type_name("FILE");
+    command.add("--html", options->html, "Also write the report as a page with plots").type_name("FILE");
     add_drawing_options(command, options->drawing);
-    command.find("--engine").description("Or several, one flight each: vpl,direct");
-    const Argument wait = command.flag(
-        "--wait", options->wait, "Every frame, every cut whole: the same pixels on every run (default)");
-    command.flag("--realtime", options->realtime, "By the clock, never waiting: what a user sees")
+    command.find("--engine").description("Method of lighting; several make one flight each: vpl,direct");
+    const Argument wait =
+        command.flag("--wait", options->wait,
+                     "Draw every frame with complete cuts: the same pixels on every run (default)");
+    command.flag("--realtime", options->realtime, "Follow the clock and never wait, as in the window")
         .excludes(wait);
     command
         .add("--frame-time", options->frame_time_ms,
-             "With --realtime: cuts take as many points as keep frames to this time")
+             "With --realtime: choose the points of cuts so that frames take this time")
         .range(1.0, 1e5)
         .type_name("MS");
     command.flag("--cold", options->cold,
-                 "Before each flight another, from files that the system was made to forget");
-    command.add("--soak", options->soak, "Fly the path again and again for so long, and compare the memory")
+                 "Before each flight make a cold one: the system's cache of the files is dropped first");
+    command.add("--soak", options->soak, "Repeat the path for this time and compare memory use")
         .range(0.0, 1e6)
         .type_name("SECONDS");
     command.add("--frames-dir", options->frames_folder,
-                "Write every frame there, frame_00001.png and so on (for a video: README.md)");
+                "Write every frame to this folder: frame_00001.png and so on (for a video: README.md)");
     command
         .add("--video", options->video,
-             "Make a video of all frames by ffmpeg, where that is installed: FILE.mp4, .mkv, .webm")
+             "Make a video of all frames with ffmpeg, which must be installed: FILE.mp4, .mkv, .webm")
         .type_name("FILE");
     command.flag("--flicker", options->flicker,
-                 "Also report every frame's mean luminance and how much surfaces' light changes");
-    command.flag("--popping", options->popping,
-                 "Also report how much pictures change from frame to frame, and in the same flight with "
-                 "every point");
+                 "Also report each frame's mean luminance and how much the light of surfaces changes");
+    command.flag(
+        "--popping", options->popping,
+        "Also report how much pictures change from frame to frame, compared with the same flight with "
+        "all points");
     command
         .add("--compare", options->compare,
-             "Two reports: says whether the second is slower (exit code 1), faster, or neither")
+             "Compare two reports: is the second slower (exit code 1), faster, or neither?")
         .values(2)
         .type_name("A.json B.json");
-    command.add("--margin", options->margin, "Differences up to this are none, per cent")
+    command.add("--margin", options->margin, "Ignore differences up to this, per cent")
         .range(0.0, 1000.0)
         .show_default()
         .type_name("PERCENT");
-    command.flag("--overwrite", options->overwrite, "Replace what exists");
+    command.flag("--overwrite", options->overwrite, "Replace files that exist");
     command.run([options] { return options->compare.empty() ? fly_all(*options) : compare(*options); });
 }
 

@@ -68,21 +68,21 @@ void add_generate(CommandLine& line) {
     command.add("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
         .required()
         .type_name("FILE");
-    command.add("--points", options->points, "How many points: about, or exactly with --even")
+    command.add("--points", options->points, "Number of points: approximate, or exact with --even")
         .show_default()
         .type_name("N[k|M|G]");
-    const Argument stations =
-        command
-            .add("--stations", options->scan.stations, "How many scanner stations (default: the scene's own)")
-            .type_name("N");
+    const Argument stations = command
+                                  .add("--stations", options->scan.stations,
+                                       "Number of scanner stations (default: the scene's own)")
+                                  .type_name("N");
     command
         .flag("--even", options->scan.even, "Sample all surfaces evenly instead of scanning, without noise")
         .excludes(stations);
-    command.add("--noise", options->scan.noise, "Standard deviation of the range, metres")
+    command.add("--noise", options->scan.noise, "Standard deviation of the measured range, metres")
         .show_default()
         .type_name("M");
-    command.flag("--normals", options->scan.normals, "Keep the true normals");
-    command.add("--seed", options->scan.seed, "The same seed gives the same file")
+    command.flag("--normals", options->scan.normals, "Write the true normals");
+    command.add("--seed", options->scan.seed, "Seed of the random numbers; the same seed gives the same file")
         .show_default()
         .type_name("S");
     command.flag("--overwrite", options->overwrite, "Replace the output if it exists");

@@ -36,7 +36,7 @@ struct InfoOptions {
     bool overwrite = false;
 };
 
-/// File names need not be UTF-8: what is not becomes U+FFFD.
+/// Returns JSON text. File names need not be UTF-8: invalid bytes become U+FFFD.
 std::string text_of(const Json& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -75,7 +75,7 @@ Json describe_octree(const octree::NodeSource& cache, const char* kind) {
 Result<Json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {
     constexpr uint64_t kLong = 20'000'000;  // points: some seconds
     LUCARNE_ASSIGN(const auto scan, io::open_scan(std::move(file), options.read));
-    // A mesh of a few bytes may have millions of samples.
+    // A mesh of a few bytes may be sampled into millions of points.
     if (options.quick || io::mesh::is_sampled(scan->info()))
         return scan_json(scan->info(), scan->schema(), nullptr);
     std::optional<Progress> progress;
@@ -102,7 +102,7 @@ Result<Json> describe(const std::string& path, const InfoOptions& options) {
     return described;
 }
 
-/// What a double has beyond 15 digits are no digits of the file.
+/// Prints 15 digits: further digits of a double do not come from the file.
 std::string coordinates_text(const Json& vector) {
     std::string text;
     for (const Json& value : vector)
@@ -159,20 +159,21 @@ Result<void> info(const InfoOptions& options) {
 
 void add_info(CommandLine& line) {
     auto options = std::make_shared<InfoOptions>();
-    Arguments command = line.add("info", "Say what a cache or a scan holds");
+    Arguments command = line.add("info", "Show what a cache or scan contains");
     command
         .add("inputs", options->inputs,
-             "Caches, scan files, folders of scan files. A broken one of several is left out")
+             "Caches, scan files, folders of scan files. Broken files among several are skipped")
         .required()
         .type_name("INPUT");
-    command.flag("--quick", options->quick,
-                 "Do not read the points of scans: no bounds but those that headers state, and what was left "
-                 "out as far as it "
-                 "is known");
+    command.flag(
+        "--quick", options->quick,
+        "Do not read the points of scans: show only the bounds that headers state, and only the losses "
+        "that are known "
+        "without reading");
     add_read_options(command, options->read);
     command
         .add("--json", options->json_file,
-             "Write it there as well, for machines: an object, of several inputs a list")
+             "Also write JSON to this file: an object, or a list for several inputs")
         .type_name("FILE");
     command.flag("--overwrite", options->overwrite, "Replace the JSON file if it exists");
     command.run([options] { return info(*options); });

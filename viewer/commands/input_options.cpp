@@ -18,8 +18,8 @@ std::optional<std::string> problem_unless(bool good, const char* problem) {
 void add_read_options(Arguments& command, io::ReadOptions& options) {
     command
         .add("--columns", options.columns,
-             "What the columns of a text file are, such as x,y,z,-,intensity:f32,r,g,b (- is left out); "
-             "else they are guessed, and the guess is printed")
+             "Columns of a text file, such as x,y,z,-,intensity:f32,r,g,b (- skips a column); "
+             "by default they are guessed, and the guess is printed")
         .type_name("NAMES");
     command
         .parsed(
@@ -27,16 +27,16 @@ void add_read_options(Arguments& command, io::ReadOptions& options) {
             [&options](const std::string& text) {
                 options.metres_per_unit = metres_of(text);
                 return problem_unless(options.metres_per_unit.has_value(),
-                                      "is none of m, cm, mm, km, ft, us-ft, in, nor a number of metres");
+                                      "is neither m, cm, mm, km, ft, us-ft or in, nor a number of metres");
             },
-            "The unit of the scans' coordinates, where a file does not say it or is wrong: m, cm, mm, km, "
+            "Unit of the scans' coordinates if a file does not state it or is wrong: m, cm, mm, km, "
             "ft, us-ft, "
-            "in, or how many metres it has")
+            "in, or the unit's length in metres")
         .type_name("UNIT");
     const Argument spacing =
         command
             .add("--spacing", options.mesh.spacing,
-                 "Mean distance of the points that a mesh is sampled to, in metres (default: a thousandth of "
+                 "Mean distance between the points sampled on a mesh, in metres (default: a thousandth of "
                  "its diagonal, or as dense as its vertices)")
             .positive()
             .type_name("METRES");
@@ -48,21 +48,21 @@ void add_read_options(Arguments& command, io::ReadOptions& options) {
                 options.mesh.samples = count.value_or(0);
                 return problem_unless(options.mesh.samples > 0, "is no number of points");
             },
-            "About so many points of a mesh, instead of --spacing")
+            "Sample about this many points on a mesh, instead of --spacing")
         .type_name("N")
         .excludes(spacing);
     command.flag("--vertices", options.mesh.vertices,
-                 "The vertices of a mesh are the points; its faces are passed over");
+                 "Take a mesh's vertices as the points and ignore its faces");
     command.flag("--salvage", options.salvage,
-                 "Read what can be read of damaged and truncated scan files, and say what cannot");
+                 "Read what can be read of damaged and truncated scan files, and report what cannot");
 }
 
 void add_input_options(Arguments& command, InputOptions& options) {
-    command.add("INPUT", options.paths, "Caches or scan files, taken together").required(options.required);
+    command.add("INPUT", options.paths, "Caches or scan files, shown together").required(options.required);
     command.flag(
         "--no-cache", options.no_cache,
-        "Convert scans anew and keep nothing (else the cache is kept as SCAN.luc beside the scan, or in "
-        "the user's cache folder, and found the next time)");
+        "Convert scans again and keep no cache (by default it is kept as SCAN.luc beside the scan, or in "
+        "the user's cache folder, and used the next time)");
     add_read_options(command, options.read);
 }
 

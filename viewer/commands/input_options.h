@@ -6,9 +6,9 @@
 
 namespace lucarne::viewer {
 
-/// Declares what a user may know better than a scan file. `options` outlives the command.
+/// Declares options by which the user overrides what a scan file says. `options` must outlive the command.
 void add_read_options(Arguments& command, io::ReadOptions& options);
-/// Declares INPUT..., --no-cache and the above. `options` outlives the command.
+/// Declares INPUT..., --no-cache and the options of add_read_options(). `options` must outlive the command.
 void add_input_options(Arguments& command, InputOptions& options);
 
 }  // namespace lucarne::viewer

@@ -21,7 +21,7 @@ Result<gi::ValueRange> parse_luminance(const std::string& text) {
             range.high <= 1e15)
             return range;
     }
-    return bad_arguments("--luminance", fmt::format("'{}' is no range of luminances", text),
+    return bad_arguments("--luminance", fmt::format("'{}' is not a range of luminances", text),
                          "give two positive numbers, the lower one first: 0.1:1000");
 }
 
@@ -34,26 +34,26 @@ void add_light_options(Arguments& command, LightOptions& options) {
         .type_name("NAME");
     command
         .add("--luminance", options.luminance,
-             "What false colours span, cd/m2; about the exposure when not given")
+             "Range of false colours, cd/m2; by default around the exposure")
         .type_name("LOW:HIGH");
-    command.add("--albedo", options.albedo, "Scale of what the points' colours reflect")
-        .range(0.0, 10.0)
-        .type_name("X");
-    command.add("--flatten", options.flatten, "Share of the light in the points' colours that is divided out")
+    command.add("--albedo", options.albedo, "Scale of the points' albedo").range(0.0, 10.0).type_name("X");
+    command.add("--flatten", options.flatten, "Share of the light in the points' colours to divide out")
         .range(0.0, 1.0)
         .type_name("X");
     command.add("--beside", options.compare, "Show this engine beside the picture's own (.png)")
         .type_name("ENGINE");
     command
         .add("--beside-show", options.compare_show,
-             fmt::format("Of a comparison: {}", fmt::join(gi::comparison_names(), ", ")))
+             fmt::format("How the two engines are compared: {}", fmt::join(gi::comparison_names(), ", ")))
         .type_name("HOW");
-    command.add("--border", options.border, "Of a split comparison: share of the width left of it")
+    command
+        .add("--border", options.border,
+             "Where a split comparison's border is, as a share of the width from the left")
         .range(0.0, 1.0)
         .type_name("X");
     command
         .add("--difference-range", options.difference_range,
-             "Difference of exposed luminance that has the last colour")
+             "Difference of exposed luminance at the end of the colour map")
         .range(1e-6, 1e6)
         .type_name("X");
 }

@@ -8,17 +8,18 @@
 
 namespace lucarne::viewer {
 
-/// What is shown of the light, over what the scene file says.
+/// How light is shown; overrides the scene file.
 struct LightOptions {
     std::string tone_map, luminance, compare, compare_show;
     std::optional<double> border, difference_range, albedo, flatten;
 };
 
-/// Declares --tone-map --luminance --albedo --flatten --compare --compare-show --border --difference-range.
-/// `options` outlives the command.
+/// Declares --tone-map --luminance --albedo --flatten --beside --beside-show --border --difference-range.
+/// `options` must outlive the command.
 void add_light_options(Arguments& command, LightOptions& options);
 
-/// Errors (ErrorKind::arguments): a text that is none of what its option takes.
+/// Applies the options to a scene. Errors (ErrorKind::arguments): an option has a value that it does not
+/// take.
 Result<void> apply(const LightOptions& options, gi::Scene& scene);
 
 }  // namespace lucarne::viewer

@@ -14,7 +14,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// "1,2.5,-3" as so many finite numbers; their separator is `between`.
+/// Parses `count` finite numbers separated by `between`, for example "1,2.5,-3".
 Result<std::vector<double>> parse_numbers(std::string_view option, std::string_view text, char between,
                                           size_t count) {
     std::vector<double> numbers;
@@ -30,7 +30,7 @@ Result<std::vector<double>> parse_numbers(std::string_view option, std::string_v
     }
     if (at == end && numbers.size() == count) return numbers;
     return bad_arguments(std::string(option),
-                         fmt::format("'{}' is not {} numbers with '{}' between them", text, count, between));
+                         fmt::format("'{}' is not {} numbers separated by '{}'", text, count, between));
 }
 
 Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
@@ -47,7 +47,7 @@ Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, 
     return box;
 }
 
-/// "scene", "r,g,b" or "r,g,b:r,g,b".
+/// Parses "scene", "r,g,b" or "r,g,b:r,g,b".
 Result<gi::Backdrop> parse_background(const std::string& text) {
     gi::Backdrop backdrop;
     if (text == "scene") return backdrop;
@@ -119,52 +119,50 @@ void add_look_options(Arguments& command, LookOptions& options) {
     };
     command
         .add("--colour,--color", options.colour,
-             "What the points' colours say: " + names(gi::colour_names()) + ":NAME")
+             "What the points' colours show: " + names(gi::colour_names()) + ":NAME")
         .type_name("WHAT");
     command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names())).type_name("NAME");
-    command.flag("--reverse-map", options.reversed, "The colour map from its other end");
+    command.flag("--reverse-map", options.reversed, "Reverse the colour map");
     command
-        .add("--range", options.range,
-             "Values that the colour map's ends stand for; where most points lie when not given")
+        .add("--range", options.range, "Values at the colour map's ends; by default the range of most points")
         .type_name("LOW:HIGH");
-    command.add("--shading", options.shading, "Of the engine unlit: " + names(gi::shading_names()))
+    command.add("--shading", options.shading, "Shading of the engine unlit: " + names(gi::shading_names()))
         .type_name("NAME");
-    command.add("--shading-strength", options.shading_strength, "0: none, 1: usual")
+    command.add("--shading-strength", options.shading_strength, "Strength of the shading; 0: none, 1: usual")
         .range(0.0, 10.0)
         .type_name("X");
-    command.add("--point-size", options.point_size, "Scale of the points' own size")
+    command.add("--point-size", options.point_size, "Scale of the points' size")
         .range(0.05, 20.0)
         .type_name("X");
-    command.add("--point-pixels", options.point_pixels, "The same size for all points, in pixels")
+    command.add("--point-pixels", options.point_pixels, "Draw all points with this size, in pixels")
         .range(0.0, 64.0)
         .type_name("N");
     command
         .add("--background", options.background,
-             "Behind the points: scene, one colour, or one from top to bottom (sRGB, 0 to 1)")
+             "Background: scene, one colour, or a gradient from top to bottom (sRGB, 0 to 1)")
         .type_name("R,G,B[:R,G,B]");
-    command.add("--hide-class", options.hidden_classes, "Points of these classes are not there")
+    command.add("--hide-class", options.hidden_classes, "Hide these classes")
         .range(0, 255)
         .separator(',')
         .type_name("N,...");
     command
-        .add("--clip-box", options.clip_boxes,
-             "Only points inside are there (several: inside any); DEGREES turns it about the vertical")
+        .add(
+            "--clip-box", options.clip_boxes,
+            "Keep only points inside the box (or inside any of several); DEGREES turns it about the vertical")
         .repeatable()
         .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command.add("--clip-outside", options.clip_outside, "Only points outside are there")
+    command.add("--clip-outside", options.clip_outside, "Keep only points outside the box")
         .repeatable()
         .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command
-        .add("--clip-plane", options.clip_planes,
-             "Only points on the side that the normal points to are there")
+    command.add("--clip-plane", options.clip_planes, "Keep only points on the side that the normal points to")
         .repeatable()
         .type_name("PX,PY,PZ,NX,NY,NZ");
     command.flag("--clip-casts", options.clip_casts,
-                 "What is clipped is out of sight, but still blocks and bounces light");
-    command.flag("--legend", options.legend, "Over the picture (.png): what the colours stand for");
-    command.flag("--axes", options.axes, "Over the picture (.png): where x, y and z point to");
+                 "Clipped points are invisible, but still block and bounce light");
+    command.flag("--legend", options.legend, "Draw a legend of the colours over the picture (.png)");
+    command.flag("--axes", options.axes, "Draw the directions of x, y and z over the picture (.png)");
     command.flag("--scale-bar", options.scale_bar,
-                 "Over the picture (.png): a length at the distance of the camera's target");
+                 "Draw a scale bar for the distance of the camera's target over the picture (.png)");
 }
 
 Result<void> apply(const LookOptions& options, gi::Look& look) {

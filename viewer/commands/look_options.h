@@ -10,7 +10,7 @@
 
 namespace lucarne::viewer {
 
-/// How points are shown, over what the scene file's `look` says.
+/// How points are shown; overrides `look` of the scene file.
 struct LookOptions {
     std::string colour, map, range, shading, background;
     std::optional<double> point_size, point_pixels, shading_strength;
@@ -20,13 +20,11 @@ struct LookOptions {
 };
 
 /// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size
-/// --point-pixels
-/// --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts
-/// --legend --axes --scale-bar. `options` outlives the
-/// command.
+/// --point-pixels --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts --legend
+/// --axes --scale-bar. `options` must outlive the command.
 void add_look_options(Arguments& command, LookOptions& options);
 
-/// Errors (ErrorKind::arguments): a text that is none of what its option takes.
+/// Applies the options to a look. Errors (ErrorKind::arguments): an option has a value that it does not take.
 Result<void> apply(const LookOptions& options, gi::Look& look);
 
 }  // namespace lucarne::viewer

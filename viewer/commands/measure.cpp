@@ -30,7 +30,7 @@ struct MeasureOptions {
     bool snap = false, overwrite = false;
 };
 
-/// The points of the scan nearest to the places asked for, as measurements of single points.
+/// Returns the scan's points nearest to the requested places, as measurements of kind "point".
 Result<std::vector<Measurement>> points_at(const MeasureOptions& options, NodeCache& cache) {
     std::vector<Measurement> all;
     for (const std::vector<double>& place : options.at) {
@@ -54,7 +54,7 @@ Result<void> snap(std::vector<Measurement>& all, NodeCache& cache) {
     return {};
 }
 
-/// section-1.csv and section-1.svg, and so on, in the order of the measurements.
+/// Writes section-1.csv and section-1.svg, and so on, in the order of the measurements.
 Result<void> write_sections(const MeasureOptions& options, const std::vector<Measurement>& all,
                             const UnitChoice& units, NodeCache& cache) {
     size_t number = 0;
@@ -78,7 +78,7 @@ Result<void> measure(const MeasureOptions& options) {
     if (options.measurements.empty() && options.at.empty())
         return bad_arguments("measure", "there is nothing to measure",
                              "give a file of measurements or --at X,Y,Z");
-    // Measurements may be saved back to where they came from, but nothing else may take their place.
+    // Measurements may be saved to the file they came from, but no other output may replace that file.
     LUCARNE_TRY(check_outputs({options.output, options.json_file}, options.overwrite, options.input.paths));
     if (!options.measurements.empty())
         LUCARNE_TRY(check_outputs({options.json_file}, options.overwrite, {options.measurements}));
@@ -112,25 +112,26 @@ void add_measure(CommandLine& line) {
         .add("--measurements", options->measurements,
              "What to measure, as the window saves it (data/README.md)")
         .type_name("FILE.json");
-    command.add("--at", options->at, "Say all of the scan's point nearest to this place; may be repeated")
+    command
+        .add("--at", options->at,
+             "Show everything about the scan's point nearest to this place; may be repeated")
         .separator(',')
         .type_name("X,Y,Z");
     command.flag("--snap", options->snap,
-                 "Move the measurements' points to the nearest ones of the scan first");
+                 "First move the measurements' points to the nearest points of the scan");
     command
         .add("-o,--output", options->output,
-             "Write a table (.csv) or the measurements again (.json); else they are printed")
+             "Write a table (.csv) or the measurements (.json); by default they are printed")
         .type_name("FILE");
-    command.add("--json", options->json_file, "Write the results there as well, for machines")
-        .type_name("FILE");
-    command.add("--results", options->results, "In metres or in the scan file's own unit")
+    command.add("--json", options->json_file, "Also write the results as JSON").type_name("FILE");
+    command.add("--results", options->results, "Unit of the results: metres or the scan file's own unit")
         .one_of({"m", "file"})
         .show_default();
     command
         .add("--sections", options->sections,
-             "Write every section into this folder, as points and as a drawing")
+             "Write every section to this folder, as points and as a drawing")
         .type_name("FOLDER");
-    command.add("--section-points", options->section_points, "The most points of a section")
+    command.add("--section-points", options->section_points, "Largest number of points of a section")
         .range(uint64_t{1}, uint64_t{100'000'000})
         .show_default();
     command.flag("--overwrite", options->overwrite, "Replace outputs that exist");

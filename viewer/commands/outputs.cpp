@@ -7,7 +7,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// As an output replaces it: of a link the link itself, in whatever folder that stands.
+/// Returns the path that writing the output replaces: for a link the link itself, in its resolved folder.
 std::filesystem::path name_of(const std::filesystem::path& output) {
     std::error_code unknown;
     const auto folder =
@@ -24,10 +24,10 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, bool overwri
         if (output.empty()) continue;
         for (size_t other = 0; other < i; ++other)
             if (!outputs[other].empty() && name_of(output) == name_of(outputs[other]))
-                return bad_arguments(output, "is to be written twice by this command",
+                return bad_arguments(output, "would be written twice by this command",
                                      "choose another name for one of the outputs");
         for (const std::string& input : inputs) {
-            std::error_code neither_is_there;  // by device and inode, links followed
+            std::error_code neither_is_there;  // equivalent() compares device and inode and follows links
             if (std::filesystem::equivalent(output, input, neither_is_there))
                 return bad_arguments(output, "is an input of this command, which would be lost",
                                      "choose another name for the output");

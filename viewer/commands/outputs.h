@@ -7,8 +7,9 @@
 
 namespace lucarne::viewer {
 
-/// Before any work of a command: that its outputs can be written (check_output; empty names are none), that
-/// no two of them are one, and that none of them is one of its inputs, by whatever name, spelling or link.
+/// Checks a command's outputs before any work. Errors: an output cannot be written (check_output); two
+/// outputs are the same file; an output is one of the inputs, by whatever name, spelling or link. Empty names
+/// are skipped.
 Result<void> check_outputs(const std::vector<std::string>& outputs, bool overwrite,
                            const std::vector<std::string>& inputs);
 

@@ -50,12 +50,12 @@ Result<PictureKind> picture_kind(const std::string& path) {
     return bad_arguments("--output", fmt::format("'{}' is no kind of picture", path), "name it .png or .exr");
 }
 
-/// What came out of all frames together.
+/// The result of all frames together.
 struct Rendered {
     FrameStats last;
     uint32_t frames = 0;
     double seconds = 0;
-    double variance = 0;  ///< of the mean luminance, where the engine knows its noise
+    double variance = 0;  ///< variance of the mean luminance, if the engine estimates its noise
 };
 
 double engine_stat(const FrameStats& stats, std::string_view name) {
@@ -64,7 +64,7 @@ double engine_stat(const FrameStats& stats, std::string_view name) {
     return 0;
 }
 
-/// At least `frames` frames and at least `seconds`, averaged.
+/// Renders and averages at least `frames` frames for at least `seconds`.
 Result<Rendered> render_frames(Pipeline& pipeline, FrameRequest request, const RenderOptions& options) {
     Rendered rendered;
     std::optional<Progress> progress;
@@ -123,7 +123,7 @@ Result<void> write_picture(const RenderOptions& options, PictureKind kind, const
     return io::write_exr(options.output, radiance, options.overwrite, options.finish.transparent);
 }
 
-/// The files of the engine's further pictures: OUT.exr has OUT.stderr.exr beside it.
+/// Returns the file names of the engine's further pictures: OUT.stderr.exr is written beside OUT.exr.
 std::vector<std::string> layer_paths(const std::string& output, const gi::EngineInfo& engine) {
     std::vector<std::string> paths;
     for (const std::string_view layer : engine.layers)
@@ -132,14 +132,14 @@ std::vector<std::string> layer_paths(const std::string& output, const gi::Engine
     return paths;
 }
 
-/// The files that it reads.
+/// Returns the files that the command reads.
 std::vector<std::string> inputs_of(const RenderOptions& options) {
     auto inputs = options.input.paths;
     inputs.push_back(options.drawing.scene);
     return inputs;
 }
 
-/// Before any long work: whether the layers can be written.
+/// Checks before long work that the layers can be written.
 Result<void> check_layers(const RenderOptions& options) {
     LUCARNE_ASSIGN(const auto engine, gi::find_engine(options.drawing.render.engine));
     if (engine->info.layers.empty())
@@ -161,7 +161,7 @@ std::string fit_text(const FrameStats& stats) {
     return share < 1 ? fmt::format("; {:.0f} % of the cuts' points fit the caps", 100 * share) : "";
 }
 
-/// With --first what can be drawn at once.
+/// Opens the input. With --first opens only what can be drawn at once.
 Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOptions& options) {
     if (!options.first) return open_input(options.input);
     LUCARNE_ASSIGN(const auto open, open_growing(options.input));
@@ -169,7 +169,7 @@ Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOption
 }
 
 Result<void> render(RenderOptions options) {
-    // Everything that can be wrong with the arguments, before any long work.
+    // Check all arguments before any long work.
     LUCARNE_ASSIGN(const PictureKind kind, picture_kind(options.output));
     LUCARNE_TRY(check_outputs({options.output, options.json, options.gbuffer}, options.overwrite,
                               inputs_of(options)));
@@ -177,7 +177,7 @@ Result<void> render(RenderOptions options) {
     LUCARNE_ASSIGN(const Drawing drawing, resolve(options.drawing));
     if (options.layers) LUCARNE_TRY(check_layers(options));
     auto opening = std::async(std::launch::async, [&] { return open_source(options); });
-    LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is looked at
+    LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is checked
     LUCARNE_ASSIGN(const auto source, opening.get());
     LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
     FrameRequest request;
@@ -217,29 +217,33 @@ void add_render(CommandLine& line) {
     Arguments command = line.add("render", "Render one picture without a window");
     add_input_options(command, options->input);
     command.flag("--first", options->first,
-                 "Of scans without a cache: the picture that can be made at once, of a sample of the points; "
+                 "For scans without a cache: render at once from a sample of the points; "
                  "nothing is converted or kept");
     command.add("-o,--output", options->output, "The picture: .png, or .exr for linear radiance")
         .required()
         .type_name("FILE");
-    command.add("--camera", options->camera, "One of the scene's; the first when not given")
-        .type_name("NAME");
+    command.add("--camera", options->camera, "A camera of the scene; by default the first").type_name("NAME");
     add_drawing_options(command, options->drawing);
-    command.add("--frames", options->frames, "How many to average").range(1, 1'000'000).type_name("N");
-    command.add("--seconds", options->seconds, "How long to go on averaging").range(0.0, 1e6).type_name("S");
-    command.add("--json", options->json, "Figures of the picture, machine-readable").type_name("FILE");
+    command.add("--frames", options->frames, "Number of frames to average")
+        .range(1, 1'000'000)
+        .type_name("N");
+    command.add("--seconds", options->seconds, "Least time to go on averaging, seconds")
+        .range(0.0, 1e6)
+        .type_name("S");
+    command.add("--json", options->json, "Write figures of the picture as JSON").type_name("FILE");
     command
         .add("--gbuffer", options->gbuffer,
-             "What the camera sees: unit normal (RGB) and depth in metres (A), for compare")
+             "Write the G-buffer: unit normal (RGB) and depth in metres (A), for compare")
         .type_name("FILE.exr");
     command.flag("--layers", options->layers,
-                 "Also write what else the engine knows, beside the picture (reference: "
+                 "Also write the engine's further pictures beside the picture (reference: "
                  "OUT.stderr.exr, the standard error of each pixel's luminance, and OUT.a.exr and "
-                 "OUT.b.exr by half the paths each)");
-    command.flag("--transparent", options->finish.transparent,
-                 "Where no point is, the picture is transparent (opacity 0) instead of showing a background");
+                 "OUT.b.exr, each from half of the paths)");
+    command.flag(
+        "--transparent", options->finish.transparent,
+        "Make the picture transparent (opacity 0) where no point is, instead of drawing a background");
     command.flag("--no-overlay", options->no_overlay,
-                 "Without the legend, axes and scale bar that the scene asks for");
+                 "Leave out the legend, axes and scale bar that the scene requests");
     command.flag("--overwrite", options->overwrite, "Replace files that exist");
     command.run([options] {
         options->finish.overlays = !options->no_overlay;

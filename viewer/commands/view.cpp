@@ -29,10 +29,10 @@ struct ViewOptions {
     uint32_t frames = 1;
     double frame_time_ms = 100;
     bool overwrite = false;
-    bool size_given = false;  ///< else the window is as large as the last one
+    bool size_given = false;  ///< false: the window is as large as last time
 };
 
-/// Where the view of what is open begins. On a thread: it reads.
+/// Returns the starting view of what is open. Called on a thread, because it reads nodes.
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
@@ -42,7 +42,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     return start;
 }
 
-/// What is wrong with the scene is said at once, and not in a window.
+/// Reports errors of the scene file before a window opens.
 Result<void> check_scene(const ViewOptions& options) {
     if (options.drawing.scene.empty()) return {};
     LUCARNE_ASSIGN(const gi::Scene scene, gi::load_scene(options.drawing.scene));
@@ -102,7 +102,7 @@ Result<void> view(ViewOptions options) {
         [&] {
             if (awake) Window::wake();
         });
-    scans.open(options.input.paths, true);  // while the window starts
+    scans.open(options.input.paths, true);  // loads while the window starts
     LoadedSettings kept = load_settings(config_folder());
     if (!kept.problem.empty()) log::warn("{}", kept.problem);
     for (const std::string& path : options.input.paths) kept.settings.opened(absolute(path));
@@ -126,21 +126,21 @@ Result<void> view(ViewOptions options) {
 
 void add_view(CommandLine& line) {
     auto options = std::make_shared<ViewOptions>();
-    Arguments command = line.add("view", "Look around in caches and scans, lit by their own surfaces");
+    Arguments command = line.add("view", "Explore caches and scans lit by their own surfaces");
     options->input.required = false;
     add_input_options(command, options->input);
     add_drawing_options(command, options->drawing);
     command.add("--camera", options->camera, "Start with this camera of the scene");
     command
         .add("--scale", options->drawing.render.scale,
-             "Share of the window's sides that pictures are made at, and scaled up from: half takes a "
+             "Render pictures at this share of the window's width and height, and scale them up: 0.5 takes a "
              "quarter of "
              "the pixels' time")
         .range(gi::kLeastPictureScale, 1.0)
         .type_name("X");
     command
         .add("--frame-time", options->frame_time_ms,
-             "What a picture should take while something moves; cuts and size follow it")
+             "Target time of a picture while something moves; cuts and size follow it")
         .range(1.0, 1e5)
         .show_default()
         .type_name("MS");
@@ -148,8 +148,8 @@ void add_view(CommandLine& line) {
         .type_name("FILE.json");
     command.add("--path", options->path, "Show and edit this flythrough").type_name("P.json");
     command.add("--screenshot", options->screenshot,
-                "Save the window as this PNG once its picture is whole, and close");
-    command.add("--frames", options->frames, "Whole pictures to average with --screenshot")
+                "Save the window as this PNG once its picture is complete, and close");
+    command.add("--frames", options->frames, "Number of complete pictures to average with --screenshot")
         .range(1u, 256u)
         .show_default();
     command.flag("--overwrite", options->overwrite, "Replace the screenshot's file");

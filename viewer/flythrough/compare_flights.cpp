@@ -15,13 +15,13 @@ namespace {
 constexpr size_t kMostFlights = 100, kMostReportFrames = 1'000'000;
 constexpr size_t kResamples = 2000;
 constexpr double kConfidence = 0.95;
-constexpr double kLeastMs = 1e-6;  ///< below it a clock said nothing; keeps ratios finite
+constexpr double kLeastMs = 1e-6;  ///< shorter times are below the clock's resolution; keeps ratios finite
 
 double median(std::vector<double> values) {
     return quantile(std::move(values), 0.5);
 }
 
-/// Indices of a resampled series: blocks of neighbours, drawn with replacement.
+/// Draws the indices of a resampled series: blocks of neighbours with replacement.
 class BlockBootstrap {
  public:
     explicit BlockBootstrap(size_t count)
@@ -42,7 +42,7 @@ class BlockBootstrap {
     size_t count_, block_;
 };
 
-/// The median of `once` over many resamples, and the interval that holds kConfidence of them.
+/// Evaluates `once` for many resamples. Sets the interval that contains kConfidence of the results.
 template <class Once>
 void bootstrap(FlightComparison& comparison, const Once& once) {
     std::mt19937_64 random(1);
@@ -52,8 +52,8 @@ void bootstrap(FlightComparison& comparison, const Once& once) {
     comparison.high = quantile(ratios, (1 + kConfidence) / 2);
 }
 
-/// Two-sided p of Mann & Whitney ("On a test of whether one of two random variables is stochastically larger
-/// than the other", 1947), by the normal approximation with ties.
+/// Returns the two-sided p of Mann & Whitney's test ("On a test of whether one of two random variables is
+/// stochastically larger than the other", 1947), by the normal approximation with ties.
 double mann_whitney(const std::vector<double>& a, const std::vector<double>& b) {
     std::vector<std::pair<double, bool>> all;
     for (const double value : a) all.emplace_back(value, true);

@@ -20,7 +20,7 @@ glm::dvec3 wide(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// In metres, relative to the local origin.
+/// Returns the point that a pixel shows, in metres relative to the local origin.
 glm::dvec3 point_at(const SeenFrame& frame, size_t index) {
     const gi::CameraView& c = frame.camera;
     const double x = 2 * (static_cast<double>(index % c.width) + 0.5) / c.width - 1;
@@ -29,7 +29,7 @@ glm::dvec3 point_at(const SeenFrame& frame, size_t index) {
            double{frame.texels[index].depth} * (wide(c.forward) + wide(c.right) * x - wide(c.up) * y);
 }
 
-/// The pixel that a point falls into.
+/// Returns the pixel that a point falls into.
 std::optional<size_t> pixel_of(const gi::CameraView& c, const glm::dvec3& point) {
     const glm::dvec3 offset = point - wide(c.origin), right = wide(c.right), up = wide(c.up);
     const double depth = glm::dot(offset, wide(c.forward));

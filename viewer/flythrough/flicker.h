@@ -6,7 +6,7 @@
 
 namespace lucarne::viewer {
 
-/// A frame as it is remembered until the next: what every pixel shows, and its light.
+/// What is kept of a frame until the next: what every pixel shows, and its radiance.
 struct SeenFrame {
     gi::CameraView camera{};
     glm::dvec3 local_origin{0.0};
@@ -16,12 +16,12 @@ struct SeenFrame {
 };
 SeenFrame seen_frame(const Pipeline& pipeline);
 
-/// How much the light of surfaces changes from a frame to the next, whatever way the camera moves. A pixel of
-/// `now` is matched where `before` shows the same surface: the point seen is projected into `before`; the
-/// point that the pixel there shows lies off the tangent plane by less than two pixels are wide, and its
-/// normal within 25 degrees. l is a pixel's luminance over that of its albedo, so that textures drop out; m
-/// the mean of l over the matched pixels of both frames. Diffuse light does not depend on where it is seen
-/// from: unless a light moves, what is left is error.
+/// How much the light of surfaces changes from one frame to the next, independently of the camera's motion. A
+/// pixel of `now` is matched if `before` shows the same surface: the pixel's point is projected into
+/// `before`; the point shown there is less than two pixel widths away from the tangent plane, and the normals
+/// differ by less than 25 degrees. l is a pixel's luminance divided by the luminance of its albedo, so that
+/// textures cancel. m is the mean of l over the matched pixels of both frames. Diffuse light does not depend
+/// on the viewpoint: unless a light moves, any change is an error.
 struct Flicker {
     double change = 0;   ///< mean over the matched pixels of 2 |l' - l| / (l' + l + m / 5)
     double matched = 0;  ///< share of the pixels that show something

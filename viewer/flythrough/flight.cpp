@@ -15,7 +15,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Wall clock that can stand still.
+/// A wall clock that can be paused.
 class FlightClock {
  public:
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_ - paused_).count(); }
@@ -50,12 +50,12 @@ Result<void> hand_over(const Pipeline& pipeline, const FlightOptions& options, s
     return options.take_frame ? options.take_frame(picture, number) : Result<void>();
 }
 
-/// What is measured of a frame against the one before, which it becomes.
+/// Measures changes between consecutive frames. Keeps each frame for comparison with the next.
 class Measures {
  public:
     explicit Measures(const FlightOptions& options) : options_(options) {}
     bool any() const { return options_.flicker || options_.changes; }
-    /// Always true, so that a clock can stand still meanwhile.
+    /// Measures one frame. Always returns true, so that it can be called while the clock is paused.
     bool take(const Pipeline& pipeline, FlownFrame& frame) {
         if (options_.flicker) {
             SeenFrame now = seen_frame(pipeline);
@@ -70,7 +70,7 @@ class Measures {
         }
         return true;
     }
-    /// The camera jumps: the next frame is compared with none.
+    /// Call when the camera jumps: the next frame is not compared with the one before.
     void forget() {
         seen_.reset();
         picture_.clear();
@@ -82,8 +82,8 @@ class Measures {
     std::vector<std::byte> picture_;
 };
 
-/// Frames as they come, and where there are too many every second, fourth and so on, so that a long flight's
-/// record does not grow for ever.
+/// The record of frames. When there are too many, keeps every second, fourth and so on, so that the record of
+/// a long flight stays bounded.
 class Record {
  public:
     void add(FlownFrame frame) {
@@ -101,7 +101,7 @@ class Record {
     size_t flown_ = 0, step_ = 1;
 };
 
-/// The budgets as they are set, and while a frame-time target is followed those that keep to it.
+/// The budgets of cuts: fixed, or adapted to a frame-time target.
 class Budgets {
  public:
     Budgets(Pipeline& pipeline, const FlightOptions& options)
@@ -128,7 +128,7 @@ class Budgets {
     FrameBudget budget_;
 };
 
-/// All that goes on from frame to frame.
+/// The state that a flight carries from frame to frame.
 struct Flying {
     Pipeline& pipeline;
     const CameraPath& path;
@@ -139,7 +139,7 @@ struct Flying {
     Budgets budgets{pipeline, options};
     Record record{};
 
-    /// Once along the path.
+    /// Flies once along the path.
     Result<void> lap(size_t number) {
         const double began = clock.seconds();
         measures.forget();
@@ -148,7 +148,7 @@ struct Flying {
             const double since_start = options.wait
                                            ? static_cast<double>(frame_of_lap) / path.frames_per_second
                                            : std::min(clock.seconds() - began, path.duration());
-            // By the clock the last frame is the one at the path's end.
+            // In real time the last frame is the one at the path's end.
             last = options.wait ? frame_of_lap + 1 >= path.frames() : since_start >= path.duration();
             LUCARNE_TRY(draw(path.start() + since_start, number));
         }
@@ -188,7 +188,7 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
     std::filesystem::create_directories(folder, error);
     if (error) return failed(folder.string(), error.message(), "name a folder that can be written");
     if (overwrite) return {};
-    // Any frame of another flight would be mixed with this one's.
+    // Frames of another flight would be mixed with this flight's frames.
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
         const std::string name = entry->path().filename().string();
@@ -202,7 +202,7 @@ Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool ove
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options) {
     const bool known_length = options.wait && options.soak == 0;
     Flying flying{pipeline, path, options,
-                  Progress(options.wait ? "flying" : "flying by the clock", known_length ? path.frames() : 0,
+                  Progress(options.wait ? "flying" : "flying in real time", known_length ? path.frames() : 0,
                            "frames")};
     Flight flight;
     LUCARNE_TRY(flying.lap(0));

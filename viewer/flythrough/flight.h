@@ -13,35 +13,37 @@ namespace lucarne::viewer {
 
 struct FlightOptions {
     ImageSize size{1280, 720};
-    /// True: every frame of the path, every cut whole: the same pixels on every run. False: what a user sees:
-    /// the camera goes by the clock, and a frame shows what has been loaded when its time comes.
+    /// True: draws every frame of the path with complete cuts, so that the pixels are the same on every run.
+    /// False: draws what a user sees: the camera follows the clock, and a frame shows the nodes loaded by
+    /// then.
     bool wait = true;
-    std::optional<std::filesystem::path> frames_folder;  ///< frame_00001.png and so on
+    std::optional<std::filesystem::path> frames_folder;  ///< gets frame_00001.png and so on
     bool overwrite = false;
-    /// Takes the picture of every frame, too; the first has the number 1. An error ends the flight.
+    /// Called with the picture of every frame; the first frame has the number 1. An error ends the flight.
     std::function<Result<void>(const io::Image8& picture, size_t number)> take_frame{};
-    bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance, while the clock stands still
-    bool changes = false;  ///< measure FlownFrame::change, likewise
-    double soak = 0;       ///< s; the path is flown again and again for at least so long
-    /// In seconds: by the clock, the budgets of cuts follow it (cost_model.h); 0: they are fixed.
+    bool flicker = false;  ///< measure FlownFrame::flicker and ::luminance with the clock paused
+    bool changes = false;  ///< measure FlownFrame::change, with the clock paused
+    double soak = 0;       ///< s; the path is repeated for at least this time; 0: it is flown once
+    /// Target time of a frame, s. Without `wait`, the budgets of cuts follow it (cost_model.h). 0: budgets
+    /// are fixed.
     double frame_time = 0;
 };
 
 struct Flight {
-    std::vector<FlownFrame> frames;  ///< of a soak evenly kLongestRecord of them at most
+    std::vector<FlownFrame> frames;  ///< of a soak at most kLongestRecord frames, evenly spread
     double wall_seconds = 0;
     std::optional<Soak> soak;
 };
 
 inline constexpr size_t kLongestRecord = 8192;
 
-/// Makes the folder for frames where it is missing. Errors: it cannot be made; there are frames in it
-/// already.
+/// Makes the folder for frames if it is missing. Errors: the folder cannot be made; it contains frames
+/// already and `overwrite` is false.
 Result<void> prepare_frames_folder(const std::filesystem::path& folder, bool overwrite);
 
-/// Flies a pipeline that is set up along a path. Frames are written and measured while the clock stands
-/// still, so that this slows nothing down that is measured. Errors: the pipeline's, a frame that cannot be
-/// written.
+/// Flies along a path with a pipeline that has been set up. The clock pauses while frames are written and
+/// analysed, so that this does not affect the measured times. Errors: those of the pipeline; a frame cannot
+/// be written.
 Result<Flight> fly(Pipeline& pipeline, const CameraPath& path, const FlightOptions& options);
 
 }  // namespace lucarne::viewer

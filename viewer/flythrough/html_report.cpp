@@ -41,7 +41,7 @@ std::string seconds_cell(const Json& value) {
     return value.is_null() ? R"(<td class="n">&ndash;</td>)" : number(value.get<double>(), " s");
 }
 
-/// A row a figure, a column a flight.
+/// Returns a table with one row for each figure and one column for each flight.
 std::string figures(const Flights& flights) {
     std::string html = "<div class=wide><table><thead><tr><th></th>";
     for (const Json& flight : flights) html += fmt::format("<th>{}</th>", escaped(flight_name(flight)));
@@ -79,7 +79,7 @@ std::vector<double> column(const Json& flight, const char* key, double scale = 1
     return values;
 }
 
-/// The path's time, or of a soak, which flies it again and again, the clock's.
+/// Returns the frames' times on the path. For a soak, which repeats the path, returns wall-clock times.
 std::vector<double> times(const Json& flight) {
     return column(flight, flight.contains("soak") ? "wall" : "time");
 }
@@ -92,7 +92,7 @@ std::string plot_of(const Flights& flights, const char* title, const char* unit,
     return svg_of(plot);
 }
 
-/// The passes of one flight on top of each other; those that never matter go together.
+/// Returns a stacked plot of one flight's passes. Passes that are always negligible are combined.
 std::string passes_plot(const Json& flight) {
     Plot plot{"passes, " + flight_name(flight), "s along the flight", "ms", {}, true};
     const std::vector<double> x = times(flight);
@@ -139,7 +139,7 @@ std::string html_report(const Flights& flights) {
     html += fmt::format("<p>{} along {}, {} x {}, preset {}, {}.</p>\n", text_of(first["input"]),
                         text_of(first["path"]), text_of(first["size"][0]), text_of(first["size"][1]),
                         text_of(first["preset"]),
-                        first["mode"] == "wait" ? "every cut whole before it is drawn" : "by the clock");
+                        first["mode"] == "wait" ? "with complete cuts" : "in real time");
     html += figures(flights) + "<h2>Along the flight</h2>\n";
     html += plot_of(flights, "frame", "ms", "ms", 1);
     html += plot_of(flights, "points drawn", "of all cuts", "points", 1);

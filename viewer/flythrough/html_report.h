@@ -7,11 +7,11 @@
 
 namespace lucarne::viewer {
 
-/// Reports of flights (flight_report) as one page: figures, plots over the path, machine and build. It opens
-/// from disk and asks nothing of the network.
+/// Returns reports of flights (flight_report) as one HTML page: figures, plots over the path, machine and
+/// build. The page opens from disk and loads nothing from the network.
 std::string html_report(const std::vector<nlohmann::ordered_json>& flights);
 
-/// "vpl, cold": how a flight is told from the others of a page.
+/// Returns a name that distinguishes a flight from the others on a page, for example "vpl, cold".
 std::string flight_name(const nlohmann::ordered_json& flight);
 
 }  // namespace lucarne::viewer

@@ -21,14 +21,14 @@ double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
 
-/// Those that radians() makes the same angle of again, the roundest of them; degrees that no file could have
-/// said are as near as doubles are.
+/// Returns degrees that convert back to exactly the same angle, the roundest such number. If there is none,
+/// returns the nearest double.
 double degrees(double angle) {
     const double exact = angle * 180 / std::numbers::pi;
     const double round = std::round(exact * 1e9) / 1e9;
     if (radians(round) == angle) return round;
     double below = exact, above = exact;
-    for (int step = 0; step < 4; ++step) {  // rounding is off by less
+    for (int step = 0; step < 4; ++step) {  // rounding errors are smaller than this
         if (radians(below) == angle) return below;
         if (radians(above) == angle) return above;
         below = std::nextafter(below, 0.0);
@@ -37,13 +37,13 @@ double degrees(double angle) {
     return exact;
 }
 
-/// The curve of one quantity around `time`, which lies in [keys[i].time, keys[i + 1].time].
+/// Evaluates the curve of one quantity at `time`, which lies in [keys[i].time, keys[i + 1].time].
 template <class Get>
 auto interpolate(const std::vector<KeyFrame>& keys, size_t i, double time, const Get& get) {
     const auto slope = [&](size_t a, size_t b) {
         return (get(keys[b].camera) - get(keys[a].camera)) / (keys[b].time - keys[a].time);
     };
-    // The slope of the parabola through three keys, in its middle one.
+    // The slope of the parabola through three keys at the middle key.
     const auto tangent = [&](size_t k) {
         if (k == 0) return slope(0, 1);
         if (k + 1 == keys.size()) return slope(k - 1, k);

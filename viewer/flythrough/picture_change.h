@@ -8,15 +8,15 @@
 
 namespace lucarne::viewer {
 
-/// How much a picture differs from the one before: of the shown colours (sRGB, 0 to 1), root mean square. A
-/// level of detail that pops is seen as a jump of it that the motion alone does not make.
+/// How much a picture differs from the one before: root mean square difference of the shown colours (sRGB, 0
+/// to 1). Popping levels of detail show as jumps of this value that motion alone does not cause.
 struct PictureChange {
     double whole = 0;  ///< over the picture
     double tile = 0;   ///< over the square of kChangeTile pixels, within the picture, that differs most
 };
 inline constexpr size_t kChangeTile = 16;
 
-/// Both RGBA, row 0 on top, `size` large.
+/// Compares two pictures of the same size; RGBA, row 0 on top.
 PictureChange change_between(std::span<const std::byte> before, std::span<const std::byte> now,
                              ImageSize size);
 

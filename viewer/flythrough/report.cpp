@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kLoadPass = "load";  // as the pipeline names it
+constexpr std::string_view kLoadPass = "load";  // the pipeline's name for the pass
 
 double mean(const std::vector<double>& values) {
     return values.empty()
@@ -20,7 +20,7 @@ double mean(const std::vector<double>& values) {
                : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Mean and quantiles of times, in milliseconds.
+/// Returns mean and quantiles of times, in milliseconds.
 Json times(const std::vector<double>& seconds) {
     std::vector<double> ms;
     for (const double value : seconds) ms.push_back(value * 1e3);
@@ -44,7 +44,8 @@ double seconds_of(const FrameStats& stats, std::string_view pass_name) {
     return seconds;
 }
 
-/// The passes in the order in which they first appear; a frame without one took no time for it.
+/// Reports the passes in the order of their first appearance. A frame without a pass counts as zero time for
+/// it.
 Json passes(std::span<const FlownFrame> frames) {
     std::vector<std::string> names;
     for (const FlownFrame& frame : frames)
@@ -72,7 +73,7 @@ double largest(const std::vector<double>& values) {
     return values.empty() ? 0 : *std::ranges::max_element(values);
 }
 
-/// Bytes: the caps, and the most that was used of them; what the process held resident.
+/// Reports the memory caps, the largest use of each, and the process's resident memory, bytes.
 void memory(const FlightConditions& conditions, std::span<const FlownFrame> frames, Json& report) {
     const auto of = [&](uint64_t MemoryUse::*member) {
         return of_all(frames, [&](const FrameStats& stats) { return stats.memory.*member; });
@@ -86,7 +87,7 @@ void memory(const FlightConditions& conditions, std::span<const FlownFrame> fram
                                  {"last", resident.empty() ? 0 : resident.back()}};
 }
 
-/// Mean luminance along the flight, and how it flickers; nothing where neither was measured.
+/// Reports the mean luminance and the flicker along the flight, if they were measured.
 void light(std::span<const FlownFrame> frames, Json& report) {
     std::vector<double> luminance, change, matched;
     for (const FlownFrame& frame : frames) {
@@ -125,7 +126,7 @@ Json each_frame(std::span<const FlownFrame> frames, const Json& pass_names) {
     return list;
 }
 
-/// From the opening of the files on.
+/// Reports times since the opening of the files.
 Json start(const FlightConditions& conditions, std::span<const FlownFrame> frames) {
     Json result = {{"cold", conditions.start.cold},
                    {"still_cached", conditions.start.still_cached},
@@ -154,7 +155,7 @@ Changes changes_of(std::span<const FlownFrame> frames) {
     return changes;
 }
 
-/// What changes from picture to picture, and how much more than at full resolution.
+/// Reports changes from picture to picture, and their ratio to those at full resolution.
 void picture_change(const FlightConditions& conditions, std::span<const FlownFrame> frames, Json& report) {
     const Changes own = changes_of(frames);
     if (own.whole.empty()) return;
@@ -209,7 +210,7 @@ void surroundings(const FlightConditions& conditions, Json& report) {
                        {"flags", conditions.build.flags}};
 }
 
-/// The engine's options, and the budgets.
+/// Returns the engine's options and the budgets.
 Json settings(const FlightConditions& conditions) {
     Json result = Json::object();
     if (const auto engine = gi::find_engine(conditions.engine))
@@ -248,7 +249,7 @@ Json flight_report(const FlightConditions& conditions, std::span<const FlownFram
     report["seconds"] = conditions.wall_seconds;
     report["frame_ms"] = times(of_all(frames, [](const FrameStats& stats) { return stats.seconds; }));
     report["passes_ms"] = passes(frames);
-    // What the frame's thread spends on the stream: wishes, arrivals, their upload.
+    // The time that the frame's thread spends on the stream: requests, arrivals and their upload.
     report["loading_ms"] =
         times(of_all(frames, [](const FrameStats& stats) { return seconds_of(stats, kLoadPass); }));
     report["points_per_frame"] = points(frames);

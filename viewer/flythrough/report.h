@@ -14,38 +14,38 @@
 
 namespace lucarne::viewer {
 
-/// What a flythrough measured of one frame.
+/// The measurements of one frame of a flythrough.
 struct FlownFrame {
     double time = 0;  ///< on the path, s
-    double wall = 0;  ///< since the flight's start, when it was done, s
-    size_t lap = 0;   ///< of a soak
+    double wall = 0;  ///< from the flight's start until the frame was done, s
+    size_t lap = 0;   ///< number of the lap in a soak
     FrameStats stats;
-    // Where they were measured:
-    std::optional<double> luminance;      ///< mean of the picture, W/(sr m^2)
+    // Set if they were measured:
+    std::optional<double> luminance;      ///< mean luminance of the picture, W/(sr m^2)
     std::optional<Flicker> flicker;       ///< since the frame before
-    std::optional<PictureChange> change;  ///< likewise
+    std::optional<PictureChange> change;  ///< since the frame before
 };
 
-/// A path flown again and again.
+/// The result of a soak, which repeats the path.
 struct Soak {
     size_t laps = 0, frames = 0;
-    MemoryUse first, last;  ///< at the end of the first lap, when all has been in use once, and of the last
+    MemoryUse first, last;  ///< at the end of the first lap, when everything has been used, and of the last
 };
 
-/// How the first picture came about.
+/// How the flight started, up to the first picture.
 struct FlightStart {
-    bool cold = false;        ///< the kernel was made to forget the files before
-    double still_cached = 0;  ///< share of their bytes that it did not forget
-    double open_seconds = 0;  ///< for opening the files and the pipeline
+    bool cold = false;        ///< the files were dropped from the kernel's page cache before
+    double still_cached = 0;  ///< share of their bytes that stayed in the page cache
+    double open_seconds = 0;  ///< time to open the files and the pipeline
 };
 
-/// The same flight drawn with every point there is.
+/// The same flight drawn with all points.
 struct FullFlight {
     std::vector<FlownFrame> frames;
-    double cut_share = 1;  ///< of all points that were wanted, the least that fitted the caps
+    double cut_share = 1;  ///< least share of the wanted points that fitted the caps
 };
 
-/// What was flown with.
+/// The conditions of a flight.
 struct FlightConditions {
     std::vector<std::string> inputs;
     std::string path, engine, preset, mode;
@@ -54,8 +54,8 @@ struct FlightConditions {
     gi::EngineSettings settings;
     CutBudgets budgets;
     PipelineOptions caps;
-    double frame_time = 0;    ///< s, that the cuts followed; 0: none
-    double wall_seconds = 0;  ///< of the flight, without the writing of pictures
+    double frame_time = 0;    ///< s, the target that the cuts followed; 0: no target
+    double wall_seconds = 0;  ///< duration of the flight without the writing of pictures
     FlightStart start;
     std::optional<Soak> soak;
     std::optional<FullFlight> full;
@@ -63,11 +63,11 @@ struct FlightConditions {
     MachineInfo machine;
 };
 
-/// The q-quantile (0 to 1) of values, by linear interpolation between the ranks (Hyndman & Fan 1996, type 7);
-/// 0 for none.
+/// Returns the q-quantile (q in 0 to 1) of values by linear interpolation between the ranks (Hyndman & Fan
+/// 1996, type 7), or 0 if there are no values.
 double quantile(std::vector<double> values, double q);
 
-/// The report as data/README.md ("Flythroughs") describes it.
+/// Returns the report that data/README.md ("Flythroughs") describes.
 nlohmann::ordered_json flight_report(const FlightConditions& conditions, std::span<const FlownFrame> frames);
 
 }  // namespace lucarne::viewer

@@ -11,7 +11,7 @@ namespace {
 
 // Pixels. The plot scales with the page.
 constexpr double kWidth = 860, kHeight = 260, kLeft = 64, kRight = 12, kTop = 34, kBottom = 40;
-constexpr size_t kMostSteps = 400;  ///< across, of a curve with more values
+constexpr size_t kMostSteps = 400;  ///< horizontal steps of a curve with more values than this
 
 // Okabe & Ito ("Color Universal Design", 2008): told apart with any colour vision.
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -28,7 +28,7 @@ struct Axes {
     double y(double value) const { return kHeight - kBottom - value / y1 * (kHeight - kTop - kBottom); }
 };
 
-/// Of every step the least and the largest value, in their order.
+/// Keeps the least and the largest value of every step, in their order.
 Curve thinned(const Curve& curve) {
     const size_t count = std::min(curve.x.size(), curve.y.size());
     if (count <= 2 * kMostSteps) return curve;
@@ -46,7 +46,7 @@ Curve thinned(const Curve& curve) {
     return thin;
 }
 
-/// Values with few digits: 0.25, 40, 12k, 3.5M.
+/// Formats a value with few digits: 0.25, 40, 12k, 3.5M.
 std::string short_number(double value) {
     const double size = std::abs(value);
     if (size >= 1e9) return fmt::format("{:.3g}G", value / 1e9);
@@ -101,7 +101,7 @@ std::string lines(const Plot& plot, const Axes& axes) {
     return svg;
 }
 
-/// From the top of the stack down, so that each area is drawn whole and covered by those below it.
+/// Draws from the top of the stack down: each area is drawn completely and covered by the areas below it.
 std::string areas(const Plot& plot, const Axes& axes) {
     std::string svg;
     std::vector<double> top(plot.curves.front().x.size(), 0.0);
@@ -133,7 +133,7 @@ Axes axes_of(const Plot& plot) {
             x1 = std::max(x1, x);
         }
     }
-    if (x0 > 0 && x0 < 0.05 * x1) x0 = 0;  // a clock that began a little late
+    if (x0 > 0 && x0 < 0.05 * x1) x0 = 0;  // the clock started slightly late
     if (x0 <= x1) axes = {x0, x1 > x0 ? x1 : x0 + 1, 1};
     axes.y1 = y1 > 0 ? y1 * 1.04 : 1;
     return axes;

@@ -6,7 +6,7 @@
 
 namespace lucarne::viewer {
 
-/// One curve: y over x, x growing.
+/// One curve: y over increasing x.
 struct Curve {
     std::string name;
     std::vector<double> x, y;
@@ -15,18 +15,18 @@ struct Curve {
 struct Plot {
     std::string title, x_label, y_label;
     std::vector<Curve> curves;
-    bool stacked = false;  ///< areas on top of each other instead of lines; the curves share their x
+    bool stacked = false;  ///< draw stacked areas instead of lines; the curves must share their x
 };
 
-/// The plot as an <svg> element that takes its text and grid colours from the page's currentColor. Curves of
-/// many values are drawn by the least and the largest in each of some hundred steps, so that no spike is lost
-/// and the page stays small.
+/// Returns the plot as an <svg> element that takes text and grid colours from the page's currentColor. A
+/// curve with many values is drawn by the least and the largest value in each of some hundred steps, so that
+/// no spike is lost and the page stays small.
 std::string svg_of(const Plot& plot);
 
-/// Ticks at 1, 2 or 5 times a power of ten, `most` of them or fewer, from 0 to at least `largest`.
+/// Returns at most `most` ticks from 0 to at least `largest`; their step is 1, 2 or 5 times a power of ten.
 std::vector<double> ticks_up_to(double largest, size_t most = 6);
 
-/// The text without anything that HTML would take for markup.
+/// Returns the text with HTML's special characters escaped.
 std::string escaped(std::string_view text);
 
 }  // namespace lucarne::viewer

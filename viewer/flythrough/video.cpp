@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kProgram = "ffmpeg";
 constexpr int kLook = 100;           ///< ms between looks at `stop`
-constexpr size_t kMostWords = 4096;  ///< of what ffmpeg says, bytes: the last ones
+constexpr size_t kMostWords = 4096;  ///< bytes of ffmpeg's messages that are kept, the last ones
 
 void close_fd(int& fd) {
     if (fd >= 0) close(fd);
@@ -39,20 +39,20 @@ Result<void> VideoWriter::check(const std::filesystem::path& file, bool overwrit
     if (!program_installed(kProgram))
         return failed(file.string(), "ffmpeg, which makes videos, is not installed",
                       "install it, or write numbered PNG frames instead");
-    // Others may be lists of more files, which would stay where a flight is given up.
+    // Other formats may write several files, which would remain when a flight is cancelled.
     constexpr std::array<std::string_view, 5> kEndings = {".mp4", ".mkv", ".webm", ".mov", ".avi"};
     if (std::ranges::find(kEndings, file.extension().string()) == kEndings.end())
-        return bad_arguments(file.string(), "has no ending that says what kind of video it is",
+        return bad_arguments(file.string(), "has no ending of a supported video format",
                              "name it .mp4, .mkv, .webm, .mov or .avi");
     return check_output(file, overwrite);
 }
 
 std::vector<std::string> VideoWriter::command(const std::filesystem::path& output, ImageSize size,
                                               double rate) {
-    // Players want 4:2:0, and that an even number of pixels: odd sides get one row or column of black.
+    // Players need 4:2:0, which needs an even number of pixels: odd sides get one black row or column.
     return {kProgram,      "-hide_banner",
             "-loglevel",   "error",
-            "-xerror",  // a full disk at the very end would pass for success
+            "-xerror",  // otherwise a full disk at the very end would pass for success
             "-f",          "rawvideo",
             "-pix_fmt",    "rgb24",
             "-video_size", fmt::format("{}x{}", size.width, size.height),
@@ -69,7 +69,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::start(const std::filesystem::p
     LUCARNE_TRY(check(file, overwrite));
     std::unique_ptr<VideoWriter> writer(new VideoWriter(stop));
     writer->file_ = file;
-    // ffmpeg would follow a link that somebody put in its output's place.
+    // A private folder: ffmpeg would follow a link that somebody put in its output's place.
     LUCARNE_ASSIGN(writer->folder_, new_private_folder(file.has_parent_path() ? file.parent_path()
                                                                               : std::filesystem::path(".")));
     writer->part_ = writer->folder_ / file.filename();
@@ -83,7 +83,8 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::start(const std::filesystem::p
     return writer;
 }
 
-/// The frames go through a socket, which can refuse a write to a program that has ended without SIGPIPE.
+/// Starts ffmpeg. Frames go through a socket: writing to a program that has ended is then an error instead of
+/// SIGPIPE.
 Result<void> VideoWriter::launch(double rate) {
     std::array<int, 2> frames{}, words{};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, frames.data()) != 0)
@@ -138,7 +139,7 @@ tl::unexpected<Error> VideoWriter::broken() const {
     return failed(file_.string(), "ffmpeg says: " + said_.substr(begin, end + 1 - begin));
 }
 
-/// Waits that long for words at most, or until they end.
+/// Reads ffmpeg's messages; waits at most `milliseconds` for them.
 void VideoWriter::read_words(int milliseconds) {
     pollfd there{words_, POLLIN, 0};
     if (words_ < 0 || poll(&there, 1, milliseconds) <= 0) return;
@@ -150,7 +151,8 @@ void VideoWriter::read_words(int milliseconds) {
     if (said_.size() > kMostWords) said_.erase(0, said_.size() - kMostWords);
 }
 
-/// Until ffmpeg takes more; what it says meanwhile is kept, or it would wait to be heard.
+/// Waits until ffmpeg accepts more data. Reads its messages meanwhile; otherwise ffmpeg would block on a full
+/// pipe.
 Result<void> VideoWriter::wait_to_write() {
     for (;;) {
         if (stop_) return broken();
@@ -163,21 +165,21 @@ Result<void> VideoWriter::wait_to_write() {
 
 Result<void> VideoWriter::add(const io::Image8& picture) {
     if (picture.width != size_.width || picture.height != size_.height)
-        return failed(file_.string(), "the frames are not all of one size");
+        return failed(file_.string(), "the frames differ in size");
     for (size_t done = 0; done < picture.bytes.size();) {
         LUCARNE_TRY(wait_to_write());
         const ssize_t n =
             send(frames_, picture.bytes.data() + done, picture.bytes.size() - done, MSG_NOSIGNAL);
         if (n > 0) done += static_cast<size_t>(n);
         if (n >= 0 || errno == EAGAIN || errno == EINTR) continue;
-        while (words_ >= 0 && !stop_) read_words(kLook);  // it has ended, or is about to
+        while (words_ >= 0 && !stop_) read_words(kLook);  // ffmpeg has ended, or is about to
         return broken();
     }
     return {};
 }
 
 Result<void> VideoWriter::finish() {
-    close_fd(frames_);  // there are no more
+    close_fd(frames_);  // end of the frames
     int status = 0;
     for (pid_t ended = 0; ended == 0;) {
         if (stop_) return broken();
@@ -185,9 +187,9 @@ Result<void> VideoWriter::finish() {
         ended = waitpid(pid_, &status, WNOHANG);
         if (ended < 0 && errno == EINTR) ended = 0;
         if (ended >= 0) continue;
-        pid_ = -1;  // who ignores SIGCHLD is not told how it ended
+        pid_ = -1;  // if SIGCHLD is ignored, the exit status is unknown
         return failed(file_.string(),
-                      "how ffmpeg ended is not known: " + std::generic_category().message(errno));
+                      "ffmpeg's exit status is unknown: " + std::generic_category().message(errno));
     }
     pid_ = -1;
     for (size_t before = said_.size() + 1; words_ >= 0 && said_.size() != before;) {
@@ -195,7 +197,7 @@ Result<void> VideoWriter::finish() {
         read_words(0);
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return broken();
-    LUCARNE_TRY(check_output(file_, overwrite_));  // it may have come meanwhile
+    LUCARNE_TRY(check_output(file_, overwrite_));  // the file may have been created meanwhile
     LUCARNE_TRY(file_io::name_written(part_, file_));
     remove_folder();
     return {};

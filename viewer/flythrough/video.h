@@ -11,28 +11,29 @@
 
 namespace lucarne::viewer {
 
-/// A video that ffmpeg makes of pictures, where that program is installed: it is started without a shell and
-/// reads raw frames from its standard input. Which kind of video follows from the name's ending.
+/// Writes pictures as a video by ffmpeg, which must be installed. ffmpeg is started without a shell and reads
+/// raw frames from its standard input. The file name's extension determines the video format.
 class VideoWriter {
  public:
-    /// Before long work: whether a video can be written there. Errors: ffmpeg is not installed; the name is
-    /// taken; frames of this size are none.
+    /// Checks before long work whether the video can be written. Errors: ffmpeg is not installed; the file
+    /// exists; the extension is not supported.
     static Result<void> check(const std::filesystem::path& file, bool overwrite);
-    /// The program and its arguments.
+    /// Returns the program and its arguments.
     static std::vector<std::string> command(const std::filesystem::path& output, ImageSize size, double rate);
 
-    /// `rate`: frames a second. Once `stop` is set, whatever waits for ffmpeg ends with an error.
+    /// Starts ffmpeg. `rate`: frames a second. Once `stop` is set, functions that wait for ffmpeg return an
+    /// error.
     static Result<std::unique_ptr<VideoWriter>> start(const std::filesystem::path& file, ImageSize size,
                                                       double rate, bool overwrite,
                                                       const std::atomic<bool>& stop);
-    /// Unless finish() went well, ffmpeg is ended and nothing is left of the file.
+    /// Unless finish() succeeded, ends ffmpeg and removes the unfinished file.
     ~VideoWriter();
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
 
-    /// Errors: ffmpeg has ended, with what it said last; a picture of another size.
+    /// Adds a frame. Errors: ffmpeg has ended (with its last messages); the picture has another size.
     Result<void> add(const io::Image8& picture);
-    /// Waits until ffmpeg is done and gives the file its name.
+    /// Waits until ffmpeg is done and gives the file its final name.
     Result<void> finish();
 
  private:
@@ -44,10 +45,10 @@ class VideoWriter {
     tl::unexpected<Error> broken() const;
 
     const std::atomic<bool>& stop_;
-    std::filesystem::path file_, folder_, part_;  ///< the video; where ffmpeg writes it until it is whole
+    std::filesystem::path file_, folder_, part_;  ///< the video; its private folder and unfinished file
     ImageSize size_;
     bool overwrite_ = false;
-    int pid_ = -1, frames_ = -1, words_ = -1;  ///< process; its standard input and its error output
+    int pid_ = -1, frames_ = -1, words_ = -1;  ///< ffmpeg's process id, standard input and error output
     std::string said_;
 };
 

@@ -8,15 +8,15 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr size_t kRemembered = 24;           ///< frames: what changed is learned anew in half as many
-constexpr double kLeastSpread = .1;          ///< of a cut's points, between two frames whose slope counts
-constexpr double kLeastView = 1.0 / 16;      ///< of the view's points with room for all
-constexpr double kFall = 0.4, kRise = 1.25;  ///< most change of the view's points from frame to frame
-constexpr double kCalm = 0.04;  ///< smaller changes are left alone: cuts that hold still are not sent again
-constexpr double kWholeEnough = 0.8;  ///< of the cuts: while more is on its way, what is drawn says little
-constexpr int kPatience = 8;          ///< frames before the lights' cuts change
+constexpr size_t kRemembered = 24;       ///< frames that are remembered; changes are learned in half as many
+constexpr double kLeastSpread = .1;      ///< relative difference of a cut's points needed for a slope
+constexpr double kLeastView = 1.0 / 16;  ///< least share of the largest view's points
+constexpr double kFall = 0.4, kRise = 1.25;  ///< limits of the view's change from frame to frame
+constexpr double kCalm = 0.04;        ///< smaller changes are ignored: unchanged cuts are not sent again
+constexpr double kWholeEnough = 0.8;  ///< least complete share of the cuts of a representative frame
+constexpr int kPatience = 8;          ///< consecutive frames needed before the lights' budgets change
 constexpr int kMostHalvings = 4;
-constexpr double kSpare = 0.6;  ///< of the target: under it the lights' cuts may grow
+constexpr double kSpare = 0.6;  ///< share of the target below which the lights' budgets may grow
 
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -49,7 +49,7 @@ void CostModel::observe(const FrameStats& frame) {
     }
     seconds["rest"] = std::max(rest, 0.0);
     for (const auto& [name, samples] : passes_)
-        seconds.try_emplace(name, 0.0);  // a pass left out costs nothing
+        seconds.try_emplace(name, 0.0);  // a missing pass costs nothing
     for (const auto& [name, value] : seconds) {
         auto& samples = passes_[name];
         samples.push_back({points, value});
@@ -70,10 +70,10 @@ CostModel::Line CostModel::of_pass(const std::deque<Sample>& samples) {
                 if (std::abs(to - from) <= kLeastSpread * std::max(from, to)) continue;
                 slopes.push_back((samples[b].seconds - samples[a].seconds) / (to - from));
             }
-        // A few pairs may all share one disturbed frame.
+        // With few pairs, all may contain the same disturbed frame.
         if (slopes.size() < 3 * samples.size()) continue;
         any_spread = true;
-        const double slope = std::max(median(slopes), 0.0);  // more points never cost less
+        const double slope = std::max(median(slopes), 0.0);  // more points never cost less time
         for (const Sample& s : samples) fixed.push_back(s.seconds - slope * s.points[cut]);
         const double intercept = std::max(median(fixed), 0.0);
         for (const Sample& s : samples)
@@ -123,7 +123,7 @@ void FrameBudget::observe(const FrameStats& frame, ImageSize size) {
                            : others <= target_ ? std::numeric_limits<double>::infinity()
                                                : 0.0;
     const double least = most_seen_ * kLeastView;
-    // What is drawn may be less than the budget: nodes are on their way, or the view needs no more.
+    // Fewer points may be drawn than the budget allows: nodes are on their way, or the view needs no more.
     const double next =
         std::max(least, std::clamp(allowed, drawn_[0] * kFall, std::max(drawn_[0], view_) * kRise));
     const bool held_down = view_ > 0 || allowed < drawn_[0];

@@ -11,26 +11,26 @@
 
 namespace lucarne::viewer {
 
-/// Points that cuts draw: the view's, the lights' views', the light cut's.
+/// Points drawn by the view cut, the lights' view cuts and the light cut.
 using CutPoints = std::array<double, 3>;
 
-/// What a frame costs, learned from the last ones, pass by pass: the seconds of a pass are a line over the
-/// points of whichever cut explains them best. The lines are those of Theil (1950) and Sen (1968), medians of
-/// the slopes of all pairs: up to a quarter of the frames may be disturbed in any way.
+/// A model of a frame's cost, learned from the last frames, pass by pass. The seconds of a pass are a line
+/// over the points of the cut that explains them best. The lines are medians of the slopes of all pairs
+/// (Theil 1950, Sen 1968), so up to a quarter of the frames may be disturbed in any way.
 class CostModel {
  public:
     void observe(const FrameStats& frame);
-    void forget();  ///< another size, engine or setting
+    void forget();  ///< call for another size, engine or setting
 
-    /// Seconds = fixed + per_point . points. Empty before the first frame. Where a cut has always been of one
-    /// size nothing is known of what its points cost; where all have, the view's count in proportion, which
-    /// leads to the target as well, in more steps.
+    /// The model: seconds = fixed + dot(per_point, points). If a cut has always had the same size, the cost
+    /// of its points is unknown (0). If all cuts have, the time is taken as proportional to the view's
+    /// points, which also reaches the target, in more steps.
     struct Line {
         double fixed = 0;
         CutPoints per_point{};
         double at(const CutPoints& points) const;
     };
-    std::optional<Line> line() const;
+    std::optional<Line> line() const;  ///< empty before the first frame
 
  private:
     struct Sample {
@@ -43,17 +43,17 @@ class CostModel {
     std::map<std::string, std::deque<Sample>, std::less<>> passes_;
 };
 
-/// Budgets that hold frames to a time. The view cut follows it from frame to frame; the lights' cuts, whose
-/// change makes an engine light everything anew, go down by halves only where the view's least is still too
-/// slow, and up again where there is time to spare.
+/// Chooses budgets that keep frames to a target time. The view's budget changes from frame to frame. A change
+/// of the lights' cuts makes an engine light everything again; so their budgets are halved only if the least
+/// view is still too slow, and doubled again when there is time to spare.
 class FrameBudget {
  public:
     /// `target`: seconds a frame.
     explicit FrameBudget(double target) : target_(target) {}
-    /// A frame of a motion, drawn under budgets().
+    /// Observes a frame of a motion that was drawn with budgets().
     void observe(const FrameStats& frame, ImageSize size);
     void forget();
-    /// At most `full`, each.
+    /// Returns budgets of at most `full`.
     CutBudgets budgets(const CutBudgets& full) const;
     double target() const { return target_; }
 

@@ -16,9 +16,8 @@ namespace {
 constexpr double kFocusCells = 48;  // the light cut's focus moves in steps of 1/48 of the extent
 constexpr int kStepsPerOctave = 64, kMostSteps = 20 * kStepsPerOctave;
 
-// Parts of the room that cuts keep to with those chosen before them. What the lights see comes first: where
-// it is coarse, the outlines of what stands before a lamp are as wide as its discs, and hide light that all
-// bounces miss.
+// Shares of the room for a cut together with the cuts chosen before it. The lights' views come first: if they
+// are coarse, large discs of surfaces near a lamp block too much light, which all bounces then lack.
 constexpr double kLightViewRoom = 0.5, kLightRoom = 0.7;
 
 uint64_t at_step(uint64_t points, int step) {
@@ -35,9 +34,9 @@ bool fits(const CutPurpose& purpose, const CutSet& cuts, const CutRoom& room) {
     return bytes <= room.bytes;
 }
 
-/// The least step from 1 on that fits, kMostSteps if none does. More points never leave out a node, so there
-/// is one: it lies between `beyond`, which does not fit, and `within`. Both are looked for from `guess` on,
-/// with ever longer strides, and then halved.
+/// Returns the least step (at least 1) that fits, or kMostSteps if none does. The search is valid because a
+/// cut with more points contains all nodes of a smaller one. It brackets the step between `beyond`, which
+/// does not fit, and `within`, with growing strides from `guess`, and then bisects.
 int least_step(int guess, const std::function<bool(int)>& fits_at) {
     int beyond = 0, within = kMostSteps;
     const auto narrow = [&](int step) { (fits_at(step) ? within : beyond) = step; };
@@ -70,7 +69,7 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
         return light_view_cut(purpose.source, purpose.lights[i], purpose.light_resolution,
                               points.value_or(budgets.light_view));
     };
-    // The focus moves in steps, so that bounced light does not shimmer while the camera glides.
+    // The focus moves in steps, so that bounced light does not shimmer while the camera moves.
     const auto& root = purpose.source.header().root;
     const double cell = std::max(purpose.extent, root.size * 1e-6) / kFocusCells;
     const glm::dvec3 focus = root.min + glm::floor((purpose.camera.position - root.min) / cell + 0.5) * cell;
@@ -94,7 +93,7 @@ CutSet CutChooser::choose(const CutPurpose& purpose, const CutRoom& room) {
     whole.share = 1;
     if (fits(purpose, whole, room)) return whole;
 
-    // Makes some of the cuts as they are, then at ever smaller shares of their points, until they fit.
+    // Makes some of the cuts at full size, then with fewer and fewer points until they fit.
     CutSet cuts;
     const auto choose = [&](double part, int& step, std::span<octree::Cut> chosen,
                             std::span<const octree::Cut> wanted, const auto& make) {

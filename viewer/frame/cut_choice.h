@@ -14,14 +14,14 @@ namespace lucarne::viewer {
 /// The cuts of a frame.
 struct CutSet {
     octree::Cut view, light;
-    std::vector<octree::Cut> light_views;  ///< one a light
-    double share = 1;                      ///< of the points that they would take with room for all
+    std::vector<octree::Cut> light_views;  ///< one for each light
+    double share = 1;  ///< share of the points that the cuts would have without a limit of room
 
     std::vector<const octree::Cut*> all() const;
     uint64_t points() const;
 };
 
-/// What they are chosen for.
+/// Inputs of a cut selection.
 struct CutPurpose {
     const octree::NodeSource& source;
     const gi::SceneCamera& camera;
@@ -29,28 +29,28 @@ struct CutPurpose {
     const std::vector<gi::SceneLight>& lights;
     uint32_t light_resolution;
     CutBudgets budgets;
-    double extent;  ///< of what is looked at, without far strays (octree/tree/bulk.h); world units
-    const gi::Clip* clip = nullptr;  ///< cubes that it leaves nothing of are not for the eye; none: all are
+    double extent;  ///< extent of the scan without far outliers (octree/tree/bulk.h); world units
+    const gi::Clip* clip = nullptr;  ///< the view cut leaves out fully clipped nodes; null: no clip
 };
 
-/// What may be held of the nodes of all cuts together.
+/// Limit on the memory of the nodes of all cuts together.
 struct CutRoom {
     uint64_t bytes;
-    std::function<uint64_t(const octree::NodeInfo&)> cost;  ///< of a node, whole
+    std::function<uint64_t(const octree::NodeInfo&)> cost;  ///< bytes of a complete node
 };
 
-/// Chooses the cuts of one frame after another, so that together they fit the room: nothing that is chosen
-/// has to be refused, which would take whole nodes from the picture at once. Where they do not fit, the
-/// lights' views get the share of the points that they would take without a limit that fits half of the room,
-/// then the light cut what fits .7 of it beside them, then the view cut what is left, in steps of 1 %. So
-/// light does not follow the view: while the camera glides, its cuts hold. The same cuts for the same purpose
-/// and room, whatever was chosen before.
+/// Chooses the cuts of successive frames so that together they fit the room. Then no chosen node has to be
+/// refused; refused nodes would be missing in the picture. If the unlimited cuts do not fit, their numbers of
+/// points are reduced in steps of 1 %: first the lights' views until they fit half of the room, then the
+/// light cut until both fit .7 of it, then the view cut until all fit. So the lights' cuts do not depend on
+/// the view and stay the same while the camera moves. The result depends only on the purpose and the room,
+/// not on earlier choices.
 class CutChooser {
  public:
     CutSet choose(const CutPurpose& purpose, const CutRoom& room);
 
  private:
-    // The last frame's steps below what was wanted; the next are looked for around them.
+    // The last frame's reductions, in steps. The search for the next ones starts there.
     int light_view_step_ = 1, light_step_ = 1, view_step_ = 1;
 };
 

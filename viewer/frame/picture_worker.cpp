@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kPickRadius = 4;  ///< pixels
 
-/// What the pipeline was last told, so that only changes are handed on: each starts its average again.
+/// The settings that the pipeline has, so that only changes are passed on: each change starts the average
+/// again.
 struct Told {
     uint64_t request = 0;
     std::string engine;
@@ -28,25 +29,25 @@ struct PictureWorker::State {
     std::shared_ptr<const PictureRequest> wanted;
     uint64_t wanted_number = 0;
     std::optional<std::shared_ptr<const octree::NodeSource>>
-        next_source;  ///< to be drawn from instead; or nothing
+        next_source;  ///< the source to draw next (may be null), if set_source() was called
     std::shared_ptr<const Picture> latest;
     Result<void> error;
-    std::optional<Error> lost;  ///< the device is; nothing is made until there is another
+    std::optional<Error> lost;  ///< why the device was lost; no pictures are made until there is another
     std::optional<WorkerDevice> next_device;
     gi::DeviceInfo device;
     bool stop = false;
     std::function<void()> published;
     std::thread thread;
 
-    // Of the worker's thread:
+    // Used only by the worker's thread:
     PipelineOptions options;
-    std::unique_ptr<Pipeline> pipeline;  ///< none without a source
+    std::unique_ptr<Pipeline> pipeline;  ///< null without a source
     std::shared_ptr<const octree::NodeSource> shown;
-    std::shared_ptr<const octree::NodeSource> last_source;  ///< to be shown, also where that failed
+    std::shared_ptr<const octree::NodeSource> last_source;  ///< the newest source, even if setting it failed
     Told told;
     uint64_t pictures_made = 0;
 
-    std::optional<std::promise<Result<void>>> started;  ///< until there has been a device
+    std::optional<std::promise<Result<void>>> started;  ///< set until the first device has been made
 
     void work(WorkerDevice device_of);
     Result<void> work_with(const WorkerDevice& device_of);
@@ -63,7 +64,7 @@ Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& 
     if (told.request == number) return {};
     if (told.shader_version != request.shader_version) {
         device.reload_shaders();
-        told.engine.clear();  // set anew, which begins the average again
+        told.engine.clear();  // sets the engine again, which starts the average again
     }
     told.shader_version = request.shader_version;
     if (told.scene_version != request.scene_version) LUCARNE_TRY(pipeline.set_scene(request.scene));
@@ -126,7 +127,7 @@ std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
     const auto wide = [](const glm::vec4& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
     const glm::dvec3 across = wide(camera.right) * u - wide(camera.up) * v;
     const double along = depth[static_cast<size_t>(best->y) * size.width + best->x];
-    // Each ray of an orthographic view begins there, each of a pinhole ends there at a depth of 1.
+    // `across` is where an orthographic ray starts, or where a perspective ray is at a depth of 1.
     const double apart = camera.projection == gi::kOrthographic ? 1 : along;
     const glm::dvec3 offset = wide(camera.forward) * along + across * apart;
     return local_origin + (wide(camera.origin) + offset) / metres_per_unit;
@@ -145,7 +146,7 @@ void PictureWorker::State::publish(Result<std::shared_ptr<Picture>> made, uint64
     published();
 }
 
-/// Another source, or none, in place of what is drawn from.
+/// Draws from another source from now on, or from none.
 Result<void> PictureWorker::State::take_source(gi::Device& gl,
                                                std::shared_ptr<const octree::NodeSource> other) {
     const std::shared_ptr<const octree::NodeSource> source = std::exchange(shown, nullptr);
@@ -157,7 +158,7 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
     }
     if (pipeline) {
         if (auto taken = pipeline->set_source(other); !taken) {
-            pipeline.reset();  // which may have let go of parts by then
+            pipeline.reset();  // the pipeline may have lost parts of its state by then
             return taken;
         }
     } else {
@@ -168,11 +169,11 @@ Result<void> PictureWorker::State::take_source(gi::Device& gl,
     return {};
 }
 
-/// Until it is told to stop, or the device is lost (an error).
+/// Makes pictures until the worker is stopped, or the device is lost (an error).
 Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
     uint64_t made_of = 0;
     bool again = false;
-    log::Operation warnings;  // of one source
+    log::Operation warnings;  // the warnings of one source
     for (;;) {
         std::shared_ptr<const PictureRequest> request;
         uint64_t request_number = 0;
@@ -208,7 +209,7 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
     }
 }
 
-/// One device's life. Errors: it is lost, or cannot be made.
+/// Makes a device and works with it. Errors: the device is lost, or cannot be made.
 Result<void> PictureWorker::State::work_with(const WorkerDevice& device_of) {
     Result<void> ended;
     {
@@ -219,13 +220,13 @@ Result<void> PictureWorker::State::work_with(const WorkerDevice& device_of) {
             std::exchange(started, std::nullopt)->set_value({});
         }
         if (ended) ended = guarded("pictures", [&] { return make_pictures(**gl); });
-        pipeline.reset();  // before its device
+        pipeline.reset();  // destroyed before its device
     }
     device_of.release();
     return ended;
 }
 
-/// Waits for it; none: the worker has to stop.
+/// Waits for another device. Returns nothing if the worker has to stop.
 std::optional<WorkerDevice> PictureWorker::State::another_device(Error why) {
     {
         const std::lock_guard lock(mutex);

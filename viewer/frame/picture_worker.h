@@ -15,78 +15,80 @@ namespace lucarne::viewer {
 
 inline constexpr uint32_t kMostAccumulated = 256;  ///< pictures in an average
 
-/// What a picture is wanted of.
+/// A request for pictures.
 struct PictureRequest {
     FrameRequest frame;
     std::string engine;
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
-    uint64_t scene_version = 0;            ///< another number: the scene is another
-    uint64_t shader_version = 0;           ///< another number: shader files are read again
-    bool moving = false;                   ///< one picture does: the next request is on its way
-    uint32_t pictures = kMostAccumulated;  ///< averaged at rest, before the worker rests too
+    uint64_t scene_version = 0;            ///< changes when the scene changes
+    uint64_t shader_version = 0;           ///< changes when the shader files are to be read again
+    bool moving = false;                   ///< one picture is enough, since the next request will follow
+    uint32_t pictures = kMostAccumulated;  ///< number to average at rest; then the worker sleeps
 };
 
 /// A finished picture, on the host.
 struct Picture {
     uint64_t number = 0;   ///< 1 for the first that the worker made
-    uint64_t request = 0;  ///< the request it is of
+    uint64_t request = 0;  ///< number of its request
     std::shared_ptr<const octree::NodeSource> source;
     bool moving = false;
     ImageSize size;
     std::vector<std::byte> rgba;  ///< row 0 on top
     std::vector<float> depth;     ///< m along the camera's forward axis; 0: nothing
-    std::vector<uint32_t> ids;    ///< of the surfels that are seen, gi::kNoSurfel where nothing is
-    std::shared_ptr<const gi::CutPoints> points;  ///< which points of the source they are
+    std::vector<uint32_t> ids;    ///< ids of the visible surfels, gi::kNoSurfel where there is none
+    std::shared_ptr<const gi::CutPoints> points;  ///< maps the ids to points of the source
     gi::CameraView camera{};
     glm::dvec3 local_origin{0.0};
     double metres_per_unit = 1, exposure_ev = 0;
     FrameStats stats;
-    gi::ShownValues values;      ///< what the colours stand for
+    gi::ShownValues values;      ///< meaning of the colours, for legends
     uint64_t device_memory = 0;  ///< bytes of the device's buffers
     std::string shader_problem;  ///< gi::Device::shader_problem()
 
-    /// The world point seen at a place, shares of the width and height from the top left; the nearest within
-    /// a few pixels where the place itself is empty.
+    /// Returns the visible world point at a place (shares of the width and height from the top left). If
+    /// nothing is visible there, returns the nearest one within a few pixels.
     std::optional<glm::dvec3> pick(const glm::dvec2& place) const;
 };
 
-/// The device a worker draws with; both are called on its thread, `release` also where `make` failed.
+/// Makes and releases a worker's device. Both functions are called on the worker's thread, `release` also if
+/// `make` failed.
 struct WorkerDevice {
     std::function<Result<std::unique_ptr<gi::Device>>()> make;
     std::function<void()> release;
 };
 
-/// A thread that owns device and pipeline and makes pictures of the newest request, so that the window
-/// answers at once however long a picture takes. It goes on making pictures of the same request while nodes
-/// are on their way or samples are being averaged, and then rests.
+/// A thread that owns a device and a pipeline and makes pictures of the newest request, so that the window
+/// responds at once however long a picture takes. It repeats the same request while nodes are on their way or
+/// pictures are being averaged, and then sleeps.
 class PictureWorker {
  public:
-    /// `published` is called on the worker's thread after each picture, each error and a loss of the device.
-    /// Without a `source` there is nothing to make pictures of yet. Errors: no device.
+    /// Starts the worker. `published` is called on the worker's thread after each picture, each error and
+    /// each loss of the device. `source` may be null; then no pictures are made until set_source(). Errors:
+    /// no device.
     static Result<std::unique_ptr<PictureWorker>> start(WorkerDevice device,
                                                         std::shared_ptr<const octree::NodeSource> source,
                                                         const PipelineOptions& options,
                                                         std::function<void()> published);
-    ~PictureWorker();  ///< after the picture being made
+    ~PictureWorker();  ///< waits for the current picture
     PictureWorker(const PictureWorker&) = delete;
     PictureWorker& operator=(const PictureWorker&) = delete;
 
-    /// Replaces the request before; returns its number.
+    /// Replaces the previous request. Returns the new request's number.
     uint64_t request(PictureRequest request);
-    /// Pictures are of this source from the next one on; null: there are none until there is another.
+    /// Sets the source of the next pictures. Null: no pictures until there is another source.
     void set_source(std::shared_ptr<const octree::NodeSource> source);
-    std::shared_ptr<const Picture> latest() const;  ///< null before the first, and without a source
-    /// The newest request's error, if making its picture failed; it is not tried again.
+    std::shared_ptr<const Picture> latest() const;  ///< null before the first picture, and without a source
+    /// Returns the error if making the newest request's picture failed. It is not tried again.
     Result<void> error() const;
-    /// Why the device was lost, while the worker waits for another: device, pipeline and all they held are
-    /// gone by then, sources and the request are not. The last picture stays.
+    /// Returns why the device was lost, while the worker waits for a new one. Device and pipeline have been
+    /// destroyed by then; the source, the request and the last picture stay.
     std::optional<Error> lost_device() const;
-    /// In place of the lost one: the worker goes on with it where it was. If it cannot be made it counts as
-    /// lost.
+    /// Replaces a lost device; the worker continues with the same request. A device that cannot be made
+    /// counts as lost.
     void set_device(WorkerDevice device);
-    const gi::DeviceInfo& device() const;  ///< of the first
+    const gi::DeviceInfo& device() const;  ///< information about the first device
 
  private:
     PictureWorker();

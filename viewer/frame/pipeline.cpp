@@ -29,14 +29,15 @@ namespace {
 
 using octree::ResidencyEvent;
 
-// A frame that does not wait takes nodes in for so long, s: a hundred nodes or so, packed on their way.
+// Time in which a frame without `wait` accepts arrived nodes, s: enough for about a hundred nodes, which the
+// loading threads have packed.
 constexpr double kLoadingTime = 0.002;
-constexpr size_t kNodesAtOnce = 8;  // between looks at the clock
-constexpr double kAhead = 0.5;      // s of the camera's way that are loaded ahead
-// Of the device's memory for surfels; the light cut's are held a second time by the shadow maps, and pictures
-// and maps take the rest.
+constexpr size_t kNodesAtOnce = 8;  // nodes accepted between two looks at the clock
+constexpr double kAhead = 0.5;      // s of the camera's motion that are loaded ahead
+// Share of the device's memory for surfels. The shadow maps hold the light cut's surfels a second time;
+// pictures and maps take the rest.
 constexpr double kPoolShare = 0.375;
-constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // some nodes of usual size
+constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // enough for some nodes of usual size
 
 uint64_t pages(uint64_t surfels) {
     constexpr uint64_t kPage = gi::SurfelPool::kPageSurfels;
@@ -59,7 +60,7 @@ bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector
     });
 }
 
-/// Whether nothing but the showing of what is lit differs: exposure, curve, borders, cameras.
+/// Returns whether two scenes differ only in how light is shown: exposure, tone curve, borders, cameras.
 bool same_light(const gi::Scene& a, const gi::Scene& b) {
     const auto other = [](const gi::Scene& s) { return s.comparison ? s.comparison->engine : std::string(); };
     return a.lights == b.lights && a.materials == b.materials && a.background == b.background &&
@@ -94,59 +95,59 @@ struct Pipeline::State {
 
     gi::Device& device;
     std::shared_ptr<const octree::NodeSource> source;
-    std::array<glm::dvec3, 2> bulk;  ///< of the source
+    std::array<glm::dvec3, 2> bulk;  ///< robust bounds of the source, without far outliers
     PipelineOptions options;
     gi::PassTimes times;
 
     std::shared_ptr<SurfelPreparation> preparation;
     std::unique_ptr<octree::Residency> residency;
-    bool repack = true;  // what the surfels hold of scene and look has changed
+    bool repack = true;  // the surfels' part of scene or look (materials, colours) has changed
     gi::ShownValues values;
-    std::optional<gi::BakedLight> baked;  ///< of the source, once it was asked for
+    std::optional<gi::BakedLight> baked;  ///< of the source, once it was needed
     gi::SurfelPool pool;
     uint64_t bytes_loaded = 0;
-    std::string lost_node;  // why the first of the source that could not be read could not
+    std::string lost_node;  // why the first unreadable node of the source cannot be read
 
     CutChooser chooser;
     CutSet chosen;
     octree::Motion motion;
-    std::vector<octree::Cut> ahead;  // view cuts of where the camera will be
-    // What of them stands on the device.
+    std::vector<octree::Cut> ahead;  // view cuts for the camera's future positions
+    // The resident parts of the cuts on the device.
     gi::DeviceCut view, light_cut;
     std::vector<gi::DeviceCut> light_views;
     LocalFrame local;
-    bool cuts_stale = true;  // the device's cuts differ from what is chosen and resident
+    bool cuts_stale = true;  // the device's cuts differ from the chosen and resident nodes
 
-    std::unique_ptr<gi::Engine> engine, other;  ///< the picture's own; what it is compared with, or none
+    std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
-    bool fresh = false;  // the source has taken another's place, and nothing of it has been drawn yet
-    // Scene, settings, budgets or engine: cuts are chosen anew, the average starts again.
+    bool fresh = false;  // the source is new, and nothing of it has been drawn yet
+    // Scene, settings, budgets or engine have changed: cuts are chosen again, and the average starts again.
     bool changed = true;
 
     FrameRequest last;
-    double last_seconds = 0;  // that the last frame took
+    double last_seconds = 0;  // duration of the last frame
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
     Presentation presentation;
 };
 
-/// What the caps allow, and no more than the whole cloud.
+/// Returns the size of the pool: what the caps allow, but at most the whole cloud.
 uint64_t Pipeline::State::pool_surfels() const {
     uint64_t whole = 0, largest = 0;
     for (const octree::NodeInfo& node : source->nodes()) {
         whole += pool_bytes(node.count);
         largest = std::max(largest, pool_bytes(node.count));
     }
-    // Nodes that come in other colours find room before the old ones go.
+    // Room for recoloured nodes that arrive before the old ones are freed.
     whole += (options.load_threads + 1) * largest;
     const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(options.device_memory));
     const uint64_t bytes = std::min({whole, share, device.info().max_texel_bytes});
     return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
 }
 
-/// Of the parts' records, bytes.
+/// Returns the least size of a record among the parts, bytes.
 uint64_t Pipeline::State::least_stride() const {
     uint64_t least = source->header().schema.stride;
     for (const uint32_t root : source->roots())
@@ -182,8 +183,9 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     return {};
 }
 
-/// Begins with nothing resident. What fits the stream's cap fits the pool, because a node costs its pages in
-/// both. A node on its way is held as records and, at most all that were polled, packed.
+/// Starts the stream with nothing resident. What fits the stream's cap also fits the pool, because a node
+/// costs the same pages in both. A node on its way is held as records, and as packed surfels for at most all
+/// nodes that were polled.
 void Pipeline::State::start_stream() {
     empty_pool();
     octree::ResidencyOptions how;
@@ -202,8 +204,8 @@ void Pipeline::State::start_stream() {
     cuts_stale = true;
 }
 
-/// Materials and colours are packed into the surfels: all that are held come again, one by one, while the old
-/// ones are shown.
+/// Loads all resident nodes again for new materials or colours, which are packed into the surfels. Nodes are
+/// replaced one by one while the old ones are drawn.
 Result<void> Pipeline::State::colour_anew() {
     repack = false;
     values = gi::measured_values(*source, scene.look);
@@ -235,7 +237,7 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
     cuts_stale = true;
 }
 
-/// What the camera will see if it goes on as it does.
+/// Chooses cuts for what the camera will see if it continues its motion.
 void Pipeline::State::look_ahead(const FrameRequest& request) {
     ahead.clear();
     if (request.wait || !request.moving || !options.prefetch) return motion.forget();
@@ -246,7 +248,7 @@ void Pipeline::State::look_ahead(const FrameRequest& request) {
             ahead.push_back(octree::view_cut(*source, *view_there, budgets.view, budgets.pixel_spacing));
 }
 
-/// Sends what the stream reports to the device.
+/// Applies the stream's events to the device.
 Result<void> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
     for (const ResidencyEvent& event : events) {
         cuts_stale = true;
@@ -259,7 +261,7 @@ Result<void> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
     return {};
 }
 
-/// What has arrived, all of it with `wait`.
+/// Accepts arrived nodes; with `wait` all of them.
 Result<void> Pipeline::State::take_arrivals(bool wait) {
     const auto start = std::chrono::steady_clock::now();
     for (;;) {
@@ -270,7 +272,7 @@ Result<void> Pipeline::State::take_arrivals(bool wait) {
     }
 }
 
-/// Brings the pool closer to the chosen cuts, or with `wait` as close as the caps allow.
+/// Loads nodes of the chosen cuts; with `wait` as many as the caps allow.
 Result<void> Pipeline::State::stream(const FrameRequest& request) {
     const bool wait = request.wait || fresh;
     std::vector<const octree::Cut*> later;
@@ -307,7 +309,7 @@ Result<void> Pipeline::State::build_cuts() {
     return {};
 }
 
-/// G-buffer and light.
+/// Draws the G-buffer and lights it.
 Result<void> Pipeline::State::draw(const FrameRequest& request) {
     times.begin("G-buffer");
     const gi::PointSize size{static_cast<float>(scene.look.point_size),
@@ -367,7 +369,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     return {};
 }
 
-/// Gives a quarter of the pool back to the device; false when little is left of it.
+/// Frees a quarter of the pool. Returns false if little of it is left.
 bool Pipeline::State::shrink_pool() {
     const uint64_t capacity = uint64_t{pool.capacity()} * 3 / 4;
     if (capacity < pool_surfels() / 16 + gi::SurfelPool::kPageSurfels) return false;
@@ -388,7 +390,7 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.wanted_points = chosen.points();
     for (const auto& cut : light_views) result.light_view_points += cut.surfels();
     result.ready_points = result.view_points + result.light_points + result.light_view_points;
-    // Clipped nodes are as complete as can be.
+    // Clipped nodes count as drawn.
     result.ready_points += uint64_t{view.clipped()} + light_cut.clipped();
     for (const auto& cut : light_views) result.ready_points += cut.clipped();
     result.bytes_loaded = bytes_loaded;
@@ -420,7 +422,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     State& state = *pipeline->state_;
     device.set_memory_cap(options.device_memory);
     LUCARNE_TRY(state.take_source(std::move(source)));
-    state.fresh = false;  // there is no picture yet that half of one would spoil
+    state.fresh = false;  // there is no earlier picture that an incomplete one would replace
     state.scene = gi::default_scene(state.bulk[0], state.bulk[1], state.source->header().metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
@@ -503,7 +505,7 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
         LUCARNE_ASSIGN(state_->other, gi::make_engine(scene.comparison->engine));
         state_->changed = true;
     }
-    // Which material and colour a point has is packed into its surfel.
+    // A point's material and colour are packed into its surfel.
     state_->repack |= !same_assignments(scene.materials, state_->scene.materials) ||
                       !gi::same_colours(scene.look, state_->scene.look) ||
                       scene.albedo.flatten != state_->scene.albedo.flatten;
@@ -526,7 +528,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     state.look_ahead(request);
     state.times.end();
     for (auto made = state.make_picture(request); !made; made = state.make_picture(request)) {
-        // Pictures and maps may need more than what is beside the pool.
+        // Pictures and maps may need more memory than the pool leaves.
         if (!state.device.take_refusal() || !state.shrink_pool()) return tl::make_unexpected(made.error());
         state.choose_cuts(request);
     }

@@ -7,7 +7,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// The scene's materials in a part's own terms.
+/// Returns the scene with materials for one part: boxes and scans in the part's own terms.
 gi::Scene scene_of_part(const gi::Scene& scene, const octree::SourcePart& part) {
     gi::Scene own;
     own.materials = scene.materials;
@@ -62,7 +62,7 @@ octree::NodeData SurfelPreparation::pack(uint32_t node, octree::NodeData&& data)
 }
 
 std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data) {
-    // The vector's memory is aligned for any type, and its bytes are surfels.
+    // The vector's memory is suitably aligned, and pack() has written surfels into it.
     return {reinterpret_cast<const gi::PackedSurfel*>(data.records.data()),
             data.records.size() / sizeof(gi::PackedSurfel)};
 }

@@ -14,16 +14,16 @@
 
 namespace lucarne::viewer {
 
-/// Packs nodes into surfels on the loading threads, by each part's own schema and unit.
+/// Packs nodes into surfels on the loading threads, with the schema and unit of each part.
 class SurfelPreparation {
  public:
-    /// `scene` says which materials and colours points have; its boxes, scans and elevations are of the whole
-    /// source.
+    /// `scene` determines the materials and colours of points. Its boxes, scans and elevations refer to the
+    /// whole source.
     SurfelPreparation(std::shared_ptr<const octree::NodeSource> source, const gi::Scene& scene);
-    /// For nodes from now on. Thread-safe.
-    /// `baked` is divided out of the colours, as far as the scene's albedo asks; or none.
+    /// Sets the scene for further nodes. Thread-safe. `baked` is the light to divide out of the colours, as
+    /// far as the scene's albedo requests it; null: none.
     void set_scene(const gi::Scene& scene, const gi::BakedLight* baked = nullptr);
-    /// For octree::ResidencyOptions::prepare. Thread-safe.
+    /// Packs a node; for octree::ResidencyOptions::prepare. Thread-safe.
     octree::NodeData pack(uint32_t node, octree::NodeData&& data) const;
 
  private:
@@ -36,7 +36,7 @@ class SurfelPreparation {
     std::shared_ptr<const std::vector<OfPart>> parts_;
 };
 
-/// What it made of a node.
+/// Returns the surfels of a packed node.
 std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data);
 
 }  // namespace lucarne::viewer

@@ -13,7 +13,7 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     ++accumulated_;
     averaged_ = average;
     if (averaged_) LUCARNE_TRY(add_to_average(own_, pixels));
-    exposure_ev_ = 0;  // of an unlit engine: its colours are the screen's already
+    exposure_ev_ = 0;  // an unlit engine's colours are for the screen already
     if (!engine.info().unlit) {
         if (scene.exposure_ev) {
             exposure_ev_ = *scene.exposure_ev;
@@ -42,7 +42,7 @@ Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene
                         unlit ? 0 : exposure_ev_, images.picture);
 }
 
-/// Brings the other engine's light into the picture.
+/// Combines the picture with the other engine's light.
 Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& scene,
                                    const gi::GBuffer& gbuffer) {
     using Show = gi::Comparison::Show;

@@ -10,40 +10,39 @@
 namespace lucarne::viewer {
 
 /// Turns the radiance of frames into a picture: average over frames, exposure, tone curve, comparison with a
-/// second engine, backdrop. One thread.
+/// second engine, backdrop. Use from one thread.
 class Presentation {
  public:
     explicit Presentation(gi::Device& device) : device_(device) {}
 
     /// Starts the average again with the next frame.
     void restart() { accumulated_ = 0; }
-    /// Frames in the average; what the engines draw next continues it.
+    /// Frames in the average so far; the next frame continues it.
     uint32_t accumulated() const { return accumulated_; }
     /// Whether the last picture was an average.
     bool averaged() const { return averaged_; }
 
-    /// Where the engine of the picture, or the one that it is compared with, writes its radiance.
+    /// The buffer to which the picture's engine (or the compared one) writes its radiance.
     gi::Buffer& sample(bool compared) { return compared ? other_.sample : own_.sample; }
 
-    /// Finishes one frame, whose radiance is in sample(). `other`: the engine that the picture is compared
-    /// with, or null. `average`: shows the mean of this frame and those since restart(). Errors: no device
-    /// memory.
+    /// Finishes one frame, whose radiance is in sample(). `other`: the engine to compare with, or null.
+    /// `average`: show the mean of this frame and the frames since restart(). Errors: no device memory.
     Result<void> finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
                         const gi::GBuffer& gbuffer, bool average);
 
-    /// Gives back the memory of the second engine's pictures.
+    /// Frees the memory of the second engine's pictures.
     void forget_comparison() { other_ = {}; }
 
-    /// Of the last picture, vec4 a pixel, row 0 on top.
+    /// The last picture's radiance, vec4 a pixel, row 0 on top.
     const gi::Buffer& radiance() const { return averaged_ ? own_.mean : own_.sample; }
-    /// RGBA8 a pixel.
+    /// The last picture, RGBA8 a pixel.
     const gi::Buffer& picture() const { return own_.picture; }
-    /// The stops that the last picture was exposed by.
+    /// The exposure of the last picture in stops.
     double exposure_ev() const { return exposure_ev_; }
 
  private:
     struct Images {
-        gi::Buffer sample, mean, picture;  ///< radiance of this frame and of the average; RGBA8
+        gi::Buffer sample, mean, picture;  ///< radiance of this frame and of the average; RGBA8 picture
         const gi::Buffer& radiance(bool averaged) const { return averaged ? mean : sample; }
     };
 
@@ -52,7 +51,7 @@ class Presentation {
     Result<void> compare(const gi::Engine& other, const gi::Scene& scene, const gi::GBuffer& gbuffer);
 
     gi::Device& device_;
-    Images own_, other_;  ///< of the picture's engine, of the one that it is compared with
+    Images own_, other_;  ///< of the picture's engine and of the compared engine
     uint32_t accumulated_ = 0;
     bool averaged_ = false;
     double exposure_ev_ = 0;

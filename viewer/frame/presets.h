@@ -9,20 +9,20 @@
 
 namespace lucarne::viewer {
 
-/// Points that the cuts of a frame may take, and how fine the view cut should be.
+/// Limits on the points of a frame's cuts, and the resolution of the view cut.
 struct CutBudgets {
     uint64_t view = 2'000'000;
     uint64_t light_view = 1'000'000;  ///< for each light
     uint64_t light = 1'000'000;
-    double pixel_spacing = 1.0;  ///< projected spacing of the points that refinement stops at, pixels
+    double pixel_spacing = 1.0;  ///< projected spacing of points at which refinement stops, pixels
 
-    /// No cut takes more than `points` (--points).
+    /// Limits all budgets to `points` (--points).
     void cap(uint64_t points);
 
     bool operator==(const CutBudgets&) const = default;
 };
 
-/// What a user picks by one word. Figures are always quoted with a preset.
+/// Settings that the user selects by one name. Published figures always name their preset.
 struct Preset {
     std::string_view name;
     std::string_view description;
@@ -30,9 +30,10 @@ struct Preset {
     CutBudgets budgets;
 };
 
-/// Single settings in the place of the preset's.
+/// Replaces single settings of the preset's.
 void apply(const gi::RenderSettings& settings, gi::EngineSettings& engine);
-/// What apply() makes `engine` of from this preset's; says the preset's name, and no engine.
+/// Returns the settings with which apply() turns this preset's options into `engine`. They contain the
+/// preset's name, but no engine's name.
 gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings& engine);
 
 inline constexpr std::string_view kDefaultPreset = "interactive";
@@ -40,7 +41,8 @@ inline constexpr std::string_view kDefaultPreset = "interactive";
 /// All presets, cheapest first.
 std::span<const Preset> presets();
 
-/// Errors (ErrorKind::arguments): unknown name; the message lists the known ones.
+/// Returns the preset called `name`. Errors (ErrorKind::arguments): unknown name; the message lists the known
+/// ones.
 Result<Preset> find_preset(std::string_view name);
 
 }  // namespace lucarne::viewer

@@ -14,7 +14,8 @@ constexpr double kLeastScale = 0.25;
 void MovingQuality::observe(double frame_seconds) {
     if (frame_seconds > kTooSlow * wanted_) {
         if (scale_ <= kLeastScale) reduced_ = true;
-        // As if all of the time were spent on pixels; by halves at most, for one slow picture proves little.
+        // Assume that all time is spent on pixels. At most halve the scale at once, since one slow picture
+        // may be an exception.
         scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(wanted_ / frame_seconds)));
     } else if (frame_seconds < kFast * wanted_) {
         if (scale_ >= 1) reduced_ = false;

@@ -5,22 +5,22 @@
 
 namespace lucarne::viewer {
 
-/// A share of each side; 16 pixels at least.
+/// Scales each side; the result is at least 16 pixels.
 ImageSize scaled_size(ImageSize full, double scale);
 
-/// Keeps pictures coming while the camera or a light moves: first the picture gets smaller, then, where that
-/// is not enough, the settings fall back to the cheapest preset's. At rest nothing is given up.
+/// Keeps pictures fast while the camera or a light moves. First the picture gets smaller; if that is not
+/// enough, the settings fall back to the cheapest preset's. At rest there is no reduction.
 class MovingQuality {
  public:
-    /// `wanted`: seconds a picture; half as much again is too slow.
+    /// `wanted`: target seconds for a picture; 1.5 times as long is too slow.
     explicit MovingQuality(double wanted = 0.1) : wanted_(wanted) {}
-    /// `frame_seconds`: how long the last picture took that was made while moving.
+    /// `frame_seconds`: duration of the last picture made during motion.
     void observe(double frame_seconds);
-    double scale() const { return scale_; }  ///< of the picture's sides, 1/4 to 1
+    double scale() const { return scale_; }  ///< scale of the picture's sides, 1/4 to 1
     bool reduced_settings() const { return reduced_; }
 
     ImageSize size(ImageSize full) const { return scaled_size(full, scale_); }
-    /// The settings and budgets to move with, never dearer than those at rest.
+    /// Reduces settings and budgets for motion; they never cost more than at rest.
     void reduce(gi::EngineSettings& settings, CutBudgets& budgets) const;
 
  private:

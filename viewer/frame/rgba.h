@@ -8,7 +8,7 @@
 
 namespace lucarne::viewer {
 
-/// RGBA8 rows as the pipeline and the window hold them, without their opacity, as pictures are written.
+/// Converts RGBA8 rows, as the pipeline and the window hold them, to RGB for writing.
 inline io::Image8 without_alpha(std::span<const std::byte> rgba, ImageSize size) {
     io::Image8 image{size.width, size.height, {}};
     image.bytes.reserve(rgba.size() / 4 * 3);

@@ -10,16 +10,17 @@ namespace {
 
 constexpr double kOriginGrid = 256.0;  // m
 constexpr double kNearPlane = 0.01;    // m
-// Heights of an orthographic picture from its plane to the pinhole that nodes are chosen by: what lies a
-// hundred heights deeper than the plane is chosen a hundredth too coarse.
+// Distance of the pinhole for which nodes of an orthographic picture are chosen, in picture heights from its
+// plane. Nodes a hundred heights behind the plane are chosen one hundredth too coarse.
 constexpr double kPinholeDistance = 1e4;
-constexpr double kWidestAngle = 3.0;  // radians: a plane cannot hold a field of pi
+constexpr double kWidestAngle = 3.0;  // radians: a plane cannot show a field of view of pi
 
 struct Axes {
     glm::dvec3 forward, right, up;
 };
 
-/// Looks from `from` to `to`; where `up_hint` is parallel to that or useless, another up is found.
+/// Returns the axes of a view from `from` to `to`. If `up_hint` is parallel to that direction or useless,
+/// chooses another up.
 Axes look_at(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& up_hint) {
     const auto unit = [](const glm::dvec3& v, const glm::dvec3& otherwise) {
         const double length = glm::length(v);
@@ -68,7 +69,7 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
     gi::CameraView result{};
     result.origin = glm::vec4(frame.to_local(camera.position), static_cast<float>(kNearPlane));
     result.forward = glm::vec4(glm::vec3(view.forward), 0.0f);
-    // The half height, or its tangent.
+    // Half the height, or the tangent of half the angle.
     const bool parallel = camera.orthographic_height > 0;
     const double up =
         parallel ? camera.orthographic_height / 2 * frame.metres_per_unit : view.tan_half_height;
@@ -125,14 +126,14 @@ octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLigh
                              1.0);
             break;
         case gi::LightKind::directional: {
-            // From so far away that its rays are as good as parallel.
+            // The view is so far away that its rays are nearly parallel.
             constexpr double kFarAway = 1e4;  // diagonals of the scan
             const double diagonal = std::max(glm::length(header.max - header.min), 1e-3);
             view = make_view((header.min + header.max) / 2.0 - axes.forward * (kFarAway * diagonal), axes,
                              .5 / kFarAway, 1.0);
             break;
         }
-        default:  // they shine all around
+        default:  // these shine in all directions
             return octree::light_cut(source, light.position, budget);
     }
     view.width = view.height = resolution;

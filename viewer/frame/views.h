@@ -12,7 +12,7 @@
 
 namespace lucarne::viewer {
 
-/// Where the devices' coordinates begin: device = (world - origin) * metres_per_unit, in metres.
+/// The origin of the device's coordinates: device = (world - origin) * metres_per_unit, in metres.
 struct LocalFrame {
     glm::dvec3 origin{0.0};
     double metres_per_unit = 1.0;
@@ -22,23 +22,23 @@ struct LocalFrame {
     }
 };
 
-/// The origin is the position rounded to a grid of 256 m, so that floats near the camera step by 15 um at
-/// most and the origin rarely changes along a path.
+/// Returns a frame whose origin is the position rounded to a grid of 256 m. So floats near the camera step by
+/// at most 15 um, and the origin rarely changes along a path.
 LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit);
 
-/// A scene's camera as engines take it.
+/// Converts a scene's camera for engines.
 gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame);
-/// The same for choosing nodes, in world units.
+/// Converts it for choosing nodes, in world units.
 octree::View octree_view(const gi::SceneCamera& camera, ImageSize size);
 
-/// A scene's light as engines take it.
+/// Converts a scene's light for engines.
 gi::Light device_light(const gi::SceneLight& light, const LocalFrame& frame);
-/// What it shines on, in at most `budget` points: by a view of `resolution` texels along a side for spots and
-/// directional lights, all around the others.
+/// Returns a cut of what the light shines on, at most `budget` points: for spots and directional lights by a
+/// view of `resolution` texels along a side, for the others in all directions.
 octree::Cut light_view_cut(const octree::NodeSource& source, const gi::SceneLight& light, uint32_t resolution,
                            uint64_t budget);
 
-/// `albedo`: scales what the points' colours give.
+/// Converts a material. `albedo` scales the albedo given by the points' colours.
 gi::Material device_material(const gi::SceneMaterial& material, double albedo = 1);
 
 }  // namespace lucarne::viewer

@@ -6,16 +6,16 @@
 
 #include "io/formats/scan.h"
 
-// What `info` and `convert` say of scans, as JSON.
+// What `info` and `convert` report about scans, as JSON.
 namespace lucarne::viewer {
 
 nlohmann::ordered_json vector_json(const glm::dvec3& v);
 nlohmann::ordered_json attributes_json(const io::Schema& schema);
 
-/// Path, format, coordinate system and unit, stations, what was left out; with `contents` the points and
-/// their bounds as they were read; of a mesh that is sampled without `contents` its own box and about how
-/// many points it becomes. The box that a header states is `stated_min` and `stated_max`. What a file of
-/// several scans says of each, and its images; of a mesh. `unit_given`: by the user.
+/// Describes a scan: path, format, coordinate system and unit, stations, and what was left out. With
+/// `contents`: also the points and their bounds as they were read. For a sampled mesh without `contents`: its
+/// bounding box and the approximate number of points. `stated_min` and `stated_max` are the box that the
+/// header states. Also describes each scan of a file with several scans, its images, and a mesh's properties.
 nlohmann::ordered_json scan_json(const io::ScanInfo& info, const io::Schema& schema,
                                  const io::Contents* contents);
 

@@ -21,11 +21,11 @@ namespace {
 
 using octree::GrowingBuild;
 
-constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< of a build beside which pictures are drawn
-constexpr size_t kMostOpenFiles = 64;  ///< handles; those of further files are opened again in turn
+constexpr uint64_t kMemoryBeside = uint64_t{1} << 30;  ///< for a build that runs while pictures are drawn
+constexpr size_t kMostOpenFiles = 64;  ///< file handles; further files share them and are reopened on use
 using Source = std::shared_ptr<const octree::NodeSource>;
 
-/// The scans, and where their cache goes; or the cache, if it is there.
+/// The scans and the place of their cache, or the cache if it exists.
 struct Scans {
     Source cache;
     GrowingBuild::Inputs inputs;
@@ -33,14 +33,14 @@ struct Scans {
     std::optional<TemporaryFolder> folder;
 };
 
-/// The files that are named, each opened once.
+/// The input files, each opened once.
 struct Files {
     std::vector<std::shared_ptr<const ByteSource>> all;
     std::vector<octree::OctreeKind> kinds;
-    bool octree = false;  ///< there is one among them: each is opened by itself
+    bool octree = false;  ///< at least one is an octree: each input is opened separately
 };
 
-/// Many files share a bounded number of handles.
+/// Opens the files. Many files share a bounded number of handles.
 Result<Files> open_files(const InputOptions& options) {
     const auto handles =
         options.paths.size() > kMostOpenFiles ? std::make_shared<HandlePool>(kMostOpenFiles) : nullptr;
@@ -74,7 +74,7 @@ Result<Scans> open_scans(const InputOptions& options,
         if (scans.cache) return scans;
         if (const auto place = kept.place()) {
             scans.build.output = *place;
-            scans.build.overwrite = true;  // an older state of the same
+            scans.build.overwrite = true;  // an older cache of the same scans
             log::info("{}: {}; converting, the cache is kept as {}", options.paths[0], infos[0].format,
                       place->string());
         } else {
@@ -89,7 +89,7 @@ Result<Scans> open_scans(const InputOptions& options,
     return scans;
 }
 
-/// Scans as one cache, the one kept or a new one.
+/// Returns the scans as one cache: the kept one, or a new one.
 Result<Source> convert_scans(const InputOptions& options,
                              std::span<const std::shared_ptr<const ByteSource>> files) {
     LUCARNE_ASSIGN(Scans scans, open_scans(options, files));
@@ -97,12 +97,12 @@ Result<Source> convert_scans(const InputOptions& options,
     for (const auto& input : scans.inputs) scans.build.inputs.push_back(input.get());
     if (auto built = octree::build_cache(scans.build); !built)
         return tl::unexpected(io::with_salvage_advice(built.error(), built.error().what, options.read));
-    // The open file lives on after its name is gone with the folder.
+    // The open file stays readable after the folder and its name are removed.
     LUCARNE_ASSIGN(auto cache, octree::open_cache(scans.build.output));
     return Source(std::move(cache));
 }
 
-/// Every input by itself, octrees as they are.
+/// Opens every input separately, octrees as they are.
 Result<Source> open_parts(const InputOptions& options, const Files& files) {
     std::vector<Source> sources;
     for (size_t i = 0; i < files.all.size(); ++i) {
@@ -143,7 +143,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     growing.build.memory = kMemoryBeside;
     growing.sample_points = opening.sample_points;
     growing.sampling = opening.sampling;
-    // A temporary folder goes with the program, and what is in it.
+    // A temporary folder is removed with the program, together with its contents.
     if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;
     LUCARNE_ASSIGN(open.build, GrowingBuild::open(std::move(scans.inputs), std::move(growing)));
     open.source = open.build->state().source;

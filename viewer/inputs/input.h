@@ -14,41 +14,41 @@
 
 namespace lucarne::viewer {
 
-/// Caches, COPC files and scans, drawn together. Where all are scans they become one cache.
+/// Inputs that are drawn together: caches, COPC files and scans. If all are scans, they become one cache.
 struct InputOptions {
     std::vector<std::string> paths;
-    bool no_cache = false;  ///< scans are converted anew and the cache is gone with the program
+    bool no_cache = false;  ///< convert scans again; the cache is removed when the program ends
     io::ReadOptions read;
-    bool required = true;  ///< at least one path
+    bool required = true;  ///< at least one path must be given
 };
 
-/// How a window opens what it shows while it is being converted.
+/// How a window opens scans that it shows while they are converted.
 struct Opening {
-    uint64_t sample_points = 400'000;  ///< of a scan without a cache
-    octree::Sampling sampling;         ///< told while they are read; may end it
-    /// A conversion that is stopped, or interrupted otherwise, leaves what the next one goes on from.
+    uint64_t sample_points = 400'000;  ///< of scans without a cache
+    octree::Sampling sampling;         ///< is told of the progress of sampling, and may end it
+    /// An interrupted conversion keeps its finished stages, and the next conversion continues from them.
     bool resumable = false;
 };
 
-/// What can be drawn of the input at once.
+/// What can be drawn at once, and the build that is still to run.
 struct OpenInput {
     std::shared_ptr<const octree::NodeSource> source;
-    std::optional<TemporaryFolder> folder;        ///< of a cache that is not kept; goes after the build
-    std::unique_ptr<octree::GrowingBuild> build;  ///< of scans without a cache yet; not begun
+    std::optional<TemporaryFolder> folder;        ///< of a cache that is not kept; removed after the build
+    std::unique_ptr<octree::GrowingBuild> build;  ///< for scans without a cache; not started yet
 };
 
-/// Octrees as they are, or the cache kept of these scans, or a sample of them and their build. Errors: those
-/// of the readers.
+/// Opens octrees as they are, else the kept cache of the scans, else a sample of the scans together with
+/// their build. Errors: those of the readers.
 Result<OpenInput> open_growing(const InputOptions& options, const Opening& opening = {});
 
-/// The same, waiting for a cache that is not there yet. With an octree among them every input is a part of
-/// its own, in its own place, unit and schema (octree/stream/joined_source.h). Errors: those of the builder
-/// as well.
+/// Opens the inputs, and converts scans first if they have no cache. If one input is an octree, every input
+/// becomes a part of the source with its own placement, unit and schema (octree/stream/joined_source.h).
+/// Errors: those of the readers and of the builder.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const InputOptions& options);
-/// Of one input.
+/// Opens one input.
 Result<std::shared_ptr<const octree::NodeSource>> open_input(const std::filesystem::path& path);
 
-/// For titles and reports: "nave.luc" or "nave.luc and 199 more".
+/// Returns a text for titles and reports: "nave.luc" or "nave.luc and 199 more".
 std::string inputs_text(const std::vector<std::string>& paths);
 
 }  // namespace lucarne::viewer

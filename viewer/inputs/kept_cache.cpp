@@ -28,7 +28,7 @@ uint64_t hash_of(const KeptCache::Scans& scans) {
     uint64_t hash = 0;
     for (const auto& scan : scans) {
         for (const char c : absolute(scan.path).string()) hash = mix64(hash, static_cast<unsigned char>(c));
-        hash = mix64(hash, 0x100);  // no byte: where a path ends
+        hash = mix64(hash, 0x100);  // not a byte value: marks the end of a path
     }
     return hash;
 }

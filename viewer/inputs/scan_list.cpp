@@ -15,18 +15,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kText = ".txt";  ///< may as well be a licence
+constexpr std::string_view kText = ".txt";  ///< may also be other text, for example a licence
 constexpr std::array<std::string_view, 12> kExtensions = {".las", ".laz", ".e57", ".ply", ".pcd", ".ptx",
                                                           ".pts", ".xyz", ".asc", ".csv", ".obj", kText};
-constexpr size_t kNamed = 5;  ///< of a long list
+constexpr size_t kNamed = 5;  ///< names shown of a long list
 
-/// By its rows: licences and notes are no broken scans.
+/// Decides by the rows whether a text file contains points, so that licences and notes do not count as broken
+/// scans.
 bool holds_points(const fs::path& text, io::ReadOptions options) {
     options.quiet = true;
     return io::open_scan(text, options).has_value();
 }
 
-/// The scans in a folder and below. One folder is open at a time, however deep they lie.
+/// Lists the scans in a folder and below. Only one folder is open at a time, whatever the depth.
 void look_through(const std::string& folder, const io::ReadOptions& options, ScanList& list) {
     std::vector<std::string> found, others;
     std::vector<fs::path> folders{folder};
@@ -47,8 +48,8 @@ void look_through(const std::string& folder, const io::ReadOptions& options, Sca
                                  (entry->is_directory(unknown) ? " (a link to a folder)" : ""));
         }
         if (error)
-            list.problems.push_back({ErrorKind::input_rejected, here.string(),
-                                     "cannot be looked through: " + error.message(), ""});
+            list.problems.push_back(
+                {ErrorKind::input_rejected, here.string(), "cannot be searched: " + error.message(), ""});
     }
     std::ranges::sort(found);
     std::ranges::sort(others);
@@ -99,7 +100,7 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     for (const std::string& input : once_each(inputs)) {
         std::error_code error;
         if (input.empty())
-            list.problems.push_back({ErrorKind::input_rejected, "''", "is no name of a file", ""});
+            list.problems.push_back({ErrorKind::input_rejected, "''", "is not a file name", ""});
         else if (fs::is_directory(input, error))
             look_through(input, options, list);
         else
@@ -108,7 +109,7 @@ Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io
     list.files = once_each(list.files);
     if (list.files.empty() && list.problems.size() == 1) return tl::unexpected(list.problems.front());
     for (const Error& problem : list.problems) log::warn("{}; it is left out", problem.line());
-    if (list.files.empty()) return rejected("inputs", "none of them holds a scan");
+    if (list.files.empty()) return rejected("inputs", "none of them contains a scan");
     return list;
 }
 

@@ -13,42 +13,42 @@
 
 namespace lucarne::viewer {
 
-/// "a, b and 3 more": the first five.
+/// Returns the first five names as text: "a, b and 3 more".
 std::string some_of(const std::vector<std::string>& names);
 
-/// Of the files that may be scans: ".las", in lower case.
+/// Returns the extensions of scan files in lower case, for example ".las".
 std::span<const std::string_view> scan_extensions();
-/// Whether the name ends in one of them.
+/// Returns whether the name has one of these extensions.
 bool names_scan(const std::filesystem::path& path);
 
-/// Each file once, however often and by whatever names, links and spellings it is there; the others are
-/// named.
+/// Returns each file once, even if it is listed several times under different names, links or spellings.
+/// Warns of the duplicates.
 std::vector<std::string> once_each(const std::vector<std::string>& paths);
 
-/// What inputs stand for.
+/// The files that the inputs stand for.
 struct ScanList {
     std::vector<std::string> files;
-    std::vector<Error> problems;  ///< of folders; `what` is the folder
+    std::vector<Error> problems;  ///< problems of folders; `what` is the folder
 };
 
-/// A folder stands for the scans in it and below, sorted by name: files that are named so, and .txt where
-/// their rows are numbers; anything else stands for itself. Links to folders are not followed. What a folder
-/// holds besides is named, and so is what was given twice. Folders that cannot be read or hold no scan are
-/// problems among several inputs, and an error where nothing is left.
+/// Replaces each folder by the scans in it and below, sorted by name: files with a scan's extension, and .txt
+/// files whose rows are numbers. Any other input stands for itself. Links to folders are not followed. Warns
+/// of other files in folders and of duplicates. A folder that cannot be read or contains no scan is noted in
+/// `problems` if there are other inputs; it is an error if nothing is left.
 Result<ScanList> expand_folders(const std::vector<std::string>& inputs, const io::ReadOptions& options);
 
-/// Inputs that were left out, and why: one broken file of many stops only itself.
+/// Inputs that were left out, and why. One broken file does not stop the other inputs.
 class SetAside {
  public:
-    /// `list.problems` are such already.
+    /// Begins with `list.problems`.
     SetAside(const ScanList& list, io::ReadOptions options);
 
-    /// Takes the input whose bytes are not what they claim to be out of several and notes it, with how many
-    /// points could be saved of it. Any other error is given back, with the same advice.
+    /// If the error rejects one of several inputs, removes that input from `inputs` and notes it, with the
+    /// number of points that could be salvaged. Returns any other error, with the same advice.
     Result<void> take(Error error, std::vector<std::string>& inputs);
-    /// Fails with the summary where any input was left out.
+    /// Returns an error with a summary if any input was left out.
     Result<void> result(const std::string& output, std::string_view fate = "are not in it") const;
-    /// A list of {"kind": "rejected", "path", "reason"}.
+    /// Returns a list of {"kind": "rejected", "path", "reason"}.
     nlohmann::ordered_json json() const;
 
  private:

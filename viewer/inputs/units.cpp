@@ -14,7 +14,7 @@ namespace lucarne::viewer {
 
 namespace {
 
-// The two feet differ by 2e-6.
+// The foot and the US survey foot differ by 2e-6.
 constexpr std::array<std::pair<double, std::string_view>, 7> kUnits = {{{1, "m"},
                                                                         {0.3048, "ft"},
                                                                         {1200.0 / 3937, "US ft"},

@@ -87,7 +87,7 @@ void shift_light(ViewModel& model, const glm::dvec2& shift) {
     if (!light) return;
     const gi::SceneCamera camera = model.rig.camera();
     const double depth = std::max(std::abs(glm::dot(light->position - camera.position, model.rig.forward())),
-                                  model.scene_size / 100);  // a light beside the camera moves as well
+                                  model.scene_size / 100);  // so that a light at the camera moves
     const double height = 2 * std::tan(camera.vertical_fov / 2) * depth;
     const glm::dvec3 step = (model.rig.right() * shift.x + model.rig.up() * shift.y) * height;
     light->position += step;

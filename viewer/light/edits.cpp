@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t kMostLights = 64, kMostUndone = 100;
 
-/// A white surface of albedo .5 that faces halfway to the light looks mid-grey.
+/// Returns the strength that makes a surface of albedo .5, turned 45 degrees from the light, look mid-grey.
 double fitting_strength(const gi::SceneLight& light, double ev, double metres_per_unit) {
     const double irradiance = 0.18 * std::exp2(-ev) * std::numbers::pi / (0.5 * std::numbers::sqrt2 / 2);
     const double distance = glm::distance(light.position, light.target) * metres_per_unit;
@@ -79,7 +79,7 @@ void add_light(ViewModel& model, gi::LightKind kind) {
     const double ev = model.scene.exposure_ev.value_or(model.picture ? model.picture->exposure_ev : 0);
     light.strength = glm::dvec3(fitting_strength(light, ev, metres));
     if (kind == gi::LightKind::point)
-        light.target = light.position - glm::dvec3(0, 0, 1);  // as files have it
+        light.target = light.position - glm::dvec3(0, 0, 1);  // the same default as in scene files
     model.scene.lights.push_back(light);
     model.light = model.scene.lights.size() - 1;
     model.scene_changed();

@@ -4,32 +4,35 @@
 
 namespace lucarne::viewer {
 
-// What panel and keys do to the scene's lights, and to what is shown of them. Whatever adds or takes away a
-// light can be undone.
+// Edits of the scene's lights and of how light is shown, for the panel and the keys. Adding and removing
+// lights can be undone.
 
-/// A new light of a kind, selected, that shines on what the view turns about as bright as the exposure makes
-/// mid-grey. No more than a scene file may hold.
+/// Adds a light of a kind and selects it. The light shines on the point that the view turns about; its
+/// strength makes a surface there look mid-grey at the current exposure. Does nothing if the scene has as
+/// many lights as a scene file may contain.
 void add_light(ViewModel& model, gi::LightKind kind);
 void duplicate_light(ViewModel& model);
 void remove_light(ViewModel& model);
-/// Call before a change that undo_lights() takes back.
+/// Remembers the lights for undo_lights(). Call before a change.
 void remember_lights(ViewModel& model);
 void undo_lights(ViewModel& model);
-/// The selected one, on or off.
+/// Switches the selected light on or off.
 void switch_selected_light(ViewModel& model);
-/// Lets the selected light come from the sun's place at a moment, or from where it comes from now.
+/// Ties the selected light's direction to the sun's position at a moment. Without a moment, the light keeps
+/// its current direction.
 void set_sun(ViewModel& model, const std::optional<gi::SunMoment>& sun);
 
-/// Compares with another engine, or with none.
+/// Compares with another engine; an empty name ends the comparison.
 void compare_with(ViewModel& model, const std::string& engine);
 
-/// The scene with what the window shows: its view is the first camera, named "view".
+/// Returns the scene as the window shows it. The window's view is its first camera, named "view".
 gi::Scene scene_to_save(const ViewModel& model);
-/// light_tools.scene_file, or a name that is free.
+/// Returns the file for saving the scene: light_tools.scene_file, or a free name.
 std::filesystem::path scene_place(const ViewModel& model);
-/// Writes over light_tools.scene_file alone; `path` is that from then on.
+/// Saves the scene to `path`, which becomes light_tools.scene_file. Overwrites no other file than
+/// light_tools.scene_file.
 Result<void> save_scene_as(ViewModel& model, const std::filesystem::path& path);
-/// In its place; says so in the message.
+/// Saves the scene to scene_place() and reports that in the message.
 void save_scene(ViewModel& model);
 
 }  // namespace lucarne::viewer

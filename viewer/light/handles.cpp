@@ -34,7 +34,8 @@ std::optional<dvec3> dragged_place(const gi::SceneLight& light, Part part, const
         if (!(along > 1e-6) || !(depth > 0)) return std::nullopt;
         return eye + direction * (depth / along);
     }
-    // On the side of the sphere that the handle is on; beside the sphere its rim.
+    // Stay on the side of the sphere that the handle is on. If the ray passes beside the sphere, take its
+    // rim.
     const dvec3 from = eye - sky.centre;
     const double closest = -glm::dot(from, direction);
     const dvec3 foot = from + direction * closest;

@@ -9,23 +9,24 @@
 
 namespace lucarne::viewer {
 
-/// Where handles stand: a light's position, what it shines at, and for directional lights a place on a sphere
-/// about `centre` where they come from.
+/// The sphere on which directional lights have their handles, in the direction that the light comes from.
+/// Other lights have handles at their position and target.
 struct LightSphere {
     glm::dvec3 centre{0.0};
     double radius = 1;  ///< world units
 };
 
 std::vector<LightHandle> light_handles(const std::vector<gi::SceneLight>& lights);
-/// `handle` is one of the lights'.
+/// Returns the world position of one handle of a light.
 glm::dvec3 handle_place(const gi::SceneLight& light, LightHandle::Part part, const LightSphere& sky);
 
-/// Where a drag leads: along the plane through the handle that faces `forward`; on the sphere for what comes
-/// from the sky. None where the ray from `eye` misses that.
+/// Returns where a drag moves a handle: within the plane through the handle that faces `forward`, or on the
+/// sphere for directional lights. Returns nothing if the ray from `eye` misses the plane or sphere.
 std::optional<glm::dvec3> dragged_place(const gi::SceneLight& light, LightHandle::Part part,
                                         const LightSphere& sky, const glm::dvec3& eye, const glm::dvec3& ray,
                                         const glm::dvec3& forward);
-/// A light that would shine nowhere stays as it is. A sun that is dragged forgets its place and time.
+/// Moves a handle of a light. Returns false and changes nothing if the light would have no direction. A
+/// dragged sun loses its place and time.
 bool move_light(gi::SceneLight& light, LightHandle::Part part, const glm::dvec3& to, const LightSphere& sky);
 
 }  // namespace lucarne::viewer

@@ -1,4 +1,4 @@
-// Over the picture: lights' handles, a comparison's border, how far the picture has converged.
+// Draws lights' handles, a comparison's border and the progress of convergence over the picture.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,7 +31,7 @@ void drag(ViewModel& model, const LightHandle& handle) {
     const CameraRig::Ray ray = cursor_ray(model.rig);
     auto to = dragged_place(light, handle.part, sky, ray.from, ray.along, model.rig.forward());
     const ImGuiIO& io = ImGui::GetIO();
-    // What a light shines at is put on the surface under the cursor.
+    // A dragged target moves to the surface under the cursor.
     if (handle.part == LightHandle::Part::target)
         if (const auto point =
                 model.picture->pick({io.MousePos.x / io.DisplaySize.x, io.MousePos.y / io.DisplaySize.y}))
@@ -39,7 +39,7 @@ void drag(ViewModel& model, const LightHandle& handle) {
     if (to && move_light(light, handle.part, *to, sky)) model.scene_changed();
 }
 
-/// Draws one; returns whether the mouse is on it.
+/// Draws one handle. Returns whether the mouse is on it.
 bool draw_handle(const ViewModel& model, const LightHandle& handle, const ImVec2& at) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const gi::SceneLight& light = model.scene.lights[handle.light];
@@ -130,7 +130,7 @@ bool take_light_handles(ViewModel& model) {
     if (const gi::SceneLight* light = model.selected_light()) draw_beam(model, *light);
     std::optional<LightHandle> under;
     for (const LightHandle& handle : handles) {
-        // What a light shines at shows for the selected one alone: pictures of many lights stay clear.
+        // Show the target of the selected light only, so that pictures with many lights stay clear.
         if (handle.part == LightHandle::Part::target && handle.light != model.light) continue;
         const auto at = on_screen(*model.picture,
                                   handle_place(model.scene.lights[handle.light], handle.part, sky_of(model)));

@@ -42,7 +42,7 @@ void dye(gi::SceneLight& light, const glm::dvec3& colour) {
     if (then > 0) light.strength = colour * ((now > 0 ? now : 1.0) / then);
 }
 
-/// As the screen shows it, or its linear values.
+/// Edits the light's colour as the screen shows it, or as linear values.
 bool edit_colour(ViewModel& model, gi::SceneLight& light) {
     const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
     float shown[3];
@@ -71,7 +71,7 @@ bool edit_colour(ViewModel& model, gi::SceneLight& light) {
     return changed;
 }
 
-/// In the kind's unit of radiation, of the strongest channel, or of light.
+/// Edits the strength: in the kind's radiometric unit for the strongest channel, or in photometric units.
 bool edit_strength(ViewModel& model, gi::SceneLight& light) {
     static constexpr const char* kUnits[] = {"W/sr", "W/sr", "W/m2", "W/(sr m2)", "W/(sr m2)"};
     const bool sun = light.kind == gi::LightKind::directional;

@@ -11,27 +11,27 @@
 
 namespace lucarne::viewer {
 
-/// Reads sky pictures on a thread of its own, so that the window answers meanwhile. The newest wish wins:
-/// what was asked for before it is not begun, or its picture is dropped; so one is read and one waits at
-/// most.
+/// Reads sky pictures on a thread of its own, so that the window stays responsive. The newest request wins:
+/// earlier requests are not started, or their pictures are dropped. So at most one picture is being read and
+/// one waits.
 class SkyLoader {
  public:
     using Sky = Result<std::shared_ptr<const gi::Environment>>;
 
-    /// `done` is called on the thread once there is something to take.
+    /// `done` is called on the loading thread once take() has a result.
     explicit SkyLoader(std::function<void()> done) : done_(std::move(done)) {}
 
     void load(std::string path);
-    /// What is being read; empty: nothing.
+    /// Returns the path being read, or an empty text.
     std::string reading() const;
-    /// The newest wish's picture, once; none while it is read.
+    /// Returns the picture of the newest request, once. Returns nothing while it is being read.
     std::optional<Sky> take();
 
  private:
     struct Shared {
         std::mutex mutex;
-        std::string wanted;  ///< the newest wish; empty: it was taken
-        uint64_t wish = 0;   ///< its number
+        std::string wanted;  ///< path of the newest request; empty: it was taken
+        uint64_t wish = 0;   ///< number of the newest request
         std::optional<Sky> sky;
     };
 

@@ -1,4 +1,4 @@
-// What shines beside lamps: the sun, the sky, classes of points.
+// Panels of light sources other than lamps: the sun, the sky and emitting classes of points.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -49,7 +49,7 @@ glm::vec3 scaled_to_one(const glm::dvec3& colour, float& most) {
     return most > 0 ? glm::vec3(colour / static_cast<double>(most)) : glm::vec3(1.0f);
 }
 
-/// A radiance as a colour and how strong it is.
+/// Edits a radiance as a colour and a strength.
 bool edit_radiance(const char* label, glm::dvec3& radiance) {
     float most = 0;
     glm::vec3 colour = scaled_to_one(radiance, most);
@@ -62,7 +62,7 @@ bool edit_radiance(const char* label, glm::dvec3& radiance) {
     return changed;
 }
 
-/// The sky as the scene holds it, changed: it is shared with the worker.
+/// Replaces the scene's sky by an edited copy, because the sky is shared with the worker.
 template <class Edit>
 void change_sky(ViewModel& model, const Edit& edit) {
     auto sky = std::make_shared<gi::Environment>(*model.scene.environment);
@@ -80,14 +80,14 @@ void edit_even_sky(ViewModel& model) {
     });
 }
 
-/// Of a picture, read by a thread.
+/// Lets the user choose a sky picture, which a thread reads.
 void choose_sky(LightTools& tools) {
     const bool entered = ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &tools.sky_image,
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
     if ((ImGui::Button("Load") || entered) && !tools.sky_image.empty()) tools.load_sky = true;
     if (!tools.reading_sky.empty()) {
-        // It is not known how far it is: a bar that comes and goes.
+        // The progress is unknown: the bar moves back and forth.
         const auto seconds = static_cast<float>(ImGui::GetTime());
         ImGui::ProgressBar(0.5f - 0.5f * std::cos(3 * seconds), ImVec2(-FLT_MIN, 0),
                            ("reading " + tools.reading_sky).c_str());

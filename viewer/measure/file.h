@@ -11,28 +11,30 @@
 
 namespace lucarne::viewer {
 
-/// A table of points and results, RFC 4180: measurement, kind, what, value, unit, x, y, z, attributes. A row
-/// a point, with its coordinates as its file has them, and a row a quantity, in the chosen unit. Lines end
-/// with LF.
+/// Returns a CSV table of points and results (RFC 4180) with the columns measurement, kind, what, value,
+/// unit, x, y, z, attributes. Each point has a row with its coordinates as in its file. Each quantity has a
+/// row with its value in the chosen unit. Lines end with LF.
 std::string measurements_csv(std::span<const Measurement> all, const UnitChoice& units);
-/// For people: a paragraph a measurement.
+/// Returns a readable text with one paragraph for each measurement.
 std::string measurements_text(std::span<const Measurement> all, const UnitChoice& units);
 
-/// As data/README.md describes them; coordinates lose nothing. Results are written for other readers, in the
-/// file's unit and degrees.
+/// Returns the JSON that data/README.md describes. Coordinates keep full precision. Results are written for
+/// other programs, in the file's unit and degrees.
 std::string measurements_json(std::span<const Measurement> all, double metres_per_unit);
-/// Results are not read: they follow from the points. Errors (ErrorKind::input_rejected) name the place;
-/// another unit than `metres_per_unit`, where that is known, is one.
+/// Reads measurements. Results are not read, because they follow from the points. Errors
+/// (ErrorKind::input_rejected) name the place in the file. If `metres_per_unit` is known, another unit is an
+/// error.
 Result<std::vector<Measurement>> parse_measurements(std::string_view text, const std::string& name,
                                                     std::optional<double> metres_per_unit);
 Result<std::vector<Measurement>> load_measurements(const std::filesystem::path& path,
                                                    std::optional<double> metres_per_unit);
 
-/// By the extension: .csv or .json. Errors: another extension (arguments), the file cannot be written.
+/// Saves measurements as .csv or .json, by the extension. Errors: another extension (arguments); the file
+/// cannot be written.
 Result<void> save_measurements(const std::filesystem::path& path, std::span<const Measurement> all,
                                const UnitChoice& units, bool overwrite);
 
-/// A field of a CSV row: quoted where it must be.
+/// Returns a field of a CSV row, quoted if necessary.
 std::string csv_field(std::string_view text);
 
 }  // namespace lucarne::viewer

@@ -7,25 +7,28 @@
 
 namespace lucarne::viewer {
 
-/// The measurements of a session. Every change can be undone, the last hundred of them.
+/// The measurements of a session. The last hundred changes can be undone.
 class MeasureList {
  public:
     static constexpr size_t kMost = 10000, kMostUndone = 100;
 
     const std::vector<Measurement>& all() const { return *now_; }
-    /// Gives a name ("Distance 2") to one that has none. False when the list is full.
+    /// Adds a measurement. If it has no name, names it, for example "Distance 2". Returns false if the list
+    /// is full.
     bool add(Measurement measurement);
     void remove(size_t index);
     void rename(size_t index, std::string name);
     void replace(std::vector<Measurement> all);
     void set_thickness(size_t index, double thickness);
 
-    /// All positions, to another unit. This cannot be undone, nor what was before.
+    /// Multiplies all positions by `factor` to change the unit. This and all changes before it cannot be
+    /// undone.
     void scale(double factor);
 
-    /// They are in a file now, or come from one.
+    /// Marks the current measurements as saved, or as loaded from a file.
     void mark_saved() { saved_ = now_; }
-    /// Whether they are other than those marked last. Undoing all changes since makes them the same again.
+    /// Whether the measurements differ from those marked as saved. False if all changes since then were
+    /// undone.
     bool unsaved() const { return now_ != saved_ && !(now_->empty() && saved_->empty()); }
 
     bool can_undo() const { return !before_.empty(); }

@@ -16,7 +16,7 @@ std::vector<glm::dvec3> positions(const Measurement& m) {
     return all;
 }
 
-/// The edges of a slice on the map, at the height of its ends.
+/// Adds the edges of a slice in plan view, at the height of its ends.
 void slice_lines(OverlayLayout& layout, const Measurement& m, const std::vector<glm::dvec3>& at,
                  size_t index) {
     const glm::dvec2 along(at[1].x - at[0].x, at[1].y - at[0].y);
@@ -39,7 +39,7 @@ void add(OverlayLayout& layout, const Measurement& m, size_t index, const UnitCh
     middle += at[0];
     if (m.kind == MeasureKind::height && at.size() == 2) {
         const glm::dvec3 foot(at[1].x, at[1].y,
-                              at[0].z);  // the difference stands over the first point's level
+                              at[0].z);  // the difference is drawn from the first point's height
         layout.line(at[0], foot, index);
         layout.line(foot, at[1], index);
         middle = (foot + at[1]) / 2.0;

@@ -11,10 +11,10 @@
 
 namespace lucarne::viewer {
 
-/// What is drawn of measurements over a picture, in pixels of the window.
+/// The following are drawn for measurements over a picture. Positions are pixels of the window.
 struct OverlayLine {
     glm::dvec2 from, to;
-    bool hidden = false;  ///< behind what the picture shows: to be dimmed
+    bool hidden = false;  ///< behind the visible surface; drawn dimmed
     size_t measurement = 0;
 };
 struct OverlayMark {
@@ -23,7 +23,7 @@ struct OverlayMark {
     size_t measurement = 0;
 };
 struct OverlayLabel {
-    glm::dvec2 at;  ///< its middle
+    glm::dvec2 at;  ///< centre of the text
     std::string text;
     bool hidden = false;
     size_t measurement = 0;
@@ -34,12 +34,13 @@ struct Overlay {
     std::vector<OverlayLabel> labels;
 };
 
-/// `window` in pixels; the picture fills it as Window::show does. Lines are cut into pieces of which each is
-/// seen or hidden; what lies behind the camera is left out.
+/// Returns what to draw for all measurements. `window` is its size in pixels; the picture fills it as in
+/// Window::show. Lines are split into pieces that are either visible or hidden. Parts behind the camera are
+/// left out.
 Overlay overlay_of(std::span<const Measurement> all, const Picture& picture, const glm::dvec2& window,
                    const UnitChoice& units);
 
-/// What a label says: the first quantity, or a point's coordinates.
+/// Returns a label's text: the first quantity, or a point's coordinates.
 std::string label_text(const Measurement& measurement, const UnitChoice& units);
 
 }  // namespace lucarne::viewer

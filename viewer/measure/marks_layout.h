@@ -11,7 +11,7 @@
 
 namespace lucarne::viewer {
 
-/// Lays world points and lines over a picture, in pixels of a window that it fills as Window::show does.
+/// Projects world points and lines to pixels of a window that the picture fills as in Window::show.
 class OverlayLayout {
  public:
     OverlayLayout(const Picture& picture, const glm::dvec2& window, Overlay& overlay)
@@ -29,7 +29,7 @@ class OverlayLayout {
         if (const Place at = place(world); at.there)
             overlay_.labels.push_back({at.pixel, std::move(text), at.hidden, measurement});
     }
-    /// Each piece is seen or hidden; neighbouring pieces that are seen alike are one line.
+    /// Adds a line in pieces, each visible or hidden. Adjacent pieces of the same visibility are joined.
     void line(const glm::dvec3& from, const glm::dvec3& to, size_t measurement, int pieces = 48) {
         Place before = place(from);
         bool open = false;
@@ -48,7 +48,7 @@ class OverlayLayout {
 
  private:
     struct Place {
-        bool there = false;  ///< else it is behind the camera, or too far to the side
+        bool there = false;  ///< false: behind the camera, or too far to the side
         bool hidden = false;
         glm::dvec2 pixel{0.0};
     };

@@ -75,7 +75,7 @@ const MeasureKindInfo& info_of(MeasureKind kind) {
 
 std::vector<Quantity> quantities(const Measurement& measurement) {
     if (measurement.points.size() < info_of(measurement.kind).least) return {};
-    std::vector<dvec3> at;  // relative to the first
+    std::vector<dvec3> at;  // relative to the first point
     for (const ExactPoint& point : measurement.points)
         at.push_back(point.position - measurement.points.front().position);
     switch (measurement.kind) {

@@ -13,21 +13,21 @@ namespace lucarne::viewer {
 enum class MeasureKind { point, distance, height, angle, area, path, section };
 
 struct MeasureKindInfo {
-    std::string_view name;       ///< in files: "distance"
+    std::string_view name;       ///< name in files: "distance"
     std::string_view title;      ///< "Distance"
-    std::string_view hint;       ///< which points it takes
+    std::string_view hint;       ///< tells the user which points to click
     size_t least = 1, most = 1;  ///< points
 };
-inline constexpr size_t kMostMeasuredPoints = 1000;  ///< of one measurement
+inline constexpr size_t kMostMeasuredPoints = 1000;  ///< limit for one measurement
 const MeasureKindInfo& info_of(MeasureKind kind);
-/// In the order of MeasureKind.
+/// All kinds in the order of MeasureKind.
 std::span<const MeasureKindInfo> measure_kinds();
 
 struct Measurement {
     MeasureKind kind = MeasureKind::point;
     std::string name;
-    std::vector<ExactPoint> points;  ///< as many as the kind takes
-    double thickness = 0;            ///< section: across the line, world units
+    std::vector<ExactPoint> points;  ///< as many as the kind needs
+    double thickness = 0;            ///< of a section: width across the line, world units
 };
 
 struct Quantity {
@@ -36,9 +36,10 @@ struct Quantity {
     Dimension dimension = Dimension::length;
 };
 
-/// What is measured; the first is the one that a label shows. All from differences to the first point, so
-/// that projected coordinates cost no digits.
-///  - distance: length, horizontal, dx, dy, dz;   height: height (of the second over the first), horizontal
+/// Returns the quantities of a measurement; labels show the first. They are computed from differences to the
+/// first point, so that large projected coordinates do not cost precision.
+///  - distance: length, horizontal, dx, dy, dz;   height: height (of the second point above the first),
+///    horizontal
 ///  - angle: at the second point between the others, 0 to pi
 ///  - path: length, horizontal, and each segment
 ///  - area: of the polygon seen along its normal by Newell's method (Sutherland, Sproull, Schumacker, "A

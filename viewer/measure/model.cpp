@@ -30,7 +30,7 @@ bool MeasureModel::finish() {
     if (!can_finish()) return false;
     Measurement done{*tool, "", std::exchange(pending, {}), *tool == MeasureKind::section ? thickness : 0};
     if (!list.add(std::move(done))) {
-        message = "no more measurements can be held; save and delete some";
+        message = "the list of measurements is full; save and delete some";
         return true;
     }
     selected = list.all().size() - 1;

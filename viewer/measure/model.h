@@ -10,49 +10,49 @@
 
 namespace lucarne::viewer {
 
-/// What the user measures with, and what was measured: the tools' part of the ViewModel.
+/// The measuring part of the ViewModel: tools, options and measurements.
 struct MeasureModel {
-    std::optional<MeasureKind> tool;  ///< takes the next clicks
-    std::vector<ExactPoint> pending;  ///< those it has taken
+    std::optional<MeasureKind> tool;  ///< the active tool, which receives the next clicks
+    std::vector<ExactPoint> pending;  ///< points that the tool has received
     MeasureList list;
     std::optional<size_t> selected;  ///< in the list
     bool metres = true, labels = true;
-    double thickness = 0;        ///< of the next section, world units; 0: none was chosen yet
-    double metres_per_unit = 1;  ///< of the world, in which all positions are
-    /// To save to and load from: .csv or .json.
+    double thickness = 0;        ///< of the next section, world units; 0: not chosen yet
+    double metres_per_unit = 1;  ///< the world unit, in which all positions are given
+    /// File to save to and load from: .csv or .json.
     std::string file = "measurements.json";
-    std::filesystem::path own_file;  ///< saved or loaded before
+    std::filesystem::path own_file;  ///< the file that was saved or loaded last
 
-    // Wishes of actions and panels, which the session fulfils.
+    // Requests from actions and panels, which the session carries out.
     enum class FileWish { none, save, load };
     FileWish wish = FileWish::none;
     bool save_section = false;
     std::optional<std::string> clipboard;
-    // What it has.
-    std::shared_ptr<const Section> section;  ///< of the selected one, as far as it was read
-    std::string message;                     ///< to be shown once
+    // Results of the session.
+    std::shared_ptr<const Section> section;  ///< the selected section, as far as it has been read
+    std::string message;                     ///< message to be shown once
 
     void start(MeasureKind kind);
-    /// A point was picked: the tool has what it needs, or waits for more.
+    /// Passes a picked point to the tool, which completes the measurement or waits for more points.
     void take(ExactPoint point);
-    /// Ends a path or an area; false where it has too few points.
+    /// Completes a path or an area. Returns false if it has too few points.
     bool finish();
-    void drop_last();  ///< of the pending points
-    void stop();       ///< lays the tool away
+    void drop_last();  ///< removes the last pending point
+    void stop();       ///< deactivates the tool
     void remove_selected();
     void undo();
     void redo();
-    void copy_selected();  ///< all, where none is selected
+    void copy_selected();  ///< copies all if none is selected
 
-    /// Whether measurements are in no file, or the tool's points are enough for one.
+    /// Whether there are unsaved measurements, or pending points that are enough for one.
     bool unsaved() const { return list.unsaved() || can_finish(); }
-    /// Writes over its own file alone. Errors: save_measurements().
+    /// Saves the measurements. Overwrites only `own_file`. Errors: those of save_measurements().
     Result<void> save(const std::filesystem::path& path);
-    /// Takes the place of all there is, which can be undone. Errors: load_measurements(); then nothing
-    /// changes.
+    /// Replaces all measurements by those of a file; this can be undone. Errors: those of
+    /// load_measurements(); on failure nothing changes.
     Result<void> load(const std::filesystem::path& path);
 
-    /// Another scan was opened or closed, and with it the unit of all together has changed.
+    /// Call when the unit of the whole source has changed because a scan was opened or closed.
     void set_unit(double its_metres_per_unit);
 
     bool can_finish() const { return tool && pending.size() >= info_of(*tool).least; }

@@ -1,4 +1,4 @@
-// Measurements over the picture.
+// Draws measurements over the picture.
 #include <algorithm>
 
 #include <imgui.h>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr ImU32 kColor = IM_COL32(255, 220, 60, 255), kSelected = IM_COL32(90, 230, 255, 255),
                 kPending = IM_COL32(255, 120, 90, 255), kPaper = IM_COL32(0, 0, 0, 170);
-constexpr float kDimmed = 0.35f;       ///< of what a surface hides
-constexpr float kPadX = 5, kPadY = 3;  ///< around a label's text, to be scaled()
+constexpr float kDimmed = 0.35f;       ///< opacity of what a surface hides
+constexpr float kPadX = 5, kPadY = 3;  ///< padding around a label's text, before scaled()
 
 ImVec2 at(const glm::dvec2& p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y)};
@@ -31,7 +31,7 @@ struct Box {
 Box box_of(const OverlayLabel& label) {
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
     const ImVec2 middle = at(label.at), pad(scaled(kPadX), scaled(kPadY));
-    const float above = size.y;  // so that the point or line itself is not covered
+    const float above = size.y;  // labels stand above the point or line, so as not to cover it
     return {{middle.x - size.x / 2 - pad.x, middle.y - above - size.y / 2 - pad.y},
             {middle.x + size.x / 2 + pad.x, middle.y - above + size.y / 2 + pad.y}};
 }
@@ -54,7 +54,7 @@ void draw(const Overlay& overlay, bool labels, const ColorOf& color_of) {
     }
 }
 
-/// The measurement whose label is under the cursor.
+/// Returns the measurement whose label is under the cursor.
 std::optional<size_t> label_under_cursor(const Overlay& overlay) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     for (auto label = overlay.labels.rbegin(); label != overlay.labels.rend(); ++label) {

@@ -1,4 +1,4 @@
-// The measuring tools, what was measured, and all that is known of the selected one's points.
+// The panel of measuring tools, measurements, and all data of the selected measurement's points.
 #include <algorithm>
 #include <string>
 

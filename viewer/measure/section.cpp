@@ -11,9 +11,9 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr uint64_t kNodesAtOnce = 16;  ///< between two looks at `progress`
+constexpr uint64_t kNodesAtOnce = 16;  ///< nodes read between two calls of `progress`
 
-/// The slice as axes on the map.
+/// The slice's horizontal axes.
 class Frame {
  public:
     explicit Frame(const Slice& slice)
@@ -28,7 +28,7 @@ class Frame {
         return p.x >= -reach && p.x <= length_ + reach && std::abs(p.y) <= half_ + reach;
     }
     bool holds(const glm::dvec2& p) const { return p.x >= 0 && p.x <= length_ && std::abs(p.y) <= half_; }
-    glm::dvec2 place(const glm::dvec3& p) const {  ///< along, across
+    glm::dvec2 place(const glm::dvec3& p) const {  ///< returns (along, across)
         const glm::dvec2 d(p.x - from_.x, p.y - from_.y);
         return {d.x * u_.x + d.y * u_.y, d.y * u_.x - d.x * u_.y};
     }
@@ -39,7 +39,7 @@ class Frame {
     glm::dvec2 u_;
 };
 
-/// Those that the slice may meet, coarse levels first.
+/// Returns the nodes that may intersect the slice, coarse levels first.
 std::vector<uint32_t> nodes_in(const octree::NodeSource& source, const Frame& frame) {
     const auto nodes = source.nodes();
     std::vector<uint32_t> found = source.roots();
@@ -60,7 +60,7 @@ class ColorReader {
           scan_(header.schema.find(io::names::scan)),
           scans_(header.scans) {
         if (color_ && color_->components != 3) color_ = nullptr;
-        if (scan_ && scan_->type != io::ScalarType::u16) scan_ = nullptr;  // a damaged cache's
+        if (scan_ && scan_->type != io::ScalarType::u16) scan_ = nullptr;  // the cache is damaged
     }
     std::array<uint8_t, 3> at(const std::byte* record) const {
         std::array<uint8_t, 3> rgb{200, 200, 200};
@@ -111,12 +111,13 @@ Result<Section> read_section(const octree::NodeSource& source, const Slice& slic
     Section section;
     section.slice = slice;
     section.nodes = nodes.size();
-    size_t level_start = 0;  // of the points of the level being read
+    size_t level_start = 0;  // index of the first point of the level being read
     for (size_t i = 0; i < nodes.size(); ++i) {
         LUCARNE_TRY(add_node(source, nodes[i], frame, section));
         ++section.nodes_read;
         if (section.points.size() > most) {
-            // Part of a level would be uneven; but something of the first is better than nothing.
+            // Drop a partial level, since it would be an uneven sample. Keep part of the first level, which
+            // is better than nothing.
             section.points.resize(level_start ? level_start : most);
             take_heights(section);
             return section;

@@ -1,4 +1,4 @@
-// A section as files: points for other programs, and a drawing.
+// Writes a section as files: a table of points for other programs, and a drawing.
 #include <algorithm>
 #include <cmath>
 
@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kWidth = 1200, kMargin = 70, kMostHeight = 1200;  ///< of a drawing, pixels
 constexpr size_t kPiece = size_t{1} << 20;                         ///< bytes of a table written at once
-constexpr size_t kMostDots = 50'000;  ///< of a drawing: no browser shows more at ease
+constexpr size_t kMostDots = 50'000;  ///< of a drawing: browsers get slow with more
 
-/// The names of all parts' attributes, in the order in which they come up.
+/// Returns the names of all parts' attributes, in the order of their first appearance.
 std::vector<std::string> columns_of(const octree::NodeSource& source) {
     std::vector<std::string> names;
     for (const uint32_t root : source.roots())

@@ -1,4 +1,4 @@
-// The selected section as a drawing: along the line to the right, height upward, both to the same scale.
+// Draws the selected section: along the line to the right, height upward, both with the same scale.
 #include "viewer/measure/section_panel.h"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kDot = 2;                           ///< pixels of a cell's side
-constexpr float kColumnApart = 90, kRowApart = 36;  ///< pixels between marks of the axes, about
+constexpr float kDot = 2;                           ///< side of a cell, pixels
+constexpr float kColumnApart = 90, kRowApart = 36;  ///< approximate distance between axis marks, pixels
 constexpr ImU32 kGrid = IM_COL32(90, 90, 90, 255), kText = IM_COL32(200, 200, 200, 255);
 
 void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, const ImVec2& size,
           const UnitChoice& units) {
     const double unit = units.convert(1, Dimension::length),
-                 pixels = raster.scale * kDot / unit;  // a shown unit
+                 pixels = raster.scale * kDot / unit;  // pixels per displayed unit
     const double left = raster.left * unit, bottom = raster.bottom * unit;
     const auto marks = [&](float length, float apart) {
         return axis_step(length / pixels, std::max(static_cast<int>(length / apart), 1));

@@ -9,7 +9,7 @@ struct ImVec2;
 
 namespace lucarne::viewer {
 
-/// The selected section, drawn. Keeps its dots from frame to frame.
+/// Draws the selected section. Keeps its dots from frame to frame.
 class SectionPanel {
  public:
     void draw(ViewModel& model);

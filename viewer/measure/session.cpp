@@ -11,7 +11,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kClickReach = 4;  ///< to be scaled(): what moves further between press and release is a drag
+constexpr float kClickReach = 4;  ///< before scaled(): a longer move between press and release is a drag
 }  // namespace
 
 void MeasureSession::take_results(ViewModel& model) {
@@ -44,7 +44,7 @@ void MeasureSession::files(ViewModel& model) {
     MeasureModel& measure = model.measure;
     if (measure.wish == MeasureModel::FileWish::none) return;
     if (measure.wish == MeasureModel::FileWish::load && !model.picture)
-        return;  // the first one tells the unit
+        return;  // the first scan determines the unit
     const auto wish = std::exchange(measure.wish, MeasureModel::FileWish::none);
     const auto path = model.pictures / measure.file;
     const bool save = wish == MeasureModel::FileWish::save;

@@ -6,12 +6,12 @@
 
 namespace lucarne::viewer {
 
-/// Measuring in the window: clicks become points, wishes are fulfilled, panels and labels drawn.
+/// Measuring in the window: turns clicks into points, carries out requests, draws panels and labels.
 class MeasureSession {
  public:
     explicit MeasureSession(std::function<void()> wake) : worker_(std::move(wake)) {}
 
-    /// Between the window's begin_frame and draw.
+    /// Call take_input() and draw() between the window's begin_frame and draw.
     void take_input(ViewModel& model);
     void draw(ViewModel& model);
 

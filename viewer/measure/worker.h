@@ -14,30 +14,30 @@
 
 namespace lucarne::viewer {
 
-/// What measuring reads of a cloud, off the window's thread: picked points in the order of the clicks, and
-/// one section at a time.
+/// Reads points of a cloud for measuring, off the window's thread: picked points in the order of the clicks,
+/// and one section at a time.
 class MeasureWorker {
  public:
-    /// `published` is called on a thread of this object whenever something has come.
+    /// `published` is called on a thread of this object when there is a new result.
     explicit MeasureWorker(std::function<void()> published) : published_(std::move(published)) {}
 
     ~MeasureWorker() { *stop_ = true; }
     MeasureWorker(const MeasureWorker&) = delete;
     MeasureWorker& operator=(const MeasureWorker&) = delete;
 
-    /// Clicks beyond kMostWaiting that wait are dropped.
+    /// Picks the point at a place of the picture. Drops the click if kMostWaiting clicks are waiting.
     void pick(std::shared_ptr<const Picture> picture, const glm::dvec2& place);
     static constexpr int kMostWaiting = 32;
     using Pick = Result<std::optional<PickedPoint>>;
     std::vector<Pick> take_picks();
 
-    /// Instead of the section before, unless it is the same.
+    /// Starts reading a section and stops reading the previous one. Does nothing if it is the same section.
     void read(std::shared_ptr<const octree::NodeSource> source, const Slice& slice);
-    /// As much as there is of it; null before its first level.
+    /// Returns the section as far as it has been read; null before its first level.
     std::shared_ptr<const Section> section() const;
-    /// Writes `base`.csv and .svg of the section when it is read; not over files that are there.
+    /// Writes `base`.csv and .svg once the section has been read. Overwrites no files.
     void save_section(const std::filesystem::path& base, const std::string& title, const UnitChoice& units);
-    /// Errors, and what was saved, for people; each once.
+    /// Returns the newest message about errors or saved files, once.
     std::optional<std::string> take_message();
 
  private:
@@ -53,11 +53,11 @@ class MeasureWorker {
     std::optional<Slice> slice_;
     std::shared_ptr<const Section> section_;
     std::optional<std::string> message_;
-    std::atomic<int> waiting_{0};  ///< picks
-    /// Stops reading the section.
+    std::atomic<int> waiting_{0};  ///< waiting picks
+    /// Set to stop reading the section.
     std::shared_ptr<std::atomic<bool>> stop_ = std::make_shared<std::atomic<bool>>(false);
-    std::unique_ptr<NodeCache> cache_;  ///< the picking thread's
-    JobQueue picking_, sections_;       ///< last: they end before what they use
+    std::unique_ptr<NodeCache> cache_;  ///< used by the picking thread
+    JobQueue picking_, sections_;       ///< last members: they end before the members that they use
 };
 
 }  // namespace lucarne::viewer

@@ -12,7 +12,7 @@ double nice_at_most(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     for (const double factor : {5.0, 2.0, 1.0})
         if (factor * power <= most * (1 + 1e-12)) return factor * power;
-    return power / 2;  // the logarithm was rounded up
+    return power / 2;  // rounding made the logarithm too large
 }
 
 double axis_step(double range, int count) {
@@ -26,7 +26,7 @@ double axis_step(double range, int count) {
 std::vector<double> axis_marks(double low, double high, double step) {
     std::vector<double> marks;
     const double first = std::ceil(low / step - 1e-9);
-    // Counted: far away a step may be less than a double's.
+    // Count the marks: at large values a step may be smaller than the resolution of a double.
     for (int i = 0; i < 100 && (first + i) * step <= high + 1e-9 * step; ++i)
         marks.push_back((first + i) * step);
     return marks;

@@ -21,10 +21,10 @@ class Canvas {
     void blend(int64_t x, int64_t y, const glm::vec3& colour, float opacity) {
         if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height) return;
         const size_t pixel = static_cast<size_t>(y) * picture_.width + static_cast<size_t>(x);
-        float share = opacity;  // of the mark's colour in the mixture
+        float share = opacity;  // weight of the mark's colour in the mixture
         if (!picture_.alpha.empty()) {
-            // Porter & Duff ("Compositing digital images", 1984), "over", for colours that opacity is not
-            // multiplied into.
+            // The "over" operator of Porter & Duff ("Compositing digital images", 1984) for non-premultiplied
+            // colours.
             uint8_t& alpha = picture_.alpha[pixel];
             const float both = opacity + static_cast<float>(alpha) / 255.0f * (1 - opacity);
             if (both <= 0) return;
@@ -55,7 +55,7 @@ class Canvas {
     }
 
  private:
-    /// Within a picture's width of the picture: what is far outside takes no time.
+    /// Clamps a place to within one picture width of the picture, so that marks far outside take no time.
     glm::dvec2 clamped(const glm::dvec2& at) const {
         const glm::dvec2 size(picture_.width, picture_.height);
         return glm::clamp(at, -size, 2.0 * size);
@@ -63,7 +63,7 @@ class Canvas {
     io::Image8& picture_;
 };
 
-/// The interface's font as pixels.
+/// The glyphs of the interface's font as pixels.
 class Letters {
  public:
     Letters() {

@@ -7,7 +7,7 @@
 
 namespace lucarne::viewer {
 
-/// Draws marks into a picture without a window; texts in the interface's font, `scale` times its size.
+/// Draws marks into a picture without a window. Texts use the interface's font at `scale` times its size.
 void draw_marks(std::span<const Mark> marks, int scale, io::Image8& picture);
 
 }  // namespace lucarne::viewer

@@ -14,7 +14,7 @@ namespace {
 using glm::dvec2;
 
 struct Tick {
-    double place;  ///< along the bar, 0 to 1
+    double place;  ///< position along the bar, 0 to 1
     std::string text;
 };
 struct Scale {
@@ -48,7 +48,7 @@ std::vector<Mark> draw(const Scale& scale, const OverlayView& view) {
     return marks;
 }
 
-/// Powers of ten; where there are few, also twice and five times as much.
+/// Returns ticks at powers of ten and, if these are few, also at two and five times them.
 std::vector<Tick> logarithmic_ticks(const gi::ValueRange& range) {
     const double low = std::log10(range.low), high = std::log10(range.high);
     const int step = std::max(1, static_cast<int>((high - low) / 7));

@@ -42,7 +42,7 @@ class Sheet {
     const OverlayView& view_;
 };
 
-/// A title and rows of a colour and a name each, at the top right.
+/// Draws a title and rows of a colour and a name at the top right.
 void draw_rows(Sheet& sheet, const std::string& title,
                const std::vector<std::pair<glm::vec3, std::string>>& rows) {
     const double em = sheet.em(), left = sheet.width() - 14 * em, row = 1.3 * em;
@@ -127,7 +127,7 @@ void draw_legend(Sheet& sheet, const gi::Look& look, const gi::ShownValues& valu
     }
 }
 
-/// At the bottom left, the axis farthest away first.
+/// Draws the axes at the bottom left, the farthest first.
 void draw_axes(Sheet& sheet, const gi::SceneCamera& camera) {
     static constexpr std::array<glm::vec3, 3> kColours = {
         glm::vec3(0.95f, 0.3f, 0.3f), glm::vec3(0.4f, 0.85f, 0.35f), glm::vec3(0.4f, 0.6f, 1.0f)};
@@ -160,7 +160,7 @@ void draw_scale(Sheet& sheet, const OverlayView& view) {
     }
 }
 
-/// "5 km", "20 cm".
+/// Returns a text such as "5 km" or "20 cm".
 std::string metres_text(double metres) {
     if (metres >= 1000) return fmt::format("{:g} km", metres / 1000);
     if (metres >= 1) return fmt::format("{:g} m", metres);

@@ -16,17 +16,17 @@ namespace {
 
 using Wide = __int128;
 
-/// More than that are no digits that anyone chose: a scale of 1/3 of a millimetre, say.
+/// A scale with more decimals was not chosen as a decimal number; an example is 1/3 of a millimetre.
 constexpr int kMostDecimals = 12;
 constexpr int kMostShift = 18;  ///< powers of ten by which a 54-bit mantissa times 32 bits stays in 128 bits
 
-/// mantissa * 10^exponent
+/// The number mantissa * 10^exponent.
 struct Decimal {
     Wide mantissa = 0;
     int exponent = 0;
 };
 
-/// The shortest decimal that reads back as the same number, which is what was meant by it.
+/// Returns the shortest decimal that reads back as the same number.
 template <class Float>
 std::string shortest(Float value, std::chars_format format) {
     std::array<char, 400> text;  // the widest double without an exponent has 327 characters
@@ -72,7 +72,7 @@ std::string text_of(Wide number, int decimals) {
     return digits;
 }
 
-/// None where it has no short decimal.
+/// Returns integer * scale + offset as exact text, or nothing if scale or offset has no short decimal.
 std::optional<std::string> scaled_text(int32_t integer, double scale, double offset) {
     Decimal product = decimal_of(scale), shift = decimal_of(offset);
     product.mantissa *= integer;
@@ -116,7 +116,7 @@ std::string file_name(const std::vector<io::ScanInfo>& scans, size_t index) {
                                 : std::string();
 }
 
-/// None for what is no property of the point that was scanned.
+/// Returns an attribute as a field, or nothing if the attribute is not a property of the scanned point.
 std::optional<PointField> field_of(const octree::SourceHeader& header, const io::Attribute& attribute,
                                    const std::byte* record) {
     const std::byte* at = record + attribute.offset;
@@ -165,7 +165,7 @@ ExactPoint exact_point(const octree::NodeSource& source, uint32_t node, const st
     ExactPoint point;
     point.coordinates = coordinate_texts(schema, record);
     for (int axis = 0; axis < 3; ++axis) {
-        // The number nearest to the text, which prints as the text: integer * scale + offset was rounded
+        // Take the double nearest to the exact text, since integer * scale + offset in doubles is rounded
         // twice.
         const std::string& text = point.coordinates[static_cast<size_t>(axis)];
         std::from_chars(text.data(), text.data() + text.size(), point.position[axis]);

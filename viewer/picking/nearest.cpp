@@ -20,7 +20,7 @@ double distance2(const octree::Cube& cube, const glm::dvec3& place) {
 Result<std::optional<ExactPoint>> nearest_point(NodeCache& cache, const glm::dvec3& place, double radius) {
     const octree::NodeSource& source = *cache.source();
     const auto nodes = source.nodes();
-    using Entry = std::pair<double, uint32_t>;  // by distance, then in the directory's order
+    using Entry = std::pair<double, uint32_t>;  // ordered by distance, then by the directory's order
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (const uint32_t root : source.roots()) queue.emplace(distance2(source.cube(root), place), root);
     double best = radius * radius;

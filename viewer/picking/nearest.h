@@ -7,9 +7,9 @@
 
 namespace lucarne::viewer {
 
-/// The point of the scan nearest to a place, within `radius` (world units; infinite for any), by reading only
-/// nodes whose cube may hold a nearer one. Equally near: the first in the directory. Empty: none so near.
-/// Errors: a node that cannot be read.
+/// Returns the point of the scan nearest to a place, within `radius` (world units; may be infinite). Reads
+/// only nodes whose cube may contain a nearer point. Of equally near points, returns the first in the
+/// directory. Returns nothing if no point is within `radius`. Errors: a node cannot be read.
 Result<std::optional<ExactPoint>> nearest_point(NodeCache& cache, const glm::dvec3& place, double radius);
 
 }  // namespace lucarne::viewer

@@ -8,17 +8,17 @@
 
 namespace lucarne::viewer {
 
-/// The nodes of a source that were read last, so that neighbours of a point cost nothing. Thread-safe.
+/// Keeps the most recently read nodes of a source, so that points near each other need no further reads.
+/// Thread-safe.
 class NodeCache {
  public:
-    static constexpr uint64_t kMostBytes = uint64_t{32}
-                                           << 20;  ///< of records; the last node is kept in any case
+    static constexpr uint64_t kMostBytes = uint64_t{32} << 20;  ///< of records; the last node is always kept
 
     NodeCache() = default;
     explicit NodeCache(std::shared_ptr<const octree::NodeSource> source) : source_(std::move(source)) {}
 
     const std::shared_ptr<const octree::NodeSource>& source() const { return source_; }
-    /// Errors: those of NodeSource::load.
+    /// Returns a node's data. Errors: those of NodeSource::load.
     Result<std::shared_ptr<const octree::NodeData>> node(uint32_t index);
 
  private:

@@ -8,19 +8,19 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr int kReach = 5;               ///< pixels around the place
-constexpr size_t kMostCandidates = 12;  ///< surfels of which the points are read
+constexpr int kReach = 5;               ///< pixels searched around the place
+constexpr size_t kMostCandidates = 12;  ///< surfels whose points are read
 
 struct Candidate {
     uint32_t id = 0;
-    int distance2 = 0;  ///< pixels^2, of its pixel nearest to the place
+    int distance2 = 0;  ///< pixels^2 from the place to the surfel's nearest pixel
 };
 
 glm::dvec3 wide(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// What is seen at and around a pixel, the nearest first.
+/// Returns the surfels visible at and around a pixel, the nearest first.
 std::vector<Candidate> candidates(const Picture& picture, const glm::ivec2& at) {
     const int width = static_cast<int>(picture.size.width), height = static_cast<int>(picture.size.height);
     std::vector<Candidate> found;
@@ -39,10 +39,10 @@ std::vector<Candidate> candidates(const Picture& picture, const glm::ivec2& at) 
     return found;
 }
 
-/// Whether the surfel is what the picture shows where its point is, give or take a pixel.
+/// Returns whether the picture shows the surfel at its point's pixel or a neighbouring pixel.
 bool shows(const Picture& picture, uint32_t id, const Projection& point) {
     const int width = static_cast<int>(picture.size.width), height = static_cast<int>(picture.size.height);
-    const double most = 1e6;  // no int overflows
+    const double most = 1e6;  // prevents integer overflow
     if (std::abs(point.pixel.x) > most || std::abs(point.pixel.y) > most) return false;
     const int x = static_cast<int>(std::floor(point.pixel.x)),
               y = static_cast<int>(std::floor(point.pixel.y));
@@ -96,7 +96,7 @@ Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm:
         if (distance >= nearest) continue;
         nearest = distance;
         best = PickedPoint{*found, std::move(point)};
-        if (nearest < 0) break;  // the very pixel shows it
+        if (nearest < 0) break;  // the pixel at the place itself shows it
     }
     return best;
 }

@@ -11,15 +11,16 @@
 
 namespace lucarne::viewer {
 
-/// Where a world point stands in a picture.
+/// The projection of a world point into a picture.
 struct Projection {
     glm::dvec2 pixel{0.0};  ///< from the top left corner; pixel centres at .5
     double depth = 0;       ///< m along the camera's forward axis
 };
-/// None behind the camera. Errors of floats aside, the inverse of Picture::pick.
+/// Projects a world point. Returns nothing behind the camera. Up to rounding, this is the inverse of
+/// Picture::pick.
 std::optional<Projection> project(const Picture& picture, const glm::dvec3& world);
 
-/// What the picture's surface hides: true where it shows something nearer than the point by more than
+/// Returns whether the picture's surface hides a point: whether it shows something nearer by more than
 /// `slack`, a share of the depth. False outside the picture.
 bool hidden(const Picture& picture, const Projection& point, double slack = 0.005);
 
@@ -29,11 +30,11 @@ struct PickedPoint {
     ExactPoint point;
 };
 
-/// The point of the scan at a place of the picture (shares of its width and height from the top left): that
-/// whose surfel the pixel there shows, or the nearest of those within a few pixels. Only points whose own
-/// place in the picture shows them are taken, so none that lies behind a surface, outside the cut, or was
-/// clipped: the picture has no id of those. Reads the points' nodes, and so may block. `cache` is of the
-/// picture's source. Empty: nothing is seen there. Errors: a node that cannot be read.
+/// Returns the point of the scan at a place of the picture (shares of its width and height from the top
+/// left): the point whose surfel the pixel shows, or the nearest visible one within a few pixels. Takes only
+/// points that are visible at their own pixel. Points behind a surface, outside the cut or clipped are never
+/// taken, because the picture contains no ids of them. Reads nodes, so it may block. `cache` must belong to
+/// the picture's source. Returns nothing if nothing is visible there. Errors: a node cannot be read.
 Result<std::optional<PickedPoint>> pick_point(const Picture& picture, const glm::dvec2& place,
                                               NodeCache& cache);
 

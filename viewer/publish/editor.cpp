@@ -9,7 +9,7 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostUndone = 50;
-constexpr const char* kName = "flythrough";  ///< in messages, of a path without a file
+constexpr const char* kName = "flythrough";  ///< name of a path without a file in messages
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void PathEditor::put(CameraPath path) {
     select(selected_);
 }
 
-/// What the reader makes of it, so that this and the file are the same.
+/// Takes the path as the reader parses it, so that the path and its file agree exactly.
 Result<void> PathEditor::take(CameraPath changed) {
     if (!changed.keys.empty()) {
         LUCARNE_ASSIGN(changed, parse_path(path_text(changed), kName));

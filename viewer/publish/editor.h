@@ -7,36 +7,37 @@
 
 namespace lucarne::viewer {
 
-/// A camera path that is being made. Whatever is done to it, its key frames are in the order of their times,
-/// and its file is one that `lucarne fly` reads: every change goes through path_text() and parse_path(), and
-/// one that would not be read is an error and changes nothing.
+/// A camera path that is being edited. Its key frames are always ordered by time, and `lucarne fly` can
+/// always read its file: every change goes through path_text() and parse_path(). A change that could not be
+/// read back is an error and changes nothing.
 class PathEditor {
  public:
-    static constexpr double kStep = 2;  ///< s between a new key frame and the one before
+    static constexpr double kStep = 2;  ///< s between the last key frame and a new one after it
 
-    const CameraPath& path() const { return path_; }  ///< without keys at first
+    const CameraPath& path() const { return path_; }  ///< has no keys at first
     bool empty() const { return path_.keys.empty(); }
     std::optional<size_t> selected() const { return selected_; }
     void select(std::optional<size_t> key);
 
-    /// After the selected key frame, halfway to the next one, or kStep after the last; selects it.
+    /// Adds a key frame after the selected one, halfway to the next one, or kStep after the last. Selects it.
     Result<void> add(const gi::SceneCamera& camera);
-    // These change the selected key frame; without one they do nothing.
-    Result<void> replace(const gi::SceneCamera& camera);  ///< its time stays
+    // These change the selected key frame. They do nothing if none is selected.
+    Result<void> replace(const gi::SceneCamera& camera);  ///< the key frame's time stays
     Result<void> remove();
-    Result<void> set_time(double time);  ///< s; may bring it before or after others
+    Result<void> set_time(double time);  ///< s; may move the key frame before or after others
     Result<void> set_fov(double radians);
-    /// Exchanges its camera with that of the key frame `by` places further: the times stay.
+    /// Exchanges the camera with that of the key frame `by` places later. The times stay.
     Result<void> move(int by);
     Result<void> set_frames_per_second(double rate);
     bool can_undo() const { return !before_.empty(); }
     void undo();
 
-    /// Takes the place of all there is. Errors: the file's; then nothing changes.
+    /// Replaces the path by a file's. Errors: those of reading the file; on failure nothing changes.
     Result<void> load(const std::filesystem::path& file);
-    /// Errors: there is no key frame yet; the file cannot be written, or exists and is not to be replaced.
+    /// Saves the path. Errors: there is no key frame; the file cannot be written; it exists and `overwrite`
+    /// is false.
     Result<void> save(const std::filesystem::path& file, bool overwrite);
-    /// Whether there are key frames that are other than those saved or loaded last.
+    /// Whether there are key frames that differ from those saved or loaded last.
     bool unsaved() const { return !empty() && revision_ != saved_; }
 
  private:
@@ -48,7 +49,7 @@ class PathEditor {
     void put(CameraPath path);
 
     CameraPath path_;
-    uint64_t revision_ = 0, newest_ = 0, saved_ = 0;  ///< of the path; the last that was given; in the file
+    uint64_t revision_ = 0, newest_ = 0, saved_ = 0;  ///< of the path; the newest; in the file
     std::optional<size_t> selected_;
     std::vector<Before> before_;  ///< for undo
 };

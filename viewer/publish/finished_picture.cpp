@@ -12,9 +12,9 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr uint32_t kTextHeight = 540;  ///< pixels of a picture for each size of the texts over it
+constexpr uint32_t kTextHeight = 540;  ///< picture height, pixels, for each step of text size
 
-/// What the look wants over the picture.
+/// Draws the overlays that the look requests.
 void draw_overlay(const Pipeline& pipeline, const gi::SceneCamera& camera, io::Image8& picture) {
     const int scale = std::max(static_cast<int>(picture.height / kTextHeight), 1);
     OverlayView view;

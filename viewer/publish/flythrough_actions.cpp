@@ -44,7 +44,7 @@ template <int kBy>
 void move_key(ViewModel& model) {
     model.show.take(model.show.editor.move(kBy));
 }
-/// Around the ends.
+/// Selects the key frame `kBy` places further; wraps around at the ends.
 template <int kBy>
 void select_key(ViewModel& model) {
     ShowModel& show = model.show;

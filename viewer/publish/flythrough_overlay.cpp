@@ -1,4 +1,4 @@
-// A flythrough's path over the picture.
+// Draws a flythrough's path over the picture.
 #include <imgui.h>
 
 #include "viewer/measure/marks_layout.h"
@@ -8,9 +8,9 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostPlaces = 1000;  ///< along the path
-constexpr int kPieces = 2;            ///< of the line between two of them, each seen or hidden
+constexpr int kPieces = 2;            ///< of the line between two places, each visible or hidden
 constexpr ImU32 kPath = IM_COL32(255, 140, 60, 255), kSelected = IM_COL32(90, 230, 255, 255);
-constexpr float kDimmed = 0.35f;  ///< of what a surface hides
+constexpr float kDimmed = 0.35f;  ///< opacity of what a surface hides
 
 ImVec2 at(const glm::dvec2& p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y)};
@@ -26,7 +26,7 @@ ImU32 shade(ImU32 colour, bool hidden) {
 
 void draw_flythrough(const ViewModel& model) {
     const ShowModel& show = model.show;
-    // While it plays, the path runs through the eye.
+    // Not drawn while it plays, because the path would run through the eye.
     if (!show.draw_path || show.playing || show.editor.empty() || !model.picture) return;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     Overlay overlay;

@@ -1,4 +1,4 @@
-// Key frames of a flythrough, its preview, its files and what is rendered of it.
+// The panel of a flythrough's key frames, preview, files and rendering.
 #include <algorithm>
 #include <numbers>
 #include <string>
@@ -59,9 +59,9 @@ void key_buttons(ViewModel& model) {
     ImGui::Checkbox("draw the path", &show.draw_path);
 }
 
-/// Taken once the user is done with the field, so that half a number is no error. ImGui says "changed" in
-/// each frame in which the text is another number than `value`: the last of them counts, unless it was taken
-/// back.
+/// A number field whose value is passed to `take` once the user leaves the field, so that a half-typed number
+/// is no error. ImGui reports "changed" in every frame in which the text differs from `value`; the last such
+/// number counts, unless the user restored the old one.
 template <class Take>
 void number_field(ShowModel& show, const char* label, double value, const Take& take) {
     if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))

@@ -7,53 +7,53 @@
 
 namespace lucarne::viewer {
 
-/// Pictures and flights to show others: that part of the ViewModel.
+/// The part of the ViewModel for saved pictures and flythroughs.
 struct ShowModel {
     PathEditor editor;
-    double time = 0;  ///< s, of the path: where the preview is
+    double time = 0;  ///< s on the path: the preview's position
     bool playing = false;
-    bool sought = false;  ///< the camera is to go where the preview is
+    bool sought = false;  ///< the camera has to move to the preview's position
     bool draw_path = true;
 
-    // A picture.
-    int width = 0, height = 0;  ///< pixels; 0: as the window was at first
+    // Settings of a picture.
+    int width = 0, height = 0;  ///< pixels; 0: the window's size at first
     int frames = 8;             ///< averaged
     PictureFinish finish;
     std::string picture_file = "picture.png";
-    // A flight.
-    int flight_width = 0, flight_height = 0;  ///< likewise
+    // Settings of a flight.
+    int flight_width = 0, flight_height = 0;  ///< pixels; 0: the window's size at first
     std::string path_file = "flythrough.json";
     std::filesystem::path own_path;  ///< saved or loaded before
     std::string frames_folder = "frames";
     std::string video_file = "flythrough.mp4";
 
-    // Wishes of actions and panels, which the session fulfils.
+    // Requests from actions and panels, which the session carries out.
     enum class Wish { none, save_path, load_path, picture, frames, video, cancel } wish = Wish::none;
     RenderState rendering;
-    std::string message;          ///< to be shown once
-    std::optional<double> typed;  ///< in the field that has the keyboard
+    std::string message;          ///< message to be shown once
+    std::optional<double> typed;  ///< number typed in the field that has the keyboard
 
-    /// An editor's error becomes the message.
+    /// Shows an editor's error as the message.
     void take(Result<void> done) {
         if (!done) message = done.error().line();
     }
-    /// Writes over its own file alone.
+    /// Saves the path. Overwrites only `own_path`.
     Result<void> save_path(const std::filesystem::path& file);
-    /// Takes the place of the path that there is; the preview is at its start.
+    /// Replaces the path by a file's and moves the preview to its start.
     Result<void> load_path(const std::filesystem::path& file);
-    /// After the selected key frame; the preview is there.
+    /// Adds a key frame after the selected one and moves the preview there.
     void add_key(const gi::SceneCamera& camera);
-    /// Sizes that were not chosen yet.
+    /// Sets the sizes that have not been chosen yet.
     void set_sizes(int window_width, int window_height);
-    /// Starts at the beginning again where the preview is at the end.
+    /// Plays the preview; starts again at the beginning if the preview is at the end.
     void play();
-    /// The preview goes on by so many seconds; it ends at the path's end.
+    /// Advances the preview by `seconds`. It stops at the path's end.
     void advance(double seconds);
-    /// Selects a key frame and goes to its time.
+    /// Selects a key frame and moves the preview to its time.
     void go_to_key(size_t key);
 };
 
-/// What is drawn of a path in a window: places along it, world units, at most `most` of them.
+/// Returns at most `most` places along a path for drawing it, world units.
 std::vector<glm::dvec3> places_along(const CameraPath& path, size_t most);
 
 }  // namespace lucarne::viewer

@@ -79,7 +79,7 @@ bool compares(const ViewModel& model) {
     return model.scene.comparison.has_value();
 }
 void toggle_comparison(ViewModel& model) {
-    // What light from surface to surface adds is seen beside direct light alone.
+    // Compare with direct light alone, to show what indirect light adds.
     const auto& direct = gi::engine_with(&gi::EngineInfo::direct_only);
     const auto& other = model.engine == direct.name ? gi::default_engine() : direct;
     compare_with(model, compares(model) ? "" : std::string(other.name));

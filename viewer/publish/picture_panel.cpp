@@ -1,4 +1,4 @@
-// Pictures of any size, saved under a chosen name.
+// The panel for saving pictures of any size under a chosen name.
 #include <algorithm>
 
 #include <imgui.h>

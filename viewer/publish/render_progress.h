@@ -12,7 +12,7 @@ namespace lucarne::viewer {
 inline constexpr int kLargestPicture = 16384;  ///< pixels along a side
 inline constexpr int kMostAveraged = 65536;    ///< frames
 
-/// A picture's width and height.
+/// Draws fields for a picture's width and height.
 inline void size_fields(const char* label, int& width, int& height) {
     int both[2] = {width, height};
     ImGui::InputInt2(label, both);
@@ -20,7 +20,7 @@ inline void size_fields(const char* label, int& width, int& height) {
     height = std::clamp(both[1], 1, kLargestPicture);
 }
 
-/// How far what is being rendered is, with a button to cancel it; true where nothing is.
+/// Draws the progress of rendering and a button to cancel it. Returns true if nothing is being rendered.
 inline bool render_progress(ShowModel& show) {
     const RenderState& state = show.rendering;
     if (!state.running) return true;

@@ -33,12 +33,12 @@ namespace {
 
 constexpr const char* kCancelled = "cancelled";
 
-/// Before the long work.
+/// Checks an order before the long work.
 Result<void> check(const RenderOrder& order) {
     if (const auto* still = std::get_if<StillOrder>(&order.what)) {
         const auto extension = still->file.extension();
         if (extension != ".png" && extension != ".PNG")
-            return bad_arguments(still->file.string(), "is no PNG by its name", "name it .png");
+            return bad_arguments(still->file.string(), "is not named .png", "name it .png");
         return check_output(still->file, false);
     }
     const auto& flight = std::get<FlightOrder>(order.what);
@@ -58,7 +58,7 @@ RenderState first_state(const RenderOrder& order) {
 
 }  // namespace
 
-/// An error where the work is to end.
+/// Counts a finished frame. Returns an error if the work has been cancelled.
 Result<void> RenderWorker::State::frame_done() {
     {
         const std::lock_guard lock(mutex);

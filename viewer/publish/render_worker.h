@@ -28,14 +28,14 @@ struct FlightOrder {
     std::filesystem::path video;          ///< empty: none
 };
 
-/// What is to be rendered, and with what. Nothing that exists is written over.
+/// What to render, and with which scene and settings. Existing files are not overwritten.
 struct RenderOrder {
     std::shared_ptr<const octree::NodeSource> source;
     gi::Scene scene;
     std::string engine;
     gi::EngineSettings settings;
     CutBudgets budgets;
-    PipelineOptions caps;  ///< beside what the window's pipeline takes
+    PipelineOptions caps;  ///< in addition to the memory of the window's pipeline
     ImageSize size;
     std::variant<StillOrder, FlightOrder> what;
 };
@@ -46,22 +46,23 @@ struct RenderState {
     std::string file;
 };
 
-/// A thread that renders pictures and flights with a device and a pipeline of their own, as `render` and
-/// `fly` do, while the window goes on. Members are called by one thread and never wait.
+/// A thread that renders pictures and flights like `render` and `fly`, with its own device and pipeline,
+/// while the window stays usable. Call the members from one thread; they never wait.
 class RenderWorker {
  public:
-    /// `changed`: state() or take_outcome() has something new; any thread.
+    /// `changed` is called, by any thread, when state() or take_outcome() has something new.
     explicit RenderWorker(std::function<void()> changed);
-    ~RenderWorker();  ///< cancels; after the frame being made
+    ~RenderWorker();  ///< cancels and waits for the current frame
     RenderWorker(const RenderWorker&) = delete;
     RenderWorker& operator=(const RenderWorker&) = delete;
 
-    /// False, and nothing happens, while another order is at work. The device is let go of before that ends.
+    /// Starts an order. Returns false and does nothing while another order is running. The device is released
+    /// before the order ends.
     bool start(RenderOrder order, WorkerDevice device);
-    /// After the frame being made. Frames that were written stay; a video does not.
+    /// Cancels after the current frame. Written frames stay; an unfinished video is removed.
     void cancel();
     RenderState state() const;
-    /// Of the last order, once: what was written, or the error.
+    /// Returns the last order's outcome once: what was written, or the error.
     std::optional<Result<std::string>> take_outcome();
 
  private:

@@ -54,7 +54,7 @@ void ShowSession::fulfil(ViewModel& model, const std::shared_ptr<const octree::N
         show.take(render(order_of(model, source, wish)));
 }
 
-/// With a context of its own, a new one each time, so that nothing that befell the last one stays.
+/// Renders with a new context each time, so that a failure of the last context has no effect.
 Result<void> ShowSession::render(RenderOrder order) {
     if (worker_.state().running)
         return failed(worker_.state().file, "is still being rendered", "wait, or cancel it");
@@ -67,7 +67,7 @@ bool ShowSession::follow(ViewModel& model, const std::shared_ptr<const octree::N
     ShowModel& show = model.show;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     show.set_sizes(static_cast<int>(window.x), static_cast<int>(window.y));
-    if (auto outcome = worker_.take_outcome())  // before the next order forgets it
+    if (auto outcome = worker_.take_outcome())  // before the next order discards it
         show.message = *outcome ? std::move(**outcome) : outcome->error().line();
     fulfil(model, source);
     show.rendering = worker_.state();

@@ -5,14 +5,14 @@
 
 namespace lucarne::viewer {
 
-/// Pictures and flights in the window: wishes are fulfilled, the preview moves the camera.
+/// Pictures and flights in the window: carries out requests and moves the camera with the preview.
 class ShowSession {
  public:
-    /// `device`: a new one, for each thing that is rendered; `changed` is called by any thread.
+    /// `device` makes a new device for each order. `changed` is called by any thread.
     ShowSession(std::function<Result<WorkerDevice>()> device, std::function<void()> changed)
         : device_(std::move(device)), worker_(std::move(changed)) {}
 
-    /// Between the window's begin_frame and draw. True where the preview has moved the camera.
+    /// Call between the window's begin_frame and draw. Returns true if the preview has moved the camera.
     bool follow(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace lucarne::viewer {
 
-/// What a folder holds that can be opened.
+/// An entry of a folder that can be opened.
 struct FolderEntry {
     std::string name;
     bool folder = false;
@@ -25,11 +25,12 @@ struct FolderListing {
 };
 inline constexpr size_t kMostEntries = 10000;
 
-/// Hidden files are left out, and what is no scan by its extension unless `all`.
+/// Lists a folder without hidden files. Unless `all` is set, also leaves out files without a scan's
+/// extension.
 FolderListing list_folder(const std::filesystem::path& folder, bool all);
 
-/// A dialog for opening files where the desktop has none: its state, without its looks. Folders are listed by
-/// a thread.
+/// The state of a dialog for opening files, for desktops without one. file_browser_panel.cpp draws it. A
+/// thread lists the folders.
 class FileBrowser {
  public:
     void open(const std::filesystem::path& folder);
@@ -38,13 +39,14 @@ class FileBrowser {
     void go(const std::filesystem::path& folder);
     void show_all(bool all);
     bool shows_all() const { return all_; }
-    void toggle(const std::string& name);  ///< chooses a file, or no longer
+    void toggle(const std::string& name);  ///< chooses a file, or removes it from the choice
     bool is_chosen(const std::string& name) const { return chosen_.contains(name); }
 
-    /// The newest listing; of another folder than folder() while that is still being listed.
+    /// Returns the newest listing. While folder() is still being listed, this is the listing of an earlier
+    /// folder.
     FolderListing listing() const;
     const std::filesystem::path& folder() const { return folder_; }
-    std::vector<std::string> chosen() const;  ///< whole paths
+    std::vector<std::string> chosen() const;  ///< full paths
 
  private:
     struct Shared {

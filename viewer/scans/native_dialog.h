@@ -8,15 +8,15 @@
 
 namespace lucarne::viewer {
 
-/// The desktop's own dialog for opening files: zenity (GNOME and most) or kdialog (KDE), as a process beside
-/// the window, which goes on drawing.
+/// The desktop's dialog for opening files: zenity (GNOME and most others) or kdialog (KDE), run as a separate
+/// process. The window keeps drawing meanwhile.
 class NativeDialog {
  public:
-    /// Its programs that are installed, the desktop's own first.
+    /// Returns the installed dialog programs, the running desktop's own first.
     static std::vector<std::string> programs();
-    /// The program and its arguments.
+    /// Returns the program and its arguments.
     static std::vector<std::string> command(const std::string& program, const std::string& folder);
-    /// The lines of what it printed.
+    /// Splits the program's output into lines.
     static std::vector<std::string> chosen(const std::string& output);
 
     NativeDialog() = default;
@@ -25,9 +25,9 @@ class NativeDialog {
     NativeDialog& operator=(const NativeDialog&) = delete;
 
     bool open() const { return pid_ > 0; }
-    /// False where it cannot be started.
+    /// Starts the dialog. Returns false if it cannot be started.
     bool start(const std::vector<std::string>& command);
-    /// What was chosen, once the dialog is closed; nothing chosen is an empty list. Never waits.
+    /// Returns the chosen files once the dialog is closed; an empty list if nothing was chosen. Never waits.
     std::optional<std::vector<std::string>> poll();
 
  private:

@@ -15,12 +15,12 @@ namespace {
 
 using Source = std::shared_ptr<const octree::NodeSource>;
 
-constexpr uint64_t kSamplePoints = 400'000;      ///< of all scans that are opened at once
-constexpr uint64_t kLeastSamplePoints = 20'000;  ///< of one
-/// Each holds a file or two open, and processes may have 1024.
+constexpr uint64_t kSamplePoints = 400'000;      ///< for all scans that are opened at once
+constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
+/// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
 
-/// What opening takes part in, from both sides.
+/// State shared between the window and the thread that opens a scan.
 struct Watch {
     std::atomic<bool> cancelled{false};
     std::atomic<double> share{0};
@@ -31,13 +31,15 @@ bool is_folder(const std::string& path) {
     return std::filesystem::is_directory(path, ignored);
 }
 
-/// Paths that are rows of their own after all: folders' files, and folders that show what is wrong with them.
+/// Returns the paths that become rows of their own: the files of folders, and folders with a problem, whose
+/// row shows it.
 Result<std::vector<std::string>> expanded(const InputOptions& how, bool together) {
     LUCARNE_ASSIGN(ScanList list, expand_folders(how.paths, how.read));
     if (list.files.size() > kMostScans)
-        return rejected(how.paths.front(),
-                        fmt::format("holds {} scans, {} can be open", list.files.size(), kMostScans),
-                        "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
+        return rejected(
+            how.paths.front(),
+            fmt::format("contains {} scans, but at most {} can be open", list.files.size(), kMostScans),
+            "convert them into one cache first: lucarne convert FOLDER -o ALL.luc");
     if (!together)
         for (const Error& problem : list.problems)
             if (std::ranges::find(how.paths, problem.what) == how.paths.end())
@@ -55,20 +57,20 @@ std::string ScanRow::name() const {
     return paths.size() == 1 ? name : fmt::format("{} and {} more", name, paths.size() - 1);
 }
 
-/// What belongs to a row; the window does not see it.
+/// The internal state of a row.
 struct ScanSet::Item {
     std::shared_ptr<Watch> watch = std::make_shared<Watch>();
-    log::Operation operation;  ///< the warnings of its opening and conversion
+    log::Operation operation;  ///< collects the warnings of opening and conversion
     OpenInput input;
-    Source source;       ///< the newest
-    bool going = false;  ///< the build has begun
+    Source source;       ///< the newest source
+    bool going = false;  ///< the build has been started
 };
 
-/// A row's files, open; or what is to be opened in its place.
+/// The opened files of a row, or the paths to open instead.
 struct Opened {
     OpenInput input;
     std::vector<std::string> instead;
-    bool together = false;  ///< `instead` is one row
+    bool together = false;  ///< the paths in `instead` become one row
 };
 
 struct ScanSet::Joined {
@@ -76,10 +78,10 @@ struct ScanSet::Joined {
     Result<StartingView> start;
 };
 
-/// Where the threads put what they have done.
+/// Results of the threads.
 struct ScanSet::Shared {
     std::mutex mutex;
-    std::vector<std::pair<uint64_t, Result<Opened>>> opened;  ///< of the rows with these ids
+    std::vector<std::pair<uint64_t, Result<Opened>>> opened;  ///< by the rows' ids
     std::optional<Result<Joined>> joined;
     std::function<void()> changed;
 
@@ -116,7 +118,7 @@ Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, 
 
 }  // namespace
 
-/// On the opening thread; `together` and `sample_points` as there.
+/// Opens a row on the opening thread.
 void ScanSet::push_opening(uint64_t id, InputOptions how, bool together, uint64_t sample_points) {
     std::string name = how.paths.front();
     opener_.push(
@@ -160,7 +162,7 @@ void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t i
         row.state = ScanState::failed;
         row.error =
             Error{ErrorKind::failed, row.paths.front(),
-                  fmt::format("{} scans are open, which is the most", kMostScans), "close some first"};
+                  fmt::format("{} scans are open, which is the limit", kMostScans), "close some first"};
     }
     rows_.insert(place, std::move(row));
     if (full) return;
@@ -177,7 +179,8 @@ ScanRow* ScanSet::row_of(uint64_t id) {
     return row == rows_.end() ? nullptr : &*row;
 }
 
-/// A build is waited for where that does no harm.
+/// Cancels an item's work. Its build is destroyed on the opening thread, so that the window does not wait for
+/// it.
 void ScanSet::retire(Item& item) {
     item.watch->cancelled = true;
     if (!item.input.build) return;
@@ -218,10 +221,10 @@ void ScanSet::go_on(uint64_t id) {
     Item& item = items_[id];
     row->error.reset();
     if (!item.going) {
-        row->state = ScanState::sample;  // it had not begun
+        row->state = ScanState::sample;  // its conversion had not started
         return;
     }
-    retire(item);  // before the new one is opened: they have one name
+    retire(item);  // before the new build is opened, since both use the same file name
     item.watch = std::make_shared<Watch>();
     item.operation = {};
     item.going = false;
@@ -244,7 +247,7 @@ void ScanSet::convert_next() {
     item.input.build->begin(shared_->changed);
 }
 
-/// What its source says.
+/// Fills a row from its source.
 void ScanSet::describe(const Item& item, ScanRow& row) const {
     const octree::SourceHeader& header = item.source->header();
     row.points = header.points;
@@ -257,7 +260,7 @@ void ScanSet::describe(const Item& item, ScanRow& row) const {
         declared += scan.declared_points;
         row.of_path.push_back(scan.declared_points);
     }
-    // What the source has of it is a sample until it is whole.
+    // Until the scan is complete, its source contains only a sample.
     if (row.state != ScanState::whole) row.points = std::max(row.points, declared);
     if (row.of_path.size() != row.paths.size()) row.of_path.clear();
 }
@@ -270,7 +273,7 @@ void ScanSet::take_opened() {
     }
     for (auto& [id, one] : opened) {
         ScanRow* row = row_of(id);
-        if (!row) continue;  // removed meanwhile; a build that has not begun goes at once
+        if (!row) continue;  // removed meanwhile; a build that has not started is dropped at once
         if (one && !one->instead.empty()) {
             if (one->together) {
                 open_one(std::move(one->instead), true, id);
@@ -313,7 +316,7 @@ void ScanSet::take_builds() {
         }
         if (build.finished) {
             row.state = ScanState::whole;
-            item.input.build.reset();  // its thread has nothing left to do
+            item.input.build.reset();  // its thread has finished
         } else if (!build.error) {
             row.state = ScanState::stopped;
             if (!build.stopped) row.error = std::move(build.error).error();
@@ -324,7 +327,8 @@ void ScanSet::take_builds() {
     }
 }
 
-/// On a thread: the directories of all are copied, and the start looks at some nodes.
+/// Joins the visible scans on a thread, because this copies all directories and the starting view reads some
+/// nodes.
 void ScanSet::join_visible() {
     if (!stale_ || joining_) return;
     stale_ = false;

@@ -21,79 +21,79 @@
 namespace lucarne::viewer {
 
 enum class ScanState {
-    opening,     ///< being looked at; nothing of it can be drawn yet
-    sample,      ///< a sample of it is drawn, its conversion waits for its turn
-    converting,  ///< what is finished of it is drawn, and the sample where nothing is
-    stopped,     ///< as it was when its conversion was stopped or failed; go_on() takes it up again
-    whole,       ///< an octree
+    opening,     ///< being opened; nothing can be drawn yet
+    sample,      ///< a sample is drawn; the conversion waits for its turn
+    converting,  ///< finished parts are drawn, and the sample elsewhere
+    stopped,     ///< the conversion was stopped or failed; go_on() continues it
+    whole,       ///< a complete octree
     failed       ///< it could not be opened
 };
 
-/// What there is to say about an open scan, or several that share one cache.
+/// What the window shows about an open scan, or about several that share one cache.
 struct ScanRow {
     uint64_t id = 0;
     std::vector<std::string> paths;
     ScanState state = ScanState::opening;
     bool visible = true;
-    uint64_t points = 0;            ///< in its files
-    uint64_t memory = 0;            ///< bytes of its directory; its points come and go
-    uint64_t file_bytes = 0;        ///< of its files
-    std::vector<uint64_t> of_path;  ///< points, where there are several files
-    std::string stage;              ///< of what goes on: "normals"
-    double share = 0;               ///< of the stage that is done, 0 to 1
+    uint64_t points = 0;            ///< number of points in its files
+    uint64_t memory = 0;            ///< bytes of its directory, without its points, which are streamed
+    uint64_t file_bytes = 0;        ///< size of its files
+    std::vector<uint64_t> of_path;  ///< points of each file if there are several
+    std::string stage;              ///< stage of the current work, for example "normals"
+    double share = 0;               ///< finished share of the stage, 0 to 1
     std::optional<Error> error;     ///< why it failed or was not finished
 
-    std::string name() const;  ///< the first file's, and how many more
+    std::string name() const;  ///< the first file's name and the number of further files
     bool busy() const {
         return state == ScanState::opening || state == ScanState::sample || state == ScanState::converting;
     }
 };
 
-/// Where the view begins, and in what light.
+/// The starting camera and lights.
 struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
-    std::array<glm::dvec3, 2> box{};  ///< to look at, world units
+    std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;
     double scene_size() const { return std::max(glm::distance(box[0], box[1]), 1e-6); }  ///< its diagonal
 };
 
-/// The scans that are open in the window: they are opened, converted, hidden and closed while it goes on
-/// drawing. All is done by threads of its own; members are called by one thread and never wait.
+/// The scans that are open in the window. Scans are opened, converted, hidden and closed while the window
+/// keeps drawing. Threads of this object do the work. Call the members from one thread; they never wait.
 class ScanSet {
  public:
-    /// For the visible scans together; called on a thread of its own.
+    /// Returns the starting view for all visible scans together. Called on another thread.
     using StartOf = std::function<Result<StartingView>(const octree::NodeSource&)>;
 
-    /// `changed`: something is to be seen by update(); any thread.
+    /// `changed` is called, by any thread, when update() has something to apply.
     ScanSet(InputOptions how, StartOf start, std::function<void()> changed);
     ~ScanSet();
     ScanSet(const ScanSet&) = delete;
     ScanSet& operator=(const ScanSet&) = delete;
 
-    /// Opens files, or the scans in folders. `together`: what is no octree yet becomes one cache.
+    /// Opens files, or the scans in folders. `together`: inputs that are not octrees yet become one cache.
     void open(std::vector<std::string> paths, bool together = false);
     void remove(uint64_t id);
     void set_visible(uint64_t id, bool visible);
-    /// Stops a conversion; what is drawn of it stays. What is still being opened is removed.
+    /// Stops a conversion; what is drawn of the scan stays. A scan that is still being opened is removed.
     void stop(uint64_t id);
-    /// Takes a stopped conversion up again, from its last whole stage where its cache has a place.
+    /// Continues a stopped conversion, from its last finished stage if its cache is kept.
     void go_on(uint64_t id);
-    /// Begins the next conversion, unless one is at work.
+    /// Starts the next conversion unless one is running.
     void convert_next();
 
-    /// Takes in what the threads have done. True: source() is another than before.
+    /// Applies finished background jobs; call once per frame. Returns true if source() has changed.
     bool update();
 
     const std::vector<ScanRow>& rows() const { return rows_; }
-    /// The visible scans as one; null: there is nothing to draw.
+    /// The visible scans as one source; null: there is nothing to draw.
     const std::shared_ptr<const octree::NodeSource>& source() const { return source_; }
-    /// How they are looked at first; none where that failed (see error()).
+    /// The starting view; nothing if finding it failed (see error()).
     const std::optional<StartingView>& start() const { return start_; }
     bool converting() const;
-    /// Nothing is on its way: rows and source() are what they will be.
+    /// Whether no work is pending, so that rows and source() are final.
     bool settled() const;
-    /// Of the first scan that failed, or of all together.
+    /// The error of the first failed scan, or of joining the visible scans.
     Result<void> error() const;
 
  private:
@@ -118,9 +118,9 @@ class ScanSet {
     uint64_t next_id_ = 1;
     std::shared_ptr<const octree::NodeSource> source_;
     std::optional<StartingView> start_;
-    std::optional<Error> problem_;  ///< of the visible scans together
+    std::optional<Error> problem_;  ///< error of joining the visible scans
     bool stale_ = false, joining_ = false;
-    // The last members: they end before what their jobs use.
+    // The last members: they end before the members that their jobs use.
     JobQueue joiner_, opener_;
 };
 

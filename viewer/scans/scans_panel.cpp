@@ -21,7 +21,7 @@ void tip(const std::string& text) {
     ImGui::EndTooltip();
 }
 
-/// Its bar with a button that ends it; what ended badly or early says so.
+/// Draws the progress bar with a button to cancel. Shows why work failed or was stopped.
 void progress(ScanSet& scans, const ScanRow& row) {
     const float button = ImGui::GetFontSize() * 4.5f;
     if (row.busy()) {
@@ -53,7 +53,7 @@ void files(const ScanRow& row) {
     }
 }
 
-/// Its points and what it holds of memory, as far as they are known.
+/// Returns the number of points and the memory use, as far as they are known.
 std::string figures(const ScanRow& row) {
     std::string text = row.points ? points_text(row.points) + " points" : "";
     if (row.memory) text += (text.empty() ? "" : ", ") + bytes_text(row.memory) + " in memory";
@@ -69,7 +69,7 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
     ImGui::SameLine();
     const bool tree = row.paths.size() > 1;
     const ImGuiTreeNodeFlags leaf = ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();  // long names end at the button
+    const ImVec2 corner = ImGui::GetCursorScreenPos();  // long names are cut off at the button
     const float end = ImGui::GetWindowPos().x + button - 0.5f * font;
     ImGui::PushClipRect(corner, ImVec2(end, corner.y + ImGui::GetFrameHeight()), true);
     const bool open = ImGui::TreeNodeEx("##name", tree ? 0 : leaf, "%s", row.name().c_str());
@@ -94,7 +94,7 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
 void draw_scans_panel(ViewModel& model) {
     ScanSet* scans = model.shell.scans;
     if (!scans) return;
-    const std::vector<ScanRow> rows = scans->rows();  // a row may go while they are drawn
+    const std::vector<ScanRow> rows = scans->rows();  // a copy: a row may be removed while the rows are drawn
     for (const ScanRow& row : rows) draw_row(*scans, row);
 }
 

@@ -68,7 +68,7 @@ bool take_clip_handles(ViewModel& model) {
         if (hovered) under = handle;
         const bool lit = tools.held ? *tools.held == handle : hovered;
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
-        if (!handle.plane && handle.face == ClipHandle::kCorner)  // a ring: it turns
+        if (!handle.plane && handle.face == ClipHandle::kCorner)  // a ring marks a handle that turns the box
             list.AddCircle(*at, radius, lit ? kHeld : kFace, 0, scaled(3));
         else
             list.AddCircleFilled(*at, radius, lit ? kHeld : kFace);

@@ -12,11 +12,11 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr float kReach = 7,
-                kThick = 3;  ///< from a handle's middle, to be scaled(): that the mouse takes, that are drawn
+                kThick = 3;  ///< half sizes that the mouse grabs, and that are drawn, before scaled()
 constexpr ImU32 kInk = IM_COL32(255, 240, 200, 255), kLit = IM_COL32(255, 140, 40, 255),
                 kRim = IM_COL32(20, 20, 20, 230);
 
-/// The end of the bar at a height, and beside it the value that it stands for.
+/// Draws the handle of a bar's end at height `y`, and its value beside it.
 void draw_handle(const LegendBar& bar, float y, double value, bool lit) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const float over = scaled(4), rim = scaled(1), half = scaled(kThick), round = scaled(2);
@@ -59,7 +59,7 @@ bool LegendHandles::take(ViewModel& model) {
             held_ = Held{end, range, mouse.y};
         }
         const bool lit = held_ ? held_->end == end : hovered;
-        const float moved = held_ && lit ? mouse.y - held_->y : 0;  // it follows the mouse
+        const float moved = held_ && lit ? mouse.y - held_->y : 0;  // the handle follows the mouse
         draw_handle(*bar, static_cast<float>(y) + moved, end == RangeEnd::high ? range.high : range.low, lit);
         if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
     }

@@ -7,19 +7,20 @@
 
 namespace lucarne::viewer {
 
-/// The ends of the legend's colour bar, which the mouse drags to other values; they show where it is over the
-/// legend.
+/// Handles at the ends of the legend's colour bar, which the mouse drags to other values. They are shown
+/// while the mouse is over the legend.
 class LegendHandles {
  public:
-    /// True while one is dragged. A double-click on one makes the range automatic again.
+    /// Draws the handles and applies the mouse. Returns true while a handle is dragged. A double-click on one
+    /// makes the range automatic again.
     bool take(ViewModel& model);
 
  private:
-    /// What was seized, and as it was then.
+    /// The handle that is dragged, and the state when the drag began.
     struct Held {
         RangeEnd end = RangeEnd::low;
         gi::ValueRange range;
-        float y = 0;  ///< of the mouse, pixels
+        float y = 0;  ///< the mouse's y, pixels
     };
     std::optional<Held> held_;
 };

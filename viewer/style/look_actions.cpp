@@ -12,7 +12,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Attributes are chosen in the panel: they need a name.
+/// Selects the next colouring. Skips attributes, which need a name and are chosen in the panel.
 void next_colour(ViewModel& model) {
     gi::Look& look = model.scene.look;
     const auto next = (static_cast<size_t>(look.colour) + 1) % static_cast<size_t>(gi::ColourBy::attribute);

@@ -7,17 +7,18 @@
 
 namespace lucarne::viewer {
 
-// What actions and the View panel do to the look of the points.
+// Edits of the points' look, for the actions and the panel.
 
-/// Whether the engine knows light.
+/// Whether the engine computes light.
 bool is_lit(const ViewModel& model);
-/// Light off, or on again with the engine that there was.
+/// Switches light off, or on again with the previous engine.
 void switch_light(ViewModel& model);
-/// Around the point that the camera turns about, a quarter of the scans' size.
+/// Adds a clip box around the point that the camera turns about, with a quarter of the scans' size.
 void add_clip_box(ViewModel& model);
-/// Through that point, facing away from the camera: what is nearer goes.
+/// Adds a clip plane through that point, facing away from the camera. It removes what is nearer to the
+/// camera.
 void add_clip_plane(ViewModel& model);
-/// Of all parts, what colours can be asked of; further components as ".1" and so on.
+/// Returns the attributes of all parts that can be shown as colours; further components get ".1" and so on.
 std::vector<std::string> attribute_names(const octree::NodeSource& source);
 
 }  // namespace lucarne::viewer

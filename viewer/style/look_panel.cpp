@@ -11,7 +11,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// True where another one was chosen.
+/// Draws a choice of names. Returns true if another one was chosen.
 template <class Value>
 bool choice(const char* label, Value& value, std::span<const std::string_view> names) {
     bool changed = false;
@@ -58,7 +58,7 @@ bool edit_range(const ViewModel& model, gi::Look& look) {
         ImGui::TextDisabled("no point has this attribute");
         return changed;
     }
-    // Each end drags by hundredths of the range, as it does in the legend.
+    // Dragging an end by 200 pixels moves it by the size of the range.
     gi::ValueRange range = look.range.value_or(*measured);
     const auto speed = static_cast<float>(std::max(std::abs(range.high - range.low) / 200, 1e-9));
     bool dragged =
@@ -144,7 +144,7 @@ bool drag_place(const char* label, glm::dvec3& place, double speed) {
     return true;
 }
 
-/// True where it was changed; `gone` where it is to be removed.
+/// Draws the fields of a clip box. Returns true if the box was changed. Sets `gone` if it is to be removed.
 bool edit_box(gi::ClipBox& box, double speed, bool& gone) {
     bool changed = drag_place("from", box.min, speed);
     changed |= drag_place("to", box.max, speed);
@@ -219,7 +219,7 @@ void draw_look_panel(ViewModel& model) {
     changed |= edit_backdrop(look);
     changed |= edit_classes(model, look);
     changed |= edit_clip(model, look.clip);
-    // These are drawn over the picture, which stays as it is.
+    // These are drawn over the picture; the picture need not be made again.
     ImGui::Checkbox("legend", &look.legend);
     ImGui::SameLine();
     ImGui::Checkbox("axes", &look.axes);

@@ -11,7 +11,7 @@ namespace {
 
 using glm::dvec3;
 
-/// Unit.
+/// Returns a unit vector.
 dvec3 box_axis(const gi::ClipBox& box, int axis) {
     const double c = std::cos(box.rotation), s = std::sin(box.rotation);
     return axis == 0 ? dvec3(c, s, 0) : axis == 1 ? dvec3(-s, c, 0) : dvec3(0, 0, 1);
@@ -71,7 +71,8 @@ std::array<dvec3, 8> box_corners(const gi::ClipBox& box) {
 
 std::optional<double> turned_to(const gi::ClipBox& box, const dvec3& eye, const dvec3& ray) {
     const dvec3 centre = (box.min + box.max) / 2.0, corner = box_corners(box)[7] - centre;
-    if (!(std::abs(ray.z) > 1e-3 * glm::length(ray))) return std::nullopt;  // runs along the plane
+    if (!(std::abs(ray.z) > 1e-3 * glm::length(ray)))
+        return std::nullopt;  // the ray is parallel to the plane
     const double along = (centre.z + corner.z - eye.z) / ray.z;
     const dvec3 place = eye + ray * along - centre;
     if (!(along > 0) || !(place.x * place.x + place.y * place.y > 0)) return std::nullopt;
@@ -80,7 +81,7 @@ std::optional<double> turned_to(const gi::ClipBox& box, const dvec3& eye, const 
 }
 
 std::optional<double> along_axis(const dvec3& origin, const dvec3& axis, const dvec3& eye, const dvec3& ray) {
-    // The foot on the axis of the shortest way between two lines.
+    // The axis's end of the shortest segment between two lines.
     const dvec3 direction = glm::normalize(ray), between = origin - eye;
     const double cosine = glm::dot(axis, direction), sine2 = 1 - cosine * cosine;
     if (!(sine2 > 1e-4)) return std::nullopt;

@@ -31,7 +31,7 @@ OverlayView overlay_view(const ViewModel& model) {
     view.font = ImGui::GetFontSize();
     view.left = model.side_bar().pixels(view.font, size.x) + 8;
     view.right = 8;
-    view.bottom = 2 * view.font;  // the line of messages
+    view.bottom = 2 * view.font;  // room for the line of messages
     return view;
 }
 

@@ -5,7 +5,7 @@
 
 namespace lucarne::viewer {
 
-/// What is drawn over the window's picture is drawn for this. Needs a picture.
+/// Returns the view for which overlays are drawn over the window's picture. The model must have a picture.
 OverlayView overlay_view(const ViewModel& model);
 
 }  // namespace lucarne::viewer

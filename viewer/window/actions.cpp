@@ -32,7 +32,8 @@ constexpr std::array kNamedKeys = {
 };
 
 std::string key_name(int key) {
-    if (key > GLFW_KEY_SPACE && key <= GLFW_KEY_GRAVE_ACCENT) return {static_cast<char>(key)};  // as in ASCII
+    if (key > GLFW_KEY_SPACE && key <= GLFW_KEY_GRAVE_ACCENT)
+        return {static_cast<char>(key)};  // these codes are ASCII
     if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return fmt::format("F{}", key - GLFW_KEY_F1 + 1);
     for (const NamedKey& named : kNamedKeys)
         if (named.key == key) return named.name;

@@ -8,18 +8,19 @@
 
 namespace lucarne::viewer {
 
-/// Something the user can have done: an item of a menu, with a key. Keys, menus and the help are all made of
-/// these, so that none can be missing anywhere.
+/// A command of the user: an item of a menu with a key. Keys, menus and the help are all built from these, so
+/// that they always agree.
 struct Action {
     KeyChord chord;
-    const char* menu;  ///< where it stands: "View", or "View/Projection" for a menu in a menu
+    const char* menu;  ///< its menu: "View", or "View/Projection" for a submenu
     const char* name;
     void (*run)(ViewModel& model);
-    bool (*enabled)(const ViewModel& model) = nullptr;  ///< none: always
-    bool (*checked)(const ViewModel& model) = nullptr;  ///< none: it is no switch
+    bool (*enabled)(const ViewModel& model) = nullptr;  ///< null: always enabled
+    bool (*checked)(const ViewModel& model) = nullptr;  ///< null: the action is not a switch
 };
 
-// A room's actions, in the order of its menu. A new room adds its own line here and in `actions()`.
+// The actions of one part of the window, in the order of its menu. A new part adds a line here and in
+// `actions()`.
 std::span<const Action> file_actions();
 std::span<const Action> view_actions();
 std::span<const Action> look_actions();
@@ -30,24 +31,25 @@ std::span<const Action> measure_actions();
 std::span<const Action> show_actions();
 std::span<const Action> window_actions();
 
-/// All of them, in the order of the menu bar. W, A, S, D, Q and E alone are not among the keys: they fly.
+/// All actions, in the order of the menu bar. No action uses W, A, S, D, Q or E without a modifier: these
+/// keys fly.
 const std::vector<Action>& actions();
 
-/// The gestures that navigation and lights take, for the help.
+/// A gesture of navigation or lights, as the help lists it.
 struct Gesture {
     const char* gesture;
     const char* what;
 };
 std::span<const Gesture> gestures();
 
-/// Runs the actions of keys that were pressed, as far as they are enabled.
+/// Runs the enabled actions of the pressed keys.
 void run_actions(ViewModel& model, std::span<const KeyChord> chords);
 
-// Lights. Positions are world units.
+// Actions on the selected light. Positions are in world units.
 void place_light_at_camera(ViewModel& model);
 void aim_light(ViewModel& model, const glm::dvec3& target);
-/// Moves the light, and what it points at with it, parallel to the picture; shares of its height, right and
-/// up.
+/// Moves the light and its target parallel to the picture. `shift` is in shares of the picture's height, to
+/// the right and up.
 void shift_light(ViewModel& model, const glm::dvec2& shift);
 
 }  // namespace lucarne::viewer

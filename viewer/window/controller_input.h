@@ -7,14 +7,14 @@
 
 namespace lucarne::viewer {
 
-/// A 6-DoF controller beside mouse and keys: moves the model's camera by the user's mapping. Its first button
-/// fits the view, its second changes what the cap is in the hand.
+/// Input of a 6-DoF controller: moves the model's camera by the user's mapping. The first button returns to
+/// the starting view. The second button switches the cap between moving the camera and moving the object.
 class ControllerInput {
  public:
-    /// `wake`: there is something to take(); any thread.
+    /// `wake` is called, by any thread, when take() has new input.
     explicit ControllerInput(std::function<void()> wake);
 
-    /// What was done since the last frame, `seconds` ago. True where the camera moved.
+    /// Applies input since the last frame, `seconds` ago. Returns true if the camera moved.
     bool take(ViewModel& model, double seconds);
 
  private:

@@ -22,7 +22,7 @@ std::string absolute(const std::string& path) {
 
 }  // namespace
 
-/// Written at the end as well; a failure is told on the terminal, the window is gone.
+/// Saves settings and bookmarks at the end. Reports failures on the terminal, because the window is gone.
 Desk::~Desk() {
     model_.shell.settings.window = window_.size();
     model_.shell.settings.navigation = navigation_name(model_.navigation.mode());
@@ -30,14 +30,14 @@ Desk::~Desk() {
         log::warn("{}", saved.error().line());
 }
 
-/// On a thread: a disk may take its time.
+/// Saves the settings on a thread, since a disk may be slow.
 void Desk::remember() {
     writer_.push("the settings", [settings = model_.shell.settings, folder = config_folder()] {
         return save_settings(settings, folder);
     });
 }
 
-/// Where the last file was.
+/// Returns the folder of the last opened file.
 std::filesystem::path Desk::folder() const {
     const auto& recent = model_.shell.settings.recent;
     if (!recent.empty()) return std::filesystem::path(recent.front()).parent_path();
@@ -67,7 +67,7 @@ void Desk::take_files() {
     scans_.open(std::move(files));
 }
 
-/// They belong to the scan that was opened first.
+/// Loads and saves bookmarks. They belong to the scan that was opened first.
 void Desk::follow_bookmarks() {
     Shell& shell = model_.shell;
     const auto& rows = scans_.rows();
@@ -121,7 +121,7 @@ void Desk::draw() {
     draw_closing_question(model_);
 }
 
-/// Empty: nothing is lost by closing now.
+/// Returns why the user must be asked before closing; empty if nothing would be lost.
 std::string Desk::reason_to_ask() const {
     std::string all;
     for (const Unsaved& one : unsaved(model_)) all += (all.empty() ? "not saved: " : ", ") + one.what;
@@ -144,8 +144,7 @@ bool Desk::closing(bool at_once) {
     model_.close = false;
     window_.stay();
     shell.closing_problem.clear();
-    if (!std::exchange(shell.ask_to_close, true))
-        log::info("{}: asked whether to close all the same", reason);
+    if (!std::exchange(shell.ask_to_close, true)) log::info("{}: asked whether to close anyway", reason);
     return false;
 }
 

@@ -13,21 +13,22 @@
 
 namespace lucarne::viewer {
 
-/// What goes on around the picture: files are chosen and opened, settings are kept, the window is closed when
-/// that is all right.
+/// Handles everything around the picture: choosing and opening files, keeping settings and bookmarks, and
+/// closing the window.
 class Desk {
  public:
     Desk(Window& window, ViewModel& model, ScanSet& scans) : window_(window), model_(model), scans_(scans) {}
     ~Desk();
 
-    /// Files that were dropped, or chosen in a dialog.
+    /// Opens files that were dropped on the window or chosen in a dialog.
     void take_files();
     void draw();
-    /// The floor under the camera, world z, once it has been looked for; for walking.
+    /// Returns the floor under the camera for walking, world z, once it has been found.
     std::optional<double> floor();
-    /// Whether the window is to go; asks first where work is unsaved or still running, unless `at_once`.
+    /// Returns whether the window may close. Unless `at_once`, asks the user first if work is unsaved or
+    /// still running.
     bool closing(bool at_once);
-    /// Keys that were pressed while that question stands.
+    /// Handles keys pressed while that question is shown.
     void answer(std::span<const KeyChord> keys);
 
  private:
@@ -42,7 +43,7 @@ class Desk {
     ScanSet& scans_;
     NativeDialog dialog_;
     FileBrowser browser_;
-    std::filesystem::path bookmarks_of_;  ///< the folder that the bookmarks are kept in; empty: none yet
+    std::filesystem::path bookmarks_of_;  ///< the folder of the bookmarks; empty: none yet
     struct Read {
         std::mutex mutex;
         std::optional<LoadedBookmarks> bookmarks;

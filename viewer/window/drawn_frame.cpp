@@ -20,7 +20,7 @@ uint64_t fingerprint(const ImDrawData& data) {
     for (int i = 0; i < data.CmdListsCount; ++i) {
         const ImDrawList& list = *data.CmdLists[i];
         sum = add(add(sum, list.VtxBuffer), list.IdxBuffer);
-        for (const ImDrawCmd& command : list.CmdBuffer) {  // member by member: it has padding
+        for (const ImDrawCmd& command : list.CmdBuffer) {  // member by member, because the struct has padding
             const float* clip = &command.ClipRect.x;
             sum = XXH3_64bits_withSeed(clip, 4 * sizeof(float), sum);
             const uint64_t rest[] = {reinterpret_cast<uint64_t>(command.TextureId), command.VtxOffset,

@@ -6,8 +6,8 @@ struct ImDrawData;
 
 namespace lucarne::viewer {
 
-/// A number for all that ImGui is about to draw: the same of two frames that look the same, another (but for
-/// one in 2^64) of others. The contents of textures are not looked at.
+/// Returns a hash of all that ImGui is about to draw. Equal frames have equal hashes; different frames
+/// collide with probability 2^-64. The contents of textures are not hashed.
 uint64_t fingerprint(const ImDrawData& data);
 
 }  // namespace lucarne::viewer

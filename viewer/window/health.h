@@ -9,12 +9,12 @@
 
 namespace lucarne::viewer {
 
-/// The window's own frames, beside the pictures': how long each kept the window from answering.
+/// Times of the window's own frames (not of pictures): how long each kept the window from responding.
 class FrameTimes {
  public:
     void add(double seconds);
     size_t frames() const { return frames_; }  ///< since the start
-    /// Seconds that this share of the last frames did not exceed (0.5: the median); 0 before the first.
+    /// Returns the quantile of the last frames' times, seconds (0.5: the median); 0 before the first frame.
     double quantile(double share) const;
 
  private:
@@ -23,27 +23,29 @@ class FrameTimes {
     size_t frames_ = 0;
 };
 
-/// Bounds how often a lost device is set up again: what is lost each time would go on for ever.
+/// Limits how often a lost device is set up again, since a device that is lost every time would be set up for
+/// ever.
 class RecoveryTries {
  public:
     using Clock = std::chrono::steady_clock;
     static constexpr size_t kMost = 3;
     static constexpr std::chrono::seconds kSpan{60};
 
-    /// Counts a try at `now`; false, and nothing is counted, where there were kMost within kSpan before.
+    /// Counts a try at `now`. Returns false and counts nothing if there were kMost tries within the last
+    /// kSpan.
     bool take(Clock::time_point now);
 
  private:
     std::deque<Clock::time_point> taken_;
 };
 
-/// What is wrong for as long as it is, and how the window keeps up.
+/// Current problems, and the window's frame times.
 struct Health {
     std::string device;   ///< the graphics device is lost for good; empty: it works
     std::string shaders;  ///< why the last good program is used instead of a shader file
-    std::string nodes;    ///< what is left out of the picture, because it cannot be read
+    std::string nodes;    ///< nodes that are missing in the picture because they cannot be read
     FrameTimes frames;
-    uint64_t shader_version = 0;  ///< counts wishes to read the shader files again
+    uint64_t shader_version = 0;  ///< counts requests to reload the shader files
 };
 
 }  // namespace lucarne::viewer

@@ -4,13 +4,13 @@
 
 namespace lucarne::viewer {
 
-/// A key with what is held down beside it.
+/// A key and its modifiers.
 struct KeyChord {
-    int key = 0;        ///< as GLFW numbers it
-    int modifiers = 0;  ///< GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_ALT, or together
+    int key = 0;        ///< GLFW's key code
+    int modifiers = 0;  ///< GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_ALT, or a combination
     bool operator==(const KeyChord&) const = default;
 };
-/// "Ctrl+Shift+O".
+/// Returns a text such as "Ctrl+Shift+O".
 std::string key_text(const KeyChord& chord);
 
 }  // namespace lucarne::viewer

@@ -23,8 +23,8 @@ constexpr int64_t kLargestWindow = 16384;
 constexpr std::array<const char*, io::SixDofMapping::kAxes> kAxes = {"right",   "up",        "forward",
                                                                      "nose_up", "nose_left", "roll_right"};
 
-/// {"sensitivity": 1, "dead_zone": 0.05, "up": {"from": "forward", "scale": -1}}; axes that are not named are
-/// as the device has them.
+/// {"sensitivity": 1, "dead_zone": 0.05, "up": {"from": "forward", "scale": -1}}; axes that are not listed
+/// keep the device's mapping.
 Result<io::SixDofMapping> read_mapping(JsonObject& object) {
     io::SixDofMapping mapping;
     LUCARNE_ASSIGN(mapping.sensitivity, object.number("sensitivity", {0.01, 100}, mapping.sensitivity));
@@ -48,7 +48,8 @@ nlohmann::json mapping_json(const io::SixDofMapping& mapping) {
     return json;
 }
 
-/// {"shown": true, "width": 24, "open": ["scans", "light"]}; sections of other versions are left out.
+/// {"shown": true, "width": 24, "open": ["scans", "light"]}; unknown sections (of other versions) are
+/// ignored.
 Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
     SideBar bar;
     LUCARNE_ASSIGN(bar.shown, object.boolean("shown", bar.shown));
@@ -58,7 +59,7 @@ Result<SideBar> read_side_bar(JsonObject& object, const nlohmann::json& json) {
     if (!open->is_array()) return object.wrong("is no list", "open");
     bar.open.fill(false);
     for (const auto& name : *open) {
-        if (!name.is_string()) return object.wrong("holds what is no text", "open");
+        if (!name.is_string()) return object.wrong("contains a value that is not text", "open");
         const auto at = std::ranges::find(kSectionNames, name.get_ref<const std::string&>());
         if (at != kSectionNames.end()) bar.open[static_cast<size_t>(at - kSectionNames.begin())] = true;
     }
@@ -94,7 +95,7 @@ Result<Settings> parse(const nlohmann::json& json, const std::string& name) {
     if (const auto recent = json.find("recent"); recent != json.end()) {
         if (!recent->is_array()) return object.wrong("is no list", "recent");
         for (const auto& path : *recent) {
-            if (!path.is_string()) return object.wrong("holds what is no text", "recent");
+            if (!path.is_string()) return object.wrong("contains a value that is not text", "recent");
             if (settings.recent.size() < kMostRecent) settings.recent.push_back(path.get<std::string>());
         }
     }

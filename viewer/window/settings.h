@@ -13,38 +13,38 @@
 
 namespace lucarne::viewer {
 
-/// What the window remembers of its user.
+/// The user's settings.
 struct Settings {
     ImageSize window;                 ///< pixels; 0: not known yet
     std::vector<std::string> recent;  ///< paths, the newest first
     std::string navigation;           ///< "orbit", "turntable", "fly" or "walk"; empty: not chosen yet
-    double text_size = 1;             ///< beside the screen's own scale
+    double text_size = 1;             ///< factor in addition to the screen's scale
     SideBar side_bar;
     io::SixDofMapping controller;
-    nlohmann::json others = nlohmann::json::object();  ///< keys that this version does not know; kept
+    nlohmann::json others = nlohmann::json::object();  ///< unknown keys; written back
 
-    /// Puts a path in the front.
+    /// Puts a path at the front of `recent`.
     void opened(const std::string& path);
 };
 
 inline constexpr size_t kMostRecent = 20;
 
-/// Where settings, bookmarks and thumbnails are kept: $LUCARNE_CONFIG, $XDG_CONFIG_HOME/lucarne or
-/// ~/.config/lucarne; empty where there is none of them.
+/// Returns the folder of settings, bookmarks and thumbnails: $LUCARNE_CONFIG, $XDG_CONFIG_HOME/lucarne or
+/// ~/.config/lucarne. Empty if none of them is defined.
 std::filesystem::path config_folder();
 
-/// A file that cannot be read is moved to *.broken; a sentence that says so, for people.
+/// Renames an unreadable file to *.broken. Returns a sentence for the user that says so.
 std::string put_aside(const std::filesystem::path& file, const Error& error);
 
-/// What was read, and what the user has to know of it.
+/// Settings that were read, and any problem.
 struct LoadedSettings {
     Settings settings;
-    std::string problem;  ///< empty: none
+    std::string problem;  ///< message for the user; empty: no problem
 };
-/// Reads settings.json of the folder. A broken file is moved aside as settings.json.broken, and the settings
-/// are as if it had not been there.
+/// Reads settings.json of the folder. A broken file is renamed to settings.json.broken, and the defaults are
+/// returned.
 LoadedSettings load_settings(const std::filesystem::path& folder);
-/// Writes it whole or not at all; makes the folder.
+/// Writes settings.json completely or not at all. Makes the folder.
 Result<void> save_settings(const Settings& settings, const std::filesystem::path& folder);
 
 }  // namespace lucarne::viewer

@@ -10,21 +10,21 @@ namespace lucarne::viewer {
 
 class ScanSet;
 
-/// What stands around the picture: the open scans, and what the user wants done with files and the window.
+/// The part of the ViewModel around the picture: open scans, files, and requests about the window.
 struct Shell {
-    ScanSet* scans = nullptr;          ///< what is open; outlives the model
-    std::vector<std::string> to_open;  ///< paths
-    bool want_file = false;            ///< File > Open
-    bool ask_to_close = false;         ///< the question is on the screen
-    bool save_to_close = false;        ///< answered: save what is unsaved, then close
-    bool close_now = false;            ///< answered: close as it is
-    std::string closing_problem;       ///< why saving has failed
+    ScanSet* scans = nullptr;          ///< the open scans; outlive the model
+    std::vector<std::string> to_open;  ///< paths that are requested to be opened
+    bool want_file = false;            ///< File > Open was chosen
+    bool ask_to_close = false;         ///< the question before closing is shown
+    bool save_to_close = false;        ///< the answer: save unsaved work, then close
+    bool close_now = false;            ///< the answer: close without saving
+    std::string closing_problem;       ///< why saving failed
     Settings settings;
 
     std::vector<Bookmark> bookmarks;
-    bool bookmarks_changed = false;        ///< by the user; they are to be written
-    std::vector<unsigned> stale_textures;  ///< of bookmarks that are gone
-    size_t bookmark = 0;                   ///< the last that was gone to
+    bool bookmarks_changed = false;        ///< by the user; they have to be written
+    std::vector<unsigned> stale_textures;  ///< textures of removed bookmarks
+    size_t bookmark = 0;                   ///< the bookmark that was visited last
 };
 
 }  // namespace lucarne::viewer

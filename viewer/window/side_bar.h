@@ -8,7 +8,7 @@
 
 namespace lucarne::viewer {
 
-/// What the side bar is made of, from its top to its bottom.
+/// The sections of the side bar, from top to bottom.
 enum class BarSection : uint8_t {
     scans,
     rendering,
@@ -23,28 +23,28 @@ enum class BarSection : uint8_t {
 };
 inline constexpr size_t kSections = 10;
 
-/// As the settings' file calls them.
+/// The sections' names in the settings file.
 inline constexpr std::array<std::string_view, kSections> kSectionNames = {
     "scans",     "rendering",  "look",    "light",      "measure",
     "bookmarks", "flythrough", "picture", "statistics", "controller"};
 
-/// The one place where panels stand: sections that open and close, on the left of the window.
+/// The side bar on the left of the window. It contains all panels as sections that open and close.
 struct SideBar {
-    static constexpr double kLeast = 20, kMost = 80;  ///< width, of the text's height
+    static constexpr double kLeast = 20, kMost = 80;  ///< limits of the width, in heights of the text
 
     bool shown = true;
-    double width = 25;  ///< likewise
+    double width = 25;  ///< in heights of the text
     std::array<bool, kSections> open = {true, true, true, true};
-    std::optional<BarSection> sought;  ///< is to be scrolled to
+    std::optional<BarSection> sought;  ///< the section to scroll to
 
     bool is_open(BarSection section) const { return open[static_cast<size_t>(section)]; }
     bool shows(BarSection section) const { return shown && is_open(section); }
-    /// A bar that the user has put away stays away.
+    /// Opens a section and scrolls to it. A hidden bar stays hidden.
     void unfold(BarSection section) {
         open[static_cast<size_t>(section)] = true;
         sought = section;
     }
-    /// Closes what is seen; else it is opened, and the whole bar with it.
+    /// Closes a visible section. Otherwise opens it and shows the bar.
     void toggle(BarSection section) {
         if (shows(section)) {
             open[static_cast<size_t>(section)] = false;
@@ -53,7 +53,7 @@ struct SideBar {
             unfold(section);
         }
     }
-    /// Pixels that it covers in a window so many pixels wide, of which the picture keeps two fifths.
+    /// Returns the bar's width in pixels. The picture keeps at least two fifths of the window's width.
     double pixels(double text_height, double window_width) const;
 };
 

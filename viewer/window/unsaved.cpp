@@ -11,8 +11,8 @@
 namespace lucarne::viewer {
 namespace {
 
-/// `file`, unless there is another than `own` under that name. Without a question: in the window's own
-/// folder, since that of a file that was opened may be anybody's.
+/// Returns `file`, or a free name if a file other than `own` has that name. With SaveTo::free_names returns a
+/// name in ViewModel::pictures, because the folder of an opened file may belong to somebody else.
 std::filesystem::path place(const ViewModel& model, const std::filesystem::path& file,
                             const std::filesystem::path& own, SaveTo to) {
     if (to == SaveTo::own_files && file == own) return file;

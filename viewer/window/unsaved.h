@@ -9,23 +9,24 @@
 
 namespace lucarne::viewer {
 
-/// Work of the user that is in no file and ends with the window.
+/// Unsaved work of the user, which would be lost with the window.
 struct Unsaved {
     std::string what;            ///< "3 measurements"
-    std::filesystem::path file;  ///< where save() puts it
+    std::filesystem::path file;  ///< the file that save() writes
     std::function<Result<void>(ViewModel& model)> save;
 };
 
-/// Which files unsaved work goes into.
+/// The files that unsaved work is saved to.
 enum class SaveTo {
-    own_files,  ///< those it was saved to or loaded from, or named in the panels; a free name where another
-                ///< has that
-    free_names  ///< names that are free in the window's own folder (ViewModel::pictures)
+    own_files,  ///< the files it was saved to or loaded from, or that the panels name; a free name if another
+                ///< file has that name
+    free_names  ///< free names in the folder ViewModel::pictures
 };
 
-/// All of it: measurements, the key frames of the flythrough, the scene. The view alone is no work.
+/// Returns all unsaved work: measurements, key frames of the flythrough, the scene. A changed view does not
+/// count.
 std::vector<Unsaved> unsaved(const ViewModel& model, SaveTo to = SaveTo::own_files);
-/// Saves each, also after one that failed. The first error.
+/// Saves all unsaved work, and continues after failures. Returns the first error.
 Result<void> save_unsaved(ViewModel& model, SaveTo to = SaveTo::own_files);
 
 }  // namespace lucarne::viewer

@@ -10,7 +10,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kRight = std::numbers::pi / 2;  ///< angle
+constexpr double kRight = std::numbers::pi / 2;  ///< a right angle, radians
 
 void go_home(ViewModel& model) {
     model.go_to(model.home);
@@ -22,7 +22,7 @@ bool has_picture(const ViewModel& model) {
     return model.picture != nullptr;
 }
 
-/// From outside, at all that is open. North (y) is up from above.
+/// Looks at all open scans from outside. Seen from above, north (y) is up.
 template <int kYaw, int kPitch>
 void look(ViewModel& model) {
     model.rig.look_along(kYaw * kRight, kPitch * kRight);
@@ -39,7 +39,8 @@ bool orthographic(const ViewModel& model) {
 template <NavigationMode kMode>
 void navigate(ViewModel& model) {
     model.navigation.set_mode(kMode);
-    if (!model.navigation.turns_scene()) model.rig.set_orthographic(false);  // nobody moves in parallels
+    if (!model.navigation.turns_scene())
+        model.rig.set_orthographic(false);  // flying and walking need perspective
     switch (kMode) {
         case NavigationMode::orbit:
             model.message = "drags turn around the point under the cursor";

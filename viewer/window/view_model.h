@@ -18,39 +18,39 @@
 
 namespace lucarne::viewer {
 
-/// The 6-DoF controller as panels show it; its mapping is in the settings.
+/// The state of the 6-DoF controller for the panels. Its mapping is in the settings.
 struct ControllerModel {
     io::ControllerStatus status;
-    io::SixDofState cap;        ///< as it is now
-    bool holds_object = false;  ///< the cap is what is looked at, not the camera
+    io::SixDofState cap;        ///< current deflection
+    bool holds_object = false;  ///< the cap moves the object instead of the camera
 };
 
-/// All that the user can change in the viewer, and what the panels show. Actions and panels write it; the
-/// session turns it into requests.
+/// Everything that the user can change in the viewer and that the panels show. Actions and panels write it;
+/// the session turns it into requests.
 struct ViewModel {
     explicit ViewModel(double its_scene_size) : scene_size(its_scene_size), navigation(its_scene_size) {}
 
     double scene_size;                ///< diagonal, world units
-    std::array<glm::dvec3, 2> box{};  ///< of what is open, world units
+    std::array<glm::dvec3, 2> box{};  ///< bounding box of the open scans, world units
     CameraRig rig;
-    gi::SceneCamera home;  ///< where the view starts
+    gi::SceneCamera home;  ///< the starting view
     Navigation navigation;
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;
-    size_t light = 0;  ///< the selected one
+    size_t light = 0;  ///< index of the selected light
     std::string engine, preset;
     gi::EngineSettings settings;
     CutBudgets budgets;
-    double resolution_scale = 1;  ///< of the window's sides, which pictures are made at
-    double frame_time = 0.1;      ///< s: what a picture should take while something moves
+    double resolution_scale = 1;  ///< share of the window's width and height at which pictures are made
+    double frame_time = 0.1;      ///< s: target time of a picture while something moves
     PipelineOptions caps;
 
-    Shell shell;  ///< the open scans and what stands around the picture
+    Shell shell;  ///< open scans, files, settings
     MeasureModel measure;
     ShowModel show;
 
-    LookTools look_tools;  ///< beside scene.look
+    LookTools look_tools;  ///< in addition to scene.look
     LightTools light_tools;
 
     ControllerModel controller;
@@ -59,17 +59,18 @@ struct ViewModel {
 
     bool show_help = false;
     bool close = false, save_picture = false;
-    std::string message;                   ///< of the last action, or why there is no new picture
-    std::filesystem::path pictures = ".";  ///< the folder for saved ones
+    std::string message;                   ///< result of the last action, or why there is no new picture
+    std::filesystem::path pictures = ".";  ///< the folder for saved pictures
 
-    // What is on the screen.
+    // What the screen shows.
     std::shared_ptr<const Picture> picture;
     gi::DeviceInfo device;
-    double scale = 1;  ///< of the picture while moving
+    double scale = 1;  ///< scale of the picture while something moves
 
-    /// Must follow every change of `scene`.
+    /// Call after every change of `scene`.
     void scene_changed() { ++scene_version; }
-    /// The same where nothing moves and no light is another: exposure, curve, the border of a comparison.
+    /// Call instead of scene_changed() after changes that neither move anything nor change light: exposure,
+    /// tone curve, the border of a comparison.
     void shown_changed() {
         ++scene_version;
         ++shown_changes;

@@ -20,9 +20,9 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kRest = 0.25;       ///< s without a move until the picture is made in full
-constexpr double kStep = 1.0 / 60;   ///< s between frames of the window while something moves
-constexpr uint32_t kIdleFrames = 4;  ///< until ImGui's windows have found their sizes
+constexpr double kRest = 0.25;       ///< s without motion until the picture is made at full quality
+constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
+constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
 
 bool same_request(const PictureRequest& a, const PictureRequest& b) {
     return a.frame.camera.position == b.frame.camera.position &&
@@ -34,13 +34,13 @@ bool same_request(const PictureRequest& a, const PictureRequest& b) {
            a.scene_version == b.scene_version && a.shader_version == b.shader_version && a.moving == b.moving;
 }
 
-/// The cursor as shares of the window's width and height.
+/// Returns the cursor in shares of the window's width and height.
 glm::dvec2 cursor() {
     const ImGuiIO& io = ImGui::GetIO();
     return {io.MousePos.x / io.DisplaySize.x, io.MousePos.y / io.DisplaySize.y};
 }
 
-/// The cursor's move, shares of the window's height.
+/// Returns the cursor's move in shares of the window's height.
 glm::dvec2 cursor_move() {
     const ImGuiIO& io = ImGui::GetIO();
     return glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / static_cast<double>(io.DisplaySize.y);
@@ -50,7 +50,7 @@ double axis(int less, int more) {
     return (ImGui::IsKeyDown(more) ? 1.0 : 0.0) - (ImGui::IsKeyDown(less) ? 1.0 : 0.0);
 }
 
-/// Of those that are no scans there is nothing to see.
+/// Returns the window's title. Leaves out files that could not be opened.
 std::string scans_title(const std::vector<ScanRow>& rows) {
     std::string title;
     size_t open = 0;
@@ -71,7 +71,7 @@ double ViewSession::seconds_at_rest() const {
 }
 
 void ViewSession::take_picture() {
-    if (!scans_.source()) return;  // the worker may not know yet that the last scan was closed
+    if (!scans_.source()) return;  // the last scan was closed; the worker may not know it yet
     const auto latest = worker_.latest();
     if (!latest || (model_.picture && latest->number == model_.picture->number)) return;
     model_.picture = latest;
@@ -91,13 +91,13 @@ void ViewSession::take_picture() {
     whole_pictures_ = whole ? latest->stats.accumulated : 0;
 }
 
-/// A context that the driver has lost is made again, with all that was in it.
+/// Makes lost contexts and their contents again.
 Result<void> ViewSession::recover() {
     follow_device();
     if (!window_.lost()) return {};
     if (!tries_.take(Clock::now()))
-        return failed("window", "the graphics driver loses it again and again",
-                      "see that the driver is up to date");
+        return failed("window", "the graphics driver has lost it repeatedly",
+                      "check that the driver is up to date");
     const log::Operation::Scope scope{log::Operation()};
     log::warn("the graphics driver has lost the window; it is made again");
     LUCARNE_TRY(window_.recover());
@@ -106,7 +106,8 @@ Result<void> ViewSession::recover() {
     return {};
 }
 
-/// The worker's device. While it is set up, and where it no longer is, the last picture stays.
+/// Replaces the worker's device if it was lost. The last picture stays meanwhile, and also if no device can
+/// be made.
 void ViewSession::follow_device() {
     const auto lost = worker_.lost_device();
     if (!lost || given_up_) return;
@@ -120,12 +121,12 @@ void ViewSession::follow_device() {
     given_up_ = true;
     model_.message.clear();
     model_.health.device = fmt::format(
-        "There are no more pictures: the graphics device was lost again and again ({}). Start Lucarne anew.",
+        "There are no more pictures: the graphics device was lost repeatedly ({}). Restart Lucarne.",
         lost->why);
     log::warn("{}", model_.health.device);
 }
 
-/// Light and camera as they would be had all scans been known at once, unless the user has changed them.
+/// Updates light and camera to the starting view of all open scans, unless the user has changed them.
 void ViewSession::take_extent() {
     const auto& start = scans_.start();
     if (!start) return;
@@ -149,7 +150,7 @@ void ViewSession::take_extent() {
     model_.light_tools.saved.mark(model_.scene, model_.scene_version);
 }
 
-/// What is open is drawn as it is, and converted one scan after another once there is something to see.
+/// Applies changes of the open scans. Starts conversions, one after another, once there is something to see.
 void ViewSession::follow_scans() {
     if (scans_.update()) {
         take_extent();
@@ -165,7 +166,7 @@ void ViewSession::follow_scans() {
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
 
-/// Pictures of skies that the panel asks for.
+/// Starts and finishes loading of sky pictures that the panel requests.
 void ViewSession::follow_sky() {
     LightTools& tools = model_.light_tools;
     if (std::exchange(tools.load_sky, false)) {
@@ -184,7 +185,7 @@ void ViewSession::follow_sky() {
     tools.reading_sky = skies_.reading();
 }
 
-/// Shift and the mouse are the light's.
+/// Lets the mouse move the light while Shift is held.
 void ViewSession::take_light_gesture() {
     const glm::dvec2 move = cursor_move();
     if (move == glm::dvec2(0.0)) return;
@@ -231,8 +232,8 @@ void ViewSession::take_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (controller_.take(model_, io.DeltaTime)) moved_ = Clock::now();
     const std::vector<KeyChord> keys = window_.take_pressed_keys();
-    // Not WantCaptureKeyboard, which holds as long as the mouse holds anything, and a frame longer: keys
-    // would be lost.
+    // Do not test WantCaptureKeyboard: it is also set while the mouse holds an item, and one frame longer, so
+    // keys would be lost.
     if (model_.shell.ask_to_close)
         desk_.answer(keys);
     else if (!io.WantTextInput)
@@ -261,7 +262,7 @@ void ViewSession::draw_panels() {
 }
 
 void ViewSession::send_request() {
-    // Lights move too; what is only shown otherwise does not.
+    // Changes of lights count as motion; changes of display alone do not.
     const uint64_t moves = model_.scene_version - model_.shown_changes;
     if (scene_seen_ != moves && scene_seen_ != 0) moved_ = Clock::now();
     scene_seen_ = moves;
@@ -290,7 +291,7 @@ void ViewSession::send_request() {
     whole_pictures_ = 0;
 }
 
-/// What is said of a picture that would still get better; empty once it is as good as it gets.
+/// Returns a text about an unfinished picture; empty once the picture does not improve further.
 std::string ViewSession::unfinished() const {
     if (whole_pictures_ == 0) return ", a first sketch";
     const uint32_t averaged = model_.picture->stats.accumulated;
@@ -341,7 +342,8 @@ Result<void> ViewSession::show_until_closed() {
     while (!desk_.closing(shot_.has_value())) {
         if (interrupt_.requested()) return save_unsaved(model_, SaveTo::free_names);
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
-        // From one frame's beginning to the next one's: what a frame takes does not slow it down further.
+        // The interval counts from one frame's start to the next one's, so that a frame's own time is not
+        // added.
         const double since = std::chrono::duration<double>(Clock::now() - awake).count();
         window_.wait((lively ? kStep : kRest) - since);
         awake = Clock::now();

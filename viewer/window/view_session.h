@@ -21,16 +21,17 @@
 
 namespace lucarne::viewer {
 
-/// For scripts: the window's own picture is saved once it shows the average of exactly so many whole
-/// pictures, the same on every run, and the window closes. With nothing open it shows the start page, once
-/// that has its final size.
+/// A screenshot for scripts. Saves the window once it shows the average of exactly `pictures` complete
+/// pictures, which is the same on every run, and closes the window. With nothing open, saves the start page
+/// once it has its final size.
 struct ScriptedShot {
     std::filesystem::path file;
     uint32_t pictures = 1;
     bool overwrite = false;
 };
 
-/// The loop of the window: input into the model, the model into requests, pictures onto the screen.
+/// The window's main loop: applies input to the model, sends requests made from the model, and shows
+/// pictures.
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
@@ -46,9 +47,9 @@ class ViewSession {
           budget_(model.frame_time),
           show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
 
-    /// Until the window is closed. Where it ends without a question (SIGTERM, an error), unsaved work goes
-    /// into files with free names. Errors: the scripted shot cannot be made or written, or is not of all
-    /// scans; the window is lost; such a file cannot be written.
+    /// Runs until the window is closed. If it ends without asking the user (SIGTERM, an error), saves unsaved
+    /// work in files with free names. Errors: the scripted shot cannot be made or written, or does not show
+    /// all scans; the window is lost; unsaved work cannot be written.
     Result<void> run();
 
  private:
@@ -78,7 +79,7 @@ class ViewSession {
     ScanSet& scans_;
     InterruptRequest& interrupt_;
     Desk desk_;
-    bool placed_ = false;  ///< there has been a view to begin with
+    bool placed_ = false;  ///< the starting view has been applied
     bool first_told_ = false;
     ControllerInput controller_{&Window::wake};
     RecoveryTries tries_;
@@ -91,10 +92,10 @@ class ViewSession {
     ShowSession show_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
-    uint64_t own_scene_ = 1;  ///< the version that is no user's
+    uint64_t own_scene_ = 1;  ///< the scene version before any change by the user
     uint64_t scene_seen_ = 0;
-    uint32_t whole_pictures_ = 0;  ///< in the average that is shown
-    uint32_t idle_frames_ = 0;     ///< of the window, with nothing open
+    uint32_t whole_pictures_ = 0;  ///< complete pictures in the displayed average
+    uint32_t idle_frames_ = 0;     ///< frames of the window with nothing open
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
 };
 

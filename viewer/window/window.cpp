@@ -1,6 +1,6 @@
 #include "viewer/window/window.h"
 
-// epoxy before GLFW, which otherwise brings the system's GL header.
+// Include epoxy before GLFW, which otherwise includes the system's GL header.
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <algorithm>
@@ -19,13 +19,13 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kDoubleClickReach = 6;  ///< of the second click from the first, on a screen of scale 1
+constexpr float kDoubleClickReach = 6;  ///< largest distance of two clicks, on a screen of scale 1
 constexpr size_t kMostPressed = 64;     ///< keys kept between two frames
 constexpr size_t kMostDropped = 1000;   ///< files
 constexpr const char* kTodo =
     "start it on a desktop with OpenGL 4.5, or use lucarne render, which needs no display";
 
-/// GLFW's last complaint, without its habit of several sentences.
+/// Returns GLFW's last error message.
 std::string glfw_reason() {
     const char* text = nullptr;
     glfwGetError(&text);
@@ -49,7 +49,7 @@ Result<void> Window::create(ImageSize size, const std::string& title) {
     glfwMakeContextCurrent(window_);
     ImGui::CreateContext();
     imgui_ = true;
-    ImGui::GetIO().IniFilename = nullptr;  // no files left in the user's folder
+    ImGui::GetIO().IniFilename = nullptr;  // ImGui writes no files to the working folder
     take_context();
     return {};
 }
@@ -58,7 +58,7 @@ Result<void> Window::create_window(ImageSize size, const std::string& title) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    // So that the driver tells of a reset; those that cannot leave it out.
+    // Requests that the driver reports resets; drivers without support ignore it.
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     glfwWindowHint(GLFW_VISIBLE, GLFW_TRUE);
     window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
@@ -75,7 +75,7 @@ Result<void> Window::create_hidden(Hidden which) {
     return {};
 }
 
-/// The window's callbacks, and what is made in its context, which is current.
+/// Sets the window's callbacks and makes the objects of its context, which is current.
 void Window::take_context() {
     glfwSwapInterval(1);
     watch_ = {};
@@ -106,7 +106,7 @@ void Window::take_context() {
     glGenFramebuffers(1, &framebuffer_);
     const auto device = gi::Device::current();
     software_ = device && (*device)->info().software;
-    // Uncovered, or as large as it was again.
+    // The window was uncovered, or resized to its old size.
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
         static_cast<Window*>(glfwGetWindowUserPointer(window))->seen_.reset();
     });
@@ -127,9 +127,9 @@ Result<void> Window::recover() {
     texture_size_ = {};
     shown_ = 0;
     seen_.reset();
-    std::ranges::fill(ImGui::GetIO().KeysDown, false);  // their releases went to the old window
+    std::ranges::fill(ImGui::GetIO().KeysDown, false);  // the old window received the releases
     pointer_.clear();
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE);  // the size is that of the screen already
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_FALSE);  // the size is scaled for the screen already
     LUCARNE_TRY(create_window(
         {static_cast<uint32_t>(std::max(width, 1)), static_cast<uint32_t>(std::max(height, 1))}, title_));
     glfwSetWindowPos(window_, x, y);
@@ -231,10 +231,10 @@ ImageSize Window::size() const {
     return {side(pixels.width), side(pixels.height)};
 }
 
-/// Draws the glyphs anew in the size that they are shown in: stretched ones would be blurred.
+/// Draws the glyphs again at their display size, because stretched glyphs would be blurred.
 void Window::fit_text() {
     const double scale = std::clamp(screen_scale() * text_size_, 0.5, 8.0);
-    // X11 counts in pixels, Wayland in units of several, which ImGui then does, too.
+    // X11 counts in pixels. Wayland counts in units of several pixels, and so does ImGui then.
     int units = 0;
     glfwGetWindowSize(window_, &units, nullptr);
     const double pixels = framebuffer().width / static_cast<double>(std::max(units, 1));
@@ -257,7 +257,7 @@ void Window::fit_text() {
 
 void Window::begin_frame() {
     place_ = {};
-    ImGui_ImplOpenGL3_NewFrame();  // makes what the first glyphs need
+    ImGui_ImplOpenGL3_NewFrame();  // makes the objects that the first glyphs need
     fit_text();
     ImGui_ImplGlfw_NewFrame();
     take_pointer();
@@ -292,7 +292,7 @@ void Window::free_texture(unsigned texture) {
     if (std::erase(small_, texture)) glDeleteTextures(1, &texture);
 }
 
-/// Copies it to the window: a third less work for a processor than ImGui's blending.
+/// Copies the picture to the window, which is a third less work for a processor than ImGui's blending.
 void Window::draw_picture(ImageSize size) {
     const auto width = static_cast<int>(texture_size_.width), height = static_cast<int>(texture_size_.height);
     const auto below = static_cast<int>(size.height);
@@ -340,7 +340,7 @@ void Window::show(const Picture& picture) {
                         picture.rgba.data());
         shown_ = picture.number;
     }
-    // A picture made before the window changed its shape keeps its own until the next one is there.
+    // A picture made before the window changed its shape keeps its own shape until the next picture.
     const ImageSize size = framebuffer();
     const double scale =
         std::max(static_cast<double>(size.width) / width, static_cast<double>(size.height) / height);

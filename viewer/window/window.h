@@ -20,10 +20,10 @@ struct GLFWwindow;
 
 namespace lucarne::viewer {
 
-inline constexpr float kTextPixels = 13;  ///< on a screen of scale 1, as the font was drawn for
+inline constexpr float kTextPixels = 13;  ///< font height on a screen of scale 1, as it was designed
 
-/// The program's window with Dear ImGui in it, and hidden contexts of the same driver for threads
-/// that draw. Main thread only, but for wake().
+/// The program's window with Dear ImGui, and hidden contexts of the same driver for drawing threads. Use from
+/// the main thread, except wake().
 class Window {
  public:
     /// Errors: no display, no OpenGL 4.5.
@@ -32,63 +32,68 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// What a device is for: the picture in the window, or those rendered beside it.
+    /// The purpose of a hidden context: the picture in the window, or pictures rendered in the background.
     enum class Hidden : size_t { view, rendering };
-    /// Of the calling thread, which gives way to the window's; the window outlives the device. Where the
-    /// window is drawn by the processor it is a device of its own: Mesa's threads then belong to the one who
-    /// uses it, and give way as well. Else a hidden context (open() makes the view's) is made current, and
-    /// `release` lets go of it there.
+    /// Returns the device for a worker thread, which runs at lower priority than the window's thread. The
+    /// window must outlive the device. If the processor draws the window, the device is a separate one, so
+    /// that Mesa's threads belong to the worker and have its lower priority. Otherwise a hidden context
+    /// (open() makes the view's) is made current, and `release` releases it there.
     WorkerDevice worker_device(Hidden which);
-    /// The same with a new hidden context, in place of one that was released, if there was.
+    /// Like worker_device(), but with a new hidden context, which replaces a released one if there was one.
     Result<WorkerDevice> renew_worker_device(Hidden which);
-    /// Whether the driver has lost the window's own context: nothing that is drawn is seen until recover().
+    /// Whether the driver has lost the window's own context. Nothing is displayed then until recover().
     bool lost() { return watch_.lost(); }
-    /// A new window in the place of the old one, with a new context; ImGui's state stays, pictures and small
-    /// textures are gone. Errors: the driver makes none.
+    /// Replaces the window by a new one with a new context. ImGui's state stays; pictures and small textures
+    /// are lost. Errors: the driver cannot make a window or context.
     Result<void> recover();
-    /// Ends wait() early; any thread.
+    /// Ends wait() early. May be called by any thread.
     static void wake();
 
     void set_title(const std::string& title);
     bool closing() const;
-    void stay();             ///< closing() is taken back
-    ImageSize size() const;  ///< as open() takes it: of a screen of scale 1
-    /// How large text is, beside the scale of the screen that the window is on; glyphs are drawn anew for it.
+    void stay();             ///< resets closing()
+    ImageSize size() const;  ///< as in open(): for a screen of scale 1
+    /// Sets the scale of text in addition to the screen's scale. Glyphs are drawn again for it.
     void set_text_size(double size) { text_size_ = size; }
-    /// Sleeps until there is input, wake() or `seconds` have passed, and takes the input in.
+    /// Sleeps until there is input, wake() is called or `seconds` have passed, then handles the input.
     void wait(double seconds);
-    ImageSize framebuffer() const;  ///< pixels; 1x1 at least
-    /// Keys pressed since the last call, also those released again before a frame saw them.
+    ImageSize framebuffer() const;  ///< size in pixels; at least 1x1
+    /// Returns the keys pressed since the last call, including keys released before the next frame.
     std::vector<KeyChord> take_pressed_keys() { return std::exchange(pressed_, {}); }
 
-    /// Files dropped on the window since the last call.
+    /// Returns the files dropped on the window since the last call.
     std::vector<std::string> take_dropped_files() { return std::exchange(dropped_, {}); }
 
-    /// A small picture for panels; gone with the window, or before.
+    /// Makes a texture of a small picture for panels. It lives until free_texture(), recover() or the
+    /// window's end.
     unsigned make_texture(const io::Image8& image);
     void free_texture(unsigned texture);
 
-    /// From here ImGui and show() may be used, until draw().
+    /// Begins a frame. ImGui and show() may be used from here until draw().
     void begin_frame();
-    /// Fills the window with a picture, scaled without changing its shape. Uploads it when its number is new.
+    /// Fills the window with a picture, scaled with its aspect ratio kept. Uploads the picture if its number
+    /// is new.
     void show(const Picture& picture);
-    /// False where the window shows just that already, and nothing was drawn: motion and input draw more
-    /// often than pictures come, and without a GPU filling the window takes the processor from those.
+    /// Draws the frame. Returns false and draws nothing if the window already shows exactly this, unless
+    /// `even_if_seen`. Frames are more frequent than pictures, and without a GPU, filling the window takes
+    /// processor time from pictures.
     bool draw(bool even_if_seen);
-    /// What draw() has drawn, RGBA8 of framebuffer()'s size, row 0 on top. Between draw() and swap().
+    /// Returns what draw() has drawn: RGBA8 of framebuffer()'s size, row 0 on top. Call between draw() and
+    /// swap().
     std::vector<std::byte> capture() const;
     void swap();
-    /// Off the screen at once, though a picture may still have to be finished before the program ends.
+    /// Hides the window at once, although the current picture may have to be finished before the program
+    /// ends.
     void hide();
 
  private:
-    /// Pixels of the framebuffer, y downward.
+    /// A rectangle in pixels of the framebuffer, y downward.
     struct PictureRect {
         int left = 0, top = 0, right = 0, bottom = 0;
         bool empty() const { return right <= left || bottom <= top; }
     };
 
-    /// What the window shows.
+    /// A fingerprint of what the window shows.
     struct Seen {
         uint64_t panels = 0, picture = 0;
         uint32_t width = 0, height = 0;
@@ -98,7 +103,7 @@ class Window {
     Window() = default;
     Result<std::unique_ptr<gi::Device>> own_device(Hidden which, bool software);
     void draw_picture(ImageSize size);
-    double screen_scale() const;  ///< 1: of about 96 dots an inch
+    double screen_scale() const;  ///< 1: about 96 dots an inch
     void fit_text();
     void take_pointer();
     Result<void> create(ImageSize size, const std::string& title);
@@ -110,15 +115,14 @@ class Window {
     std::array<GLFWwindow*, 2> hidden_{};
     std::string title_;
     bool initialised_ = false, imgui_ = false;
-    double text_size_ = 1;  ///< wanted
-    double text_scale_ = 0,
-           text_pixels_ = 0;  ///< what the glyphs are of, and the pixels of a unit of the desktop's then
-    unsigned texture_ = 0, framebuffer_ = 0;  ///< the picture, and what it is copied from
-    std::vector<unsigned> small_;             ///< textures
+    double text_size_ = 1;                     ///< requested scale of text
+    double text_scale_ = 0, text_pixels_ = 0;  ///< scale of the glyphs; pixels of a desktop unit then
+    unsigned texture_ = 0, framebuffer_ = 0;   ///< the picture; what it is copied from
+    std::vector<unsigned> small_;              ///< textures for panels
     ImageSize texture_size_;
     uint64_t shown_ = 0;        ///< the number of the picture in the texture
-    PictureRect place_;         ///< of it, in this frame; empty: there is none
-    std::optional<Seen> seen_;  ///< none: not known
+    PictureRect place_;         ///< the picture's place in this frame; empty: no picture
+    std::optional<Seen> seen_;  ///< nothing: not known
     bool software_ = false;     ///< the window is drawn by the processor
     PointerInput pointer_;
     std::vector<KeyChord> pressed_;

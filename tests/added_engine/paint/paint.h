@@ -4,8 +4,8 @@
 
 namespace lucarne::gi {
 
-/// Paints every surface in one colour: an engine with an option of every kind, to test what an engine's
-/// folder needs.
+/// An engine that paints every surface in one colour. It has an option of every kind, to test what a new
+/// engine needs.
 EngineEntry paint_engine();
 
 }  // namespace lucarne::gi

@@ -1,17 +1,18 @@
-// A library that LD_PRELOAD puts between the program and the C library: it counts the calls that change files
-// or folders, and the end of the program as the last one, and at one of them does what a disk, a signal or a
-// power cut would. LUCARNE_FAULT says what:
+// A library for LD_PRELOAD. It counts the program's calls that change files or folders; the end of the
+// program counts as the last call. At one of them it does what a disk, a signal or a power cut would do.
+// LUCARNE_FAULT selects it:
 //
-//   count:FILE       nothing; writes the number of calls to FILE at the end
-//   trace:FILE       nothing; writes the calls' names to FILE at the end, one a line
-//   kill:N           SIGKILL before the N-th call (from 1)
-//   signal:N:NUMBER  signal NUMBER before the N-th call, which is never made unless the signal is ignored
-//   full:N           from the N-th call on, every write fails with ENOSPC
-//   error:N[:ERRNO]  the N-th call alone fails with this errno, EIO (5) where none is given, unless it gives
-//   space back power:N:SEED     before the N-th call the power goes: of what was written since each file's
-//   last sync every
-//                    sector of 512 bytes is lost or kept by chance, and so is a file's growth; of the names
-//                    that were given since their folder's last sync the last ones are lost; then SIGKILL
+//   count:FILE       does nothing; writes the number of calls to FILE at the end
+//   trace:FILE       does nothing; writes the calls' names to FILE at the end, one a line
+//   kill:N           sends SIGKILL before the N-th call (from 1)
+//   signal:N:NUMBER  sends signal NUMBER before the N-th call, which happens only if the signal is ignored
+//   full:N           every write from the N-th call on fails with ENOSPC
+//   error:N[:ERRNO]  only the N-th call fails, with ERRNO (default: 5, EIO), unless it frees space
+//   power:N:SEED     cuts the power before the N-th call, see below
+//
+// A power cut loses or keeps by chance every sector of 512 bytes that was written since its file's last sync,
+// and so a file's growth. Of the names given since their folder's last sync, it loses the newest ones. Then
+// it sends SIGKILL.
 //
 // LUCARNE_NO_TMPFILE: files cannot be made without a name.
 #include <algorithm>
@@ -39,7 +40,7 @@ Function* next(const char* name) {
     return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-/// What a call that is not synced yet replaced.
+/// The old contents that an unsynced call replaced.
 struct Undo {
     int fd = -1;
     dev_t device = 0;
@@ -48,23 +49,22 @@ struct Undo {
     std::vector<char> before;
 };
 
-/// A name that was given while its folder was not synced.
+/// A name that was given since its folder's last sync.
 struct UndoName {
-    std::string name, from;  ///< `from`: what it was renamed from, or empty
-    std::string replaced;    ///< what stood there before has this name, if anything did
+    std::string name, from;  ///< `from`: the name before a rename, or empty
+    std::string replaced;    ///< the name under which the replaced file is kept, if there was one
 };
 
-enum class Call { write, commit, cleanup };  ///< cleanup gives space back, and does not fail
+enum class Call { write, commit, cleanup };  ///< cleanup frees space and does not fail
 
 class Faults {
  public:
     static Faults& instance() {
-        static auto* faults = new Faults;  // lives until the very end: files are written by destructors, too
+        static auto* faults = new Faults;  // never destroyed, because destructors write files as well
         return *faults;
     }
 
-    /// Called before each call that changes a file; a value other than 0 is the errno that it shall fail
-    /// with.
+    /// Called before each call that changes a file. Returns 0, or the errno with which the call must fail.
     int enter(const char* name, Call call) {
         ++calls_;
         if (kind_ == "trace") trace_ += std::string(name) + '\n';
@@ -76,14 +76,14 @@ class Faults {
             ::sigaction(static_cast<int>(seed_), nullptr, &action);
             ::kill(::getpid(), static_cast<int>(seed_));
             if (action.sa_handler == SIG_IGN) return 0;
-            mutex_.unlock();  // other threads may clean up
+            mutex_.unlock();  // so that other threads can clean up
             for (;;) ::pause();
         }
         if (kind_ == "power") lose();
         if (kind_ == "power" || kind_ == "kill") ::kill(::getpid(), SIGKILL);
         return 0;
     }
-    /// `bytes` from `offset` on are about to change.
+    /// Keeps the old contents of `bytes` from `offset` on, which are about to change.
     void remember(int fd, off_t offset, size_t bytes) {
         struct stat status {};
         if (kind_ != "power" || ::fstat(fd, &status) != 0) return;
@@ -103,8 +103,7 @@ class Faults {
             return same;
         });
     }
-    /// Keeps what stands under `name`, before another takes its place; returns the name that it is kept
-    /// under.
+    /// Keeps the file `name` before it is replaced. Returns the name under which it is kept.
     std::string keep(const std::string& name) {
         static const auto link = next<int(int, const char*, int, const char*, int)>("linkat");
         if (kind_ != "power") return {};
@@ -114,7 +113,7 @@ class Faults {
     void named(UndoName undo) {
         if (kind_ == "power") undo_names_.push_back(std::move(undo));
     }
-    /// All names are in one folder.
+    /// Forgets the names to undo. All names are in one folder.
     void folder_synced() {
         for (const UndoName& undo : undo_names_)
             if (!undo.replaced.empty()) next<int(const char*)>("unlink")(undo.replaced.c_str());
@@ -157,7 +156,7 @@ class Faults {
             struct stat status {};
             if (::fstat(undo->fd, &status) != 0 || status.st_size <= undo->size_before) continue;
             if (random() & 1) (void)!cut(undo->fd, undo->size_before);
-            // What stays of the growth may be there by its length alone.
+            // Growth that stays may be a length without data.
             const std::vector<char> zeros(kSector);
             for (off_t at = undo->size_before; ::fstat(undo->fd, &status) == 0 && at < status.st_size;
                  at += static_cast<off_t>(kSector))
@@ -167,7 +166,7 @@ class Faults {
         }
     }
 
-    /// A file system takes names down in their order: the last ones are lost.
+    /// Undoes the newest names, because a file system records names in order.
     void lose_names(size_t count) {
         const auto move = next<int(const char*, const char*)>("rename");
         const auto remove = next<int(const char*)>("unlink");
@@ -188,7 +187,7 @@ class Faults {
     std::recursive_mutex mutex_;
     std::string kind_, argument_, trace_;
     unsigned long long at_ = 0, seed_ = 0,
-                       calls_ = 0;  ///< `seed_`: the number after the call's, whatever it means
+                       calls_ = 0;  ///< `seed_`: the second number, whatever it means
     std::vector<Undo> undos_;
     std::vector<UndoName> undo_names_;
 };

@@ -12,15 +12,15 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-using reference::MeanLuminance;
-using reference::Start;
 using reference::disc_light;
 using reference::kO;
 using reference::kX;
 using reference::kY;
 using reference::kZ;
 using reference::material;
+using reference::MeanLuminance;
 using reference::rectangle_light;
+using reference::Start;
 using reference::starts_on;
 using reference::sun;
 using reference::traced;
@@ -191,4 +191,4 @@ TEST(LightSampling, DarkEnvironmentIsNone) {
 }
 
 }  // namespace
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

@@ -11,16 +11,16 @@
 namespace lucarne::gi::tracing {
 namespace {
 
-using reference::MeanLuminance;
-using reference::PathSettings;
-using reference::Start;
 using reference::kO;
 using reference::kX;
 using reference::kY;
 using reference::kZ;
 using reference::material;
+using reference::MeanLuminance;
+using reference::PathSettings;
 using reference::point;
 using reference::spot;
+using reference::Start;
 using reference::starts_on;
 using reference::sun;
 using reference::traced;
@@ -155,4 +155,4 @@ TEST(SurfelSampler, RayCrossesEveryDiscBetweenItsEndsOnce) {
 }
 
 }  // namespace
-}  // namespace lucarne::gi::reference
+}  // namespace lucarne::gi::tracing

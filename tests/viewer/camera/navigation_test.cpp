@@ -15,7 +15,7 @@ CameraRig rig_at(const glm::dvec3& position, const glm::dvec3& target) {
     return CameraRig(camera);
 }
 
-/// Where a world point stands in the picture: tangents to the right and up.
+/// Returns the place of a world point in the picture, as tangents to the right and up.
 glm::dvec2 seen(const CameraRig& rig, const glm::dvec3& point) {
     const glm::dvec3 offset = point - rig.position();
     const double depth = glm::dot(offset, rig.forward());

@@ -1,5 +1,4 @@
-// The picture a user gets from an engine against the reference's, from the same scan through the same
-// pipeline.
+// Compares pictures of an engine with the reference's, from the same scan and through the same pipeline.
 #include <cmath>
 #include <cstdio>
 #include <string>

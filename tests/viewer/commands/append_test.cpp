@@ -1,4 +1,4 @@
-// `lucarne convert --append` as a user runs it.
+// Tests `lucarne convert --append` as a user runs it.
 #include <filesystem>
 #include <fstream>
 

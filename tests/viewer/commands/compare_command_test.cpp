@@ -16,7 +16,7 @@ using test::Outcome, testing::HasSubstr;
 class CompareCommand : public testing::Test {
  protected:
     std::string at(const std::string& name) { return folder_ / name; }
-    /// A ramp with a step in the middle; `change(x, y)` is multiplied with it.
+    /// Writes a ramp with a step in the middle, multiplied by `change(x, y)`.
     template <class Change>
     void write(const std::string& name, const Change& change, uint32_t width = 40, uint32_t height = 30) {
         io::Image image{width, height, {}};
@@ -65,7 +65,7 @@ TEST_F(CompareCommand, FlipSeesADarkPictureAsDark) {
     write("a.exr", 0.25);
     write("b.exr");
     EXPECT_GT(figures(at("a.exr") + " " + at("b.exr"))["flip"], 0.2);
-    // Exposed to black both look alike.
+    // At an exposure that turns both black, they look the same.
     EXPECT_LT(figures(at("a.exr") + " " + at("b.exr") + " --exposure -30")["flip"], 0.01);
 }
 

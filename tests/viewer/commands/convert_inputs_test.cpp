@@ -1,4 +1,4 @@
-// Many inputs at once: folders, and broken files among sound ones.
+// Many inputs at once: folders, and broken files among good ones.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -112,7 +112,7 @@ TEST_F(ConvertInputs, AFolderWithoutScansAndAnUnreadableOneStopOnlyThemselves) {
               std::string::npos)
         << done.output;
     EXPECT_TRUE(fs::exists(cache_));
-    // Too deep to be opened by its whole name, for whoever runs this.
+    // Too deep for the full path to be opened, whoever runs the test.
     int deepest = open(scans_.c_str(), O_DIRECTORY);
     for (int i = 0; i < 30; ++i) {
         const std::string step(200, 'd');
@@ -123,8 +123,7 @@ TEST_F(ConvertInputs, AFolderWithoutScansAndAnUnreadableOneStopOnlyThemselves) {
     close(deepest);
     const auto info = test::lucarne("info --quick " + scans_.string());
     EXPECT_EQ(info.code, 3);
-    EXPECT_NE(info.output.find("cannot be looked through: File name too long"), std::string::npos)
-        << info.output;
+    EXPECT_NE(info.output.find("cannot be searched: File name too long"), std::string::npos) << info.output;
     EXPECT_NE(info.output.find("1 of 4 inputs cannot be read"), std::string::npos) << info.output;
 }
 
@@ -155,7 +154,7 @@ TEST_F(ConvertInputs, AWarningIsSaidOnceHoweverOftenAFileIsOpened) {
 TEST_F(ConvertInputs, WhatIsRefusedIsNamed) {
     const auto nameless = test::lucarne("info ''");
     EXPECT_EQ(nameless.code, 3);
-    EXPECT_NE(nameless.output.find("'': is no name of a file"), std::string::npos) << nameless.output;
+    EXPECT_NE(nameless.output.find("'': is not a file name"), std::string::npos) << nameless.output;
     const auto raw = test::lucarne(fmt::format("export {} -o {}", scan(0), folder_ / "x.las"));
     EXPECT_EQ(raw.code, 3);
     EXPECT_NE(raw.output.find(scan(0) + ": is no cache; if it is a scan, convert it first"),

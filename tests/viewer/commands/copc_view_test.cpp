@@ -1,4 +1,4 @@
-// COPC files before a user: drawn as they are, told about, joined with other inputs, and written.
+// COPC files as a user sees them: drawn directly, described, joined with other inputs, and written.
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -25,14 +25,14 @@ class CopcView : public testing::Test {
         EXPECT_EQ(outcome.code, 0) << outcome.output;
         return outcome.output;
     }
-    /// The mean luminance of a picture of `input`.
+    /// Returns the mean luminance of a picture of `input`.
     double light_of(const std::string& input, const std::string& engine) {
         const std::string json = folder_ / "r.json";
         expect_done("render " + input + " --size 128x96 --overwrite --engine " + engine + " --json " + json +
                     " -o " + (folder_ / "p.exr"));
         return nlohmann::json::parse(bytes_of(json)).at("mean_luminance").get<double>();
     }
-    /// Of the cache's description.
+    /// Returns the line with the number of points in the cache's description.
     std::string points_line() {
         const std::string said = expect_done("info " + cache_);
         const size_t begin = said.find("points");

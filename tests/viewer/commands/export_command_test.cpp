@@ -1,4 +1,4 @@
-// Whether what `export` writes to LAS, LAZ and COPC is what was converted.
+// Tests that `export` writes the converted points to LAS, LAZ and COPC.
 #include <algorithm>
 #include <fstream>
 #include <vector>
@@ -13,7 +13,7 @@ namespace {
 
 class ExportCommand : public ::testing::Test {
  protected:
-    /// Both succeed; what they said.
+    /// Converts; expects success. Returns the output.
     std::string convert(const std::string& inputs, const std::string& cache,
                         const std::string& options = "") const {
         return succeed(
@@ -31,7 +31,7 @@ class ExportCommand : public ::testing::Test {
         std::ofstream(folder_ / name) << lines;
         return folder_ / name;
     }
-    /// The positions of a scan as text, sorted.
+    /// Returns the positions of a scan as text, sorted.
     std::vector<std::string> positions(const std::string& scan) const {
         convert(folder_ / scan, "again.luc");
         write("again.luc", "again.csv");
@@ -74,7 +74,7 @@ TEST_F(ExportCommand, TilesOfOtherScalesAndOffsetsKeepEveryDigitTogetherAndWhenA
     write("b.luc", "b.laz");
     std::vector<std::string> all = positions("b.laz");
     for (const std::string& line : positions("a.las")) {
-        std::string four;  // a has a digit less
+        std::string four;  // a has one digit less
         for (const char c : line + " ") four += c == ' ' ? std::string("0 ") : std::string(1, c);
         all.push_back(four.substr(0, four.size() - 1));
     }

@@ -206,7 +206,7 @@ TEST(Fly, SoakEndsWithTheMemoryItBeganWith) {
     const TemporaryFolder folder;
     const std::string cache = make_cornell(folder, "300k");
     write(folder / "path.json", kPath);
-    // LUCARNE_SOAK asks for more seconds: an hour, say.
+    // LUCARNE_SOAK sets a longer duration, for example an hour.
     const char* asked = std::getenv("LUCARNE_SOAK");
     const Outcome flown =
         test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --size 64x48 --realtime" +
@@ -254,7 +254,7 @@ TEST(Fly, TwoHundredCachesAreOneSceneUnderOneBudget) {
         inputs += copy + " ";
     }
     write(folder / "path.json", kPath);
-    // Fewer handles than caches.
+    // Fewer file handles than caches.
     const Outcome flown =
         test::shell("ulimit -n 128; " LUCARNE_BINARY " fly " + inputs + " --path " + (folder / "path.json") +
                     " --size 48x32 --points 50000 --engine direct -o " + (folder / "r.json"));

@@ -1,5 +1,5 @@
-// Out of core and global illumination together: a cache more than ten times larger than the caps on memory
-// and device memory, flown through with three bounces. The figures at full size: `./run headline`.
+// Out-of-core global illumination: flies with three bounces through a cache more than ten times larger than
+// the caps on memory and device memory. `./run headline` gives the figures at full size.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -41,14 +41,14 @@ TEST_F(Headline, UnderCapsOfATenthOfTheCacheThreeBouncesKeepTheirEnergyAndMemory
     const std::string cache = cache_of("4300k");
     const auto source = octree::open_cache(cache);
     ASSERT_TRUE(source);
-    uint64_t records = 0;  // as they are in memory: the file is smaller
+    uint64_t records = 0;  // their size in memory; the file is smaller
     for (uint32_t node = 0; node < (*source)->nodes().size(); ++node)
         records += (*source)->record_bytes(node);
     ASSERT_GT(records, 10 * kCap);
     const auto capped = fly(cache, "--preset preview --memory 16M --device-memory 16M");
     const auto whole = fly(cache, "--preset high");  // its cuts take 4M points and more: nearly all there are
     const auto tiny = fly(cache_of("20k"), "--preset preview --memory 16M --device-memory 16M");
-    // A larger picture needs what the pool would take: the pool gives way.
+    // A larger picture needs memory of the pool, which shrinks.
     const auto larger =
         test::lucarne("render " + cache + " -o " + (folder_ / "p.png") +
                       " --size 192x144 --preset preview --bounces 3 --vpls 64 --atlas 256 --memory 16M" +
@@ -71,13 +71,13 @@ TEST_F(Headline, UnderCapsOfATenthOfTheCacheThreeBouncesKeepTheirEnergyAndMemory
     }
     const double energy = capped["luminance"]["mean"], truth = whole["luminance"]["mean"];
     EXPECT_NEAR(energy / truth, 1, 0.03);
-#ifndef __SANITIZE_ADDRESS__  // whose own memory hides the program's
-    // A driver in software holds the device's memory in the process as well.
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer's own memory hides the program's
+    // With a software driver the process's memory includes the device's.
     const uint64_t peak = capped["resident_memory"]["max"], base = tiny["resident_memory"]["max"];
     std::printf("resident: %.1f MiB, of which %.1f MiB for a tiny cloud\n",
                 static_cast<double>(peak) / 1048576, static_cast<double>(base) / 1048576);
-    // The caps are of what is asked for (above); what malloc holds back of it between threads comes on top,
-    // and depends on how they are scheduled: 1.4 MiB on a crowded machine.
+    // The caps apply to requested memory (tested above). Memory that malloc keeps for its threads comes on
+    // top and depends on scheduling: 1.4 MiB on a busy machine.
     EXPECT_LE(peak, base + 2 * kCap + kCap / 4);
     uint64_t early = 0, late = 0;
     const size_t frames = capped["each_frame"].size();

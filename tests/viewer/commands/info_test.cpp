@@ -1,4 +1,4 @@
-// `lucarne info` says what a scan file holds.
+// Tests that `lucarne info` shows what a scan file contains.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -61,7 +61,7 @@ TEST(InfoCommand, WritesNoControlCharacterOfAFileOrItsNameToTheTerminal) {
         EXPECT_TRUE(is_clean(lucarne(command + (" '" + cache + "'")).output)) << command;
 }
 
-/// A number of what `lucarne info` says of a file.
+/// Returns one number of `lucarne info`'s output for a file.
 double info_number(const TemporaryFolder& folder, const std::string& arguments, const std::string& key) {
     const std::string json_file = folder / "number.json";
     const auto outcome = lucarne("info " + arguments + " --overwrite --json " + json_file);
@@ -71,7 +71,7 @@ double info_number(const TemporaryFolder& folder, const std::string& arguments, 
     return value.is_boolean() ? value.get<bool>() : value.get<double>();
 }
 
-/// All that `lucarne info` says of a file.
+/// Returns the whole output of `lucarne info` for a file.
 nlohmann::json info_of(const TemporaryFolder& folder, const std::string& arguments) {
     const std::string json_file = folder / "all.json";
     const auto outcome = lucarne("info " + arguments + " --overwrite --json " + json_file);
@@ -89,7 +89,7 @@ TEST(InfoCommand, SaysWhatAMeshHoldsWithoutSamplingIt) {
            "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
            "0 0 0\n100 0 0\n100 100 5\n0 100 5\n4 0 1 2 3\n";
     for (const std::string& path : {obj, ply}) {
-        const auto info = info_of(folder, path + " --mesh-points 1G");  // minutes, if they were made
+        const auto info = info_of(folder, path + " --mesh-points 1G");  // sampling them would take minutes
         EXPECT_FALSE(info.contains("points"));
         EXPECT_NEAR(info["expected_points"].get<double>(), 1e9, 1e6);
         EXPECT_EQ(info["min"], nlohmann::json({0.0, 0.0, 0.0}));

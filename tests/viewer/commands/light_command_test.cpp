@@ -1,5 +1,4 @@
-// What `lucarne render` makes of lights that are off, false colours, flattened colours and two engines, as
-// users call it.
+// Tests `lucarne render` with switched-off lights, false colours, flattened colours and two engines.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,10 +15,10 @@ namespace {
 
 using test::Outcome;
 
-/// A floor of 84 x 42 points, of grey paint that was taken in more light on the right than on the left.
+/// A grey floor of 84 x 42 points that was recorded in brighter light on the right than on the left.
 class LightCommand : public testing::Test {
  protected:
-    static constexpr int kWidth = 256, kHeight = 128;  ///< with room beside legends
+    static constexpr int kWidth = 256, kHeight = 128;  ///< leaves room for legends
 
     static void SetUpTestSuite() {
         folder_ = new test::TemporaryFolder;
@@ -38,7 +37,7 @@ class LightCommand : public testing::Test {
     static void TearDownTestSuite() { delete folder_; }
     static std::string at(const std::string& name) { return *folder_ / name; }
 
-    /// `more`: the scene beside its camera.
+    /// Renders a scene with the keys `more` in addition to its camera.
     static io::Image8 render(const std::string& more, const std::string& options) {
         std::ofstream(at("scene.json")) << R"({"cameras": [{"name": "above", "position": [2.075, 1.025, 40],
             "target": [2.075, 1.025, 0], "up": [0, 1, 0], "fov": 2.6}])"
@@ -49,7 +48,7 @@ class LightCommand : public testing::Test {
         EXPECT_EQ(ran.code, 0) << ran.output;
         return io::read_png(at("out.png")).value_or(io::Image8{});
     }
-    /// At a place of 128 by 64.
+    /// Returns the colour at a place of a 128 by 64 grid.
     static glm::vec3 pixel(const io::Image8& picture, int x, int y) {
         if (picture.bytes.empty()) return glm::vec3(-1);
         const uint8_t* p =

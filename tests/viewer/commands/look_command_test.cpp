@@ -1,4 +1,4 @@
-// What `lucarne render` shows of a scan's attributes, as users call it.
+// Tests how `lucarne render` shows a scan's attributes.
 #include <array>
 #include <cmath>
 
@@ -43,7 +43,7 @@ class LookCommand : public testing::Test {
     static void TearDownTestSuite() { delete folder_; }
     static std::string at(const std::string& name) { return *folder_ / name; }
 
-    /// The picture's colours over the left and the right square, sRGB.
+    /// Returns the picture's colours over the left and the right square, sRGB.
     static std::array<glm::vec3, 2> halves(const std::string& options) {
         const Outcome ran =
             test::lucarne("render " + at("scan.luc") + " -o " + at("out.png") + " --overwrite --scene " +
@@ -99,7 +99,7 @@ TEST_F(LookCommand, HiddenClassesAndClipsShowWhatIsBehindThem) {
     both = halves("--colour classification --clip-outside -1,-1,1.5,9,9,9");
     EXPECT_THAT(both[0], Shows(gi::class_colour(2)));
     EXPECT_THAT(both[1], Shows(kBlack));
-    // A wall between the squares; turned, it runs through both.
+    // The box is a wall between the squares; turned, it runs through both.
     both = halves("--colour classification --clip-box 0.875,-5,-1,1.175,6,9");
     EXPECT_THAT(both[0], Shows(kBlack));
     EXPECT_THAT(both[1], Shows(kBlack));

@@ -1,4 +1,4 @@
-// No command replaces what it reads.
+// Tests that no command replaces its inputs.
 #include <filesystem>
 #include <fstream>
 
@@ -18,7 +18,7 @@ class Outputs : public ::testing::Test {
         ASSERT_EQ(test::lucarne("generate cornell --points 2000 -o " + scan_).code, 0);
         before_ = test::bytes_of(scan_);
     }
-    /// That `arguments` are refused at once and the scan stays as it is.
+    /// Expects that `arguments` are refused at once and the scan stays unchanged.
     void refused(const std::string& arguments, const std::string& why = "is an input of this command") const {
         const auto done = test::lucarne(arguments);
         EXPECT_EQ(done.code, 2) << arguments << "\n" << done.output;
@@ -32,7 +32,7 @@ class Outputs : public ::testing::Test {
 };
 
 TEST_F(Outputs, AnInputIsNeverReplacedByConvert) {
-    const std::string named = folder_ / "scan";  // a scan whose name does not say so
+    const std::string named = folder_ / "scan";  // a scan without a scan's extension
     fs::copy_file(scan_, named);
     const std::string link = folder_ / "link.luc", twin = folder_ / "twin.luc";
     fs::create_symlink(named, link);
@@ -44,7 +44,7 @@ TEST_F(Outputs, AnInputIsNeverReplacedByConvert) {
     }
     refused(fmt::format("convert {} -o {} --json {} --overwrite", scan_, folder_ / "x.luc", scan_));
     EXPECT_FALSE(fs::exists(folder_ / "x.luc"));
-    // One of a folder's.
+    // A scan in a folder that is given.
     refused(fmt::format("convert {} -o {} --json {} --overwrite", folder_.path().string(), folder_ / "x.luc",
                         scan_));
 }
@@ -80,7 +80,7 @@ TEST_F(Outputs, NoOutputReplacesAnother) {
     fs::create_directory_symlink(folder_.path(), link);
     for (const auto& json : {cache, dotted, link + "/x.luc"})
         refused(fmt::format("convert {} -o {} --json {} --overwrite", scan_, cache, json),
-                "is to be written twice by this command");
+                "would be written twice by this command");
     EXPECT_FALSE(fs::exists(cache));
 }
 

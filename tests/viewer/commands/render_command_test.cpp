@@ -30,7 +30,7 @@ class RenderCommand : public testing::Test {
     static void TearDownTestSuite() { folder_.reset(); }
 
     static std::string at(const std::string& name) { return *folder_ / name; }
-    /// Renders the cache small and quickly.
+    /// Renders a small, quick picture of the cache.
     static Outcome render(const std::string& output, const std::string& arguments = "",
                           const std::string& size = "64x48") {
         return test::lucarne("render " + cache_ + " -o " + at(output) + kScene + " --overwrite --size " +
@@ -122,7 +122,7 @@ TEST_F(RenderCommand, LayersOfTheReferenceAreItsErrorAndItsHalves) {
     EXPECT_EQ(bytes_of(at("layered.exr")), bytes_of(at("unlayered.exr")));
     double sum = 0, noise = 0;
     for (size_t i = 0; i < whole.pixels.size(); ++i) {
-        // Nine paths: five in the first half, four in the other.
+        // Of nine paths, five are in the first half and four in the other.
         EXPECT_NEAR((5 * a.pixels[i].x + 4 * b.pixels[i].x) / 9, whole.pixels[i].x,
                     1e-4f + 1e-5f * whole.pixels[i].x);
         sum += (a.pixels[i].y - b.pixels[i].y) * (a.pixels[i].y - b.pixels[i].y);
@@ -268,7 +268,7 @@ TEST_F(RenderCommand, GBufferOfThePictureIsWrittenAndTellsCompareWhereEdgesAre) 
         if (texel.w <= 0) continue;
         ++seen;
         EXPECT_NEAR(glm::length(glm::vec3(texel)), 1, 1e-3);
-        EXPECT_GT(texel.w, 7);  // the camera stands 7.6 m before the box of 5.5 m
+        EXPECT_GT(texel.w, 7);  // the camera is 7.6 m in front of the box of 5.5 m
         EXPECT_LT(texel.w, 14);
     }
     EXPECT_GT(seen, gbuffer.pixels.size() / 2);
@@ -283,7 +283,7 @@ TEST_F(RenderCommand, GBufferOfThePictureIsWrittenAndTellsCompareWhereEdgesAre) 
     EXPECT_EQ(test::lucarne(same + at("small.exr")).code, 3);
 }
 
-/// Pixels with opacity; our own reader leaves it out.
+/// Returns pixels with opacity, which the program's own reader drops.
 std::vector<std::array<uint8_t, 4>> rgba(const std::string& file) {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
@@ -333,7 +333,7 @@ TEST_F(RenderCommand, OverlaysStandOverTransparencyAndCanBeLeftOut) {
 }
 
 TEST_F(RenderCommand, PicturesOfMorePixelsThanOneRowOfGroupsAreWhole) {
-    // 65535 groups of 64 threads, which OpenGL takes at least, are fewer than these pixels.
+    // The picture has more pixels than 65535 groups of 64 threads, the least that OpenGL must support.
     const std::string view = "--engine direct --points 5k";
     ASSERT_EQ(render("large.png", view, "3000x1500").code, 0);
     ASSERT_EQ(render("small.png", view, "300x150").code, 0);

@@ -1,4 +1,4 @@
-// What the commands say of files that are not whole, and of what is left out of those that are.
+// Tests what the commands report about damaged files, and about data left out of good ones.
 #include <filesystem>
 #include <fstream>
 

@@ -13,7 +13,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-/// Frames along a path whose cost rises and falls; `factor` times as dear, noisy, every tenth disturbed.
+/// Returns frames along a path whose cost rises and falls, `factor` times as long, with noise; every tenth is
+/// disturbed.
 FlownReport flown(size_t frames, double factor, uint32_t seed, double first = 0) {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 0.04);
@@ -54,7 +55,7 @@ TEST(CompareFlights, TheIntervalHoldsTheTruthAboutAsOftenAsItSays) {
         const auto c = compare_flights(flown(120, 1, seed), flown(120, 1.2, 1000 + seed), 0.03);
         inside += c.low <= 1.2 && 1.2 <= c.high;
     }
-    EXPECT_GE(inside, 34);  // of 40 at 95 %: fewer happen once in thousands of choices of seeds
+    EXPECT_GE(inside, 34);  // of 40 intervals at 95 %: fewer occur for one in thousands of seeds
 }
 
 TEST(CompareFlights, FramesAtOtherTimesAreComparedByRank) {

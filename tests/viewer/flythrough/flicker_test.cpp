@@ -11,7 +11,8 @@ namespace {
 
 constexpr uint32_t kSide = 20;
 
-/// A wall at y = 4, seen along y from (x, 0, 0), whose light is `light(x, z)` over an albedo of .5.
+/// Returns a frame of a wall at y = 4, seen along y from (x, 0, 0). Its light is `light(x, z)`, its albedo
+/// .5.
 template <class Light>
 SeenFrame wall(float x, const Light& light) {
     SeenFrame frame;

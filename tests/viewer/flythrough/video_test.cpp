@@ -1,4 +1,4 @@
-// Videos by a program that stands for ffmpeg: what is tested is our side of the pipe.
+// Tests the program's side of the pipe with a replacement for ffmpeg.
 #include "viewer/flythrough/video.h"
 
 #include <fstream>
@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// PATH is this folder and the system's, and what it was before again at the end.
+/// Puts this folder in front of PATH, and restores PATH at the end.
 class Video : public testing::Test {
  protected:
     void SetUp() override { path_ = std::getenv("PATH"); }
@@ -91,7 +91,7 @@ TEST_F(Video, CancellingEndsAnFfmpegThatHangs) {
     ASSERT_TRUE(video);
     stop_ = true;
     EXPECT_THAT((*video)->finish().error().line(), HasSubstr("cancelled"));
-    video->reset();  // hangs where the program is not ended
+    video->reset();  // hangs if the program is not ended
     EXPECT_TRUE(files().empty());
 }
 

@@ -9,7 +9,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// A machine whose passes cost what they cost, and which is disturbed in every seventh frame.
+/// A simulated machine with fixed costs of passes, disturbed in every seventh frame.
 struct Machine {
     double view_ns = 50, light_ns = 20, fixed = 0.02;
     uint64_t wanted = 1'800'000;  ///< by the view, whatever the budget

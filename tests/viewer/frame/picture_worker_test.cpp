@@ -31,7 +31,7 @@ class Worker : public testing::Test {
         request_.frame.camera = request_.scene.cameras.front();
         request_.frame.size = {96, 64};
     }
-    /// Its context is lost after so many pictures.
+    /// Returns a device whose context is lost after this number of pictures.
     static WorkerDevice device(std::optional<uint32_t> lost_after = {}) {
         return {[lost_after] {
                     auto made = gi::Device::headless();
@@ -40,7 +40,7 @@ class Worker : public testing::Test {
                 },
                 [] {}};
     }
-    /// Waits until the worker says so.
+    /// Waits until the worker reports a lost device.
     std::optional<Error> loss() {
         for (;;) {
             if (auto lost = worker_->lost_device()) return lost;
@@ -48,7 +48,7 @@ class Worker : public testing::Test {
             published_.acquire();
         }
     }
-    /// The first picture of a request that has all its nodes.
+    /// Returns the first picture of a request that has all its nodes.
     std::shared_ptr<const Picture> whole(uint64_t number) {
         for (;;) {
             published_.acquire();
@@ -86,7 +86,7 @@ TEST_F(Worker, ADeviceThatThrowsCountsAsOneThatCannotBeMade) {
     const auto never = PictureWorker::start(throwing, source_, {}, [] {});
     ASSERT_FALSE(never);
     EXPECT_THAT(never.error().line(), testing::HasSubstr("graphics device: there is not enough memory"));
-    // Also in the place of one that was lost.
+    // Also as the replacement of a lost device.
     auto worker = PictureWorker::start(device(1), source_, {}, [this] { published_.release(); });
     ASSERT_TRUE(worker) << worker.error().line();
     worker_ = std::move(*worker);
@@ -105,7 +105,7 @@ TEST_F(Worker, PicksTheWorldPointUnderAPlace) {
     ASSERT_TRUE(picture);
     const auto point = picture->pick({0.5, 0.5});
     ASSERT_TRUE(point);
-    // On the way of the camera's middle ray, within the cloud.
+    // The point is on the camera's central ray, within the cloud.
     const glm::dvec3 ahead = glm::normalize(request_.frame.camera.target - request_.frame.camera.position);
     const glm::dvec3 offset = *point - request_.frame.camera.position;
     EXPECT_LT(glm::length(offset - ahead * glm::dot(offset, ahead)), 0.03 * glm::length(offset));
@@ -124,7 +124,7 @@ TEST_F(Worker, APictureAtRestHoldsNothingOfTheOneBeforeTheMotion) {
     request_.frame.moving = request_.moving = true;
     const auto moving = whole(worker_->request(request_));
     ASSERT_TRUE(moving);
-    request_.frame.accumulate = true;  // it stops where it is
+    request_.frame.accumulate = true;  // the camera stops
     request_.frame.moving = request_.moving = false;
     const auto still = whole(worker_->request(request_));
     ASSERT_TRUE(still);
@@ -155,7 +155,7 @@ TEST_F(Worker, ALostDeviceIsReplacedAndTheSameRequestGoesOn) {
     const uint64_t again = worker_->request(request_);
     ASSERT_TRUE(loss());
     EXPECT_EQ(worker_->latest(), nullptr) << "what a lost device draws is nonsense";
-    worker_->set_device(device(2));  // which is lost as well, while a picture is shown
+    worker_->set_device(device(2));  // lost again, while a picture is shown
     ASSERT_TRUE(loss());
     worker_->set_device(device());
     const auto after = whole(again);
@@ -179,7 +179,7 @@ TEST_F(Worker, ADeviceThatCannotBeMadeAgainCountsAsLostAndTheWorkerStillEnds) {
     EXPECT_EQ(lost->why, "is gone");
 }
 
-/// Zeros over a part of a file, from a share of it on.
+/// Overwrites a part of a file with zeros; `from` and `to` are shares of its size.
 void damage(const std::string& file, double from, double to) {
     const auto size = static_cast<double>(std::filesystem::file_size(file));
     std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
@@ -188,7 +188,7 @@ void damage(const std::string& file, double from, double to) {
 }
 
 TEST_F(Worker, ANodeThatCannotBeReadIsNamedAndLeftOutAndTheOthersAreShown) {
-    damage(cache_, 0.5, 0.55);  // behind the back of who has opened it
+    damage(cache_, 0.5, 0.55);  // while the file is open
     const uint64_t number = worker_->request(request_);
     const auto picture = whole(number);
     ASSERT_TRUE(picture) << worker_->error().error().line();

@@ -20,7 +20,7 @@ TEST(MovingQuality, SlowPicturesGetSmallerFirstAndCheaperOnlyThen) {
     quality.observe(0.2);
     EXPECT_LT(quality.scale(), 1);
     EXPECT_FALSE(quality.reduced_settings());
-    for (int i = 0; i < 10; ++i) quality.observe(0.6);  // whatever its size
+    for (int i = 0; i < 10; ++i) quality.observe(0.6);  // whatever the picture's size
     EXPECT_EQ(quality.scale(), 0.25);
     EXPECT_TRUE(quality.reduced_settings());
     EXPECT_EQ(quality.size({1280, 720}).width, 320u);

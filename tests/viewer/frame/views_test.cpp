@@ -20,7 +20,7 @@ gi::SceneCamera camera(const glm::dvec3& position, const glm::dvec3& target) {
     return c;
 }
 
-/// The ray of gi/shared/camera.h through a pixel's centre.
+/// Returns the ray of gi/shared/camera.h through a pixel's centre.
 glm::vec3 ray(const gi::CameraView& v, float x, float y) {
     const auto part = [](const glm::vec4& a) { return glm::vec3(a.x, a.y, a.z); };
     return part(v.forward) + part(v.right) * (2 * (x + .5f) / static_cast<float>(v.width) - 1) -

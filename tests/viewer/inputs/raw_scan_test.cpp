@@ -1,4 +1,4 @@
-// Scans that are opened as they are: what is drawn at once, what is kept, and when it is found again.
+// Scans that are opened directly: what is drawn at once, which cache is kept, and when it is found again.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -91,7 +91,7 @@ TEST_F(RawScan, InAFolderThatCannotBeWrittenItsCacheGoesToTheUsersOwn) {
     const std::string read_only = folder_ / "scans", cache = folder_ / "cache", out = folder_ / "out";
     for (const std::string& made : {read_only, cache, out}) std::filesystem::create_directory(made);
     std::filesystem::rename(scan_, read_only + "/a.las");
-    // For root nothing is read-only: the program runs as nobody then.
+    // Nothing is read-only for root, so the program runs as nobody then.
     const bool root = geteuid() == 0;
     const std::string as = root ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
     if (root) {
@@ -130,7 +130,7 @@ TEST_F(RawScan, IsReadAsItsColumnsAndUnitAreSaid) {
     std::ofstream(text) << "20 10 5\n21 10 5\n21 11 5\n20 11 5\n";
     EXPECT_THAT(lucarne("measure " + text + at).output, HasSubstr("20 11 5"));
     EXPECT_THAT(lucarne("measure " + text + at + " --columns y,x,z").output, HasSubstr("10 20 5"));
-    // Also beside a cache, which stays what it is.
+    // Also beside a cache, which stays unchanged.
     ASSERT_EQ(render("-o " + picture_).code, 0);
     EXPECT_THAT(lucarne("measure " + scan_ + ".luc " + text + at + " --columns y,x,z").output,
                 HasSubstr("10 20 5"));
@@ -142,7 +142,7 @@ TEST_F(RawScan, IsReadAsItsColumnsAndUnitAreSaid) {
     EXPECT_THAT(flown.output, HasSubstr("columns"));
 }
 
-/// Draws every source of a growing build; the last picture, and how many there were.
+/// Draws every source of a growing build. Returns the last picture and the number of pictures.
 TEST_F(RawScan, ThePicturesOfABuildEndWithThatOfItsCache) {
     const auto device = gi::Device::headless();
     ASSERT_TRUE(device) << device.error().line();
@@ -169,7 +169,7 @@ TEST_F(RawScan, ThePicturesOfABuildEndWithThatOfItsCache) {
     const auto pipeline = open_pipeline(open->source);
     request.wait = true;
     const auto first = picture(*pipeline);
-    request.wait = false;  // a new source is drawn whole all the same
+    request.wait = false;  // a new source is drawn completely nevertheless
     std::vector<std::shared_ptr<const octree::NodeSource>> sources;
     open->build->begin([&] { sources.push_back(open->build->state().source); });
     open->build->wait();

@@ -226,7 +226,8 @@ TEST_F(MeasuredCloud, ASectionHoldsExactlyThePointsOfItsSlice) {
     for (const auto& dot : raster.dots) EXPECT_TRUE(dot.x < 200 && dot.y < 100);
 }
 
-/// Two points of the same half bright gray: of a scan with colours of 8 bits in 16, and of one of all 16.
+/// Two points of the same medium grey: one of a scan with 8-bit colours in 16 bits, one of a scan with full
+/// 16-bit colours.
 class TwoWhites final : public octree::NodeSource {
  public:
     TwoWhites() : nodes_(1) {

@@ -10,9 +10,9 @@
 
 namespace lucarne::test {
 
-/// A scan of which every point is known by its number: a wall in front (x 0 to 4, z 0 to 3, y = 0) with a
-/// window (x 1.5 to 2.5, z 1 to 2) and a wall 2 behind it, a point every 0.05. Integers of a thousandth of a
-/// US survey foot, far from the origin, as a state plane's coordinates are.
+/// A scan whose points are known by their numbers: a wall in front (x 0 to 4, z 0 to 3, y = 0) with a window
+/// (x 1.5 to 2.5, z 1 to 2) and a wall 2 behind it, a point every 0.05. Integers of a thousandth of a US
+/// survey foot, far from the origin, as a state plane's coordinates are.
 struct MeasuredScan {
     static constexpr double kFoot = 1200.0 / 3937.0, kSpacing = 0.05, kBehind = 2;
     static constexpr int kAcross = 81, kUp = 61, kWall = kAcross * kUp;
@@ -22,14 +22,15 @@ struct MeasuredScan {
         const double x = p.x - kCorner.x, z = p.z - kCorner.z;
         return x > 1.49 && x < 2.51 && z > 0.99 && z < 2.01;
     }
-    /// Thousandths of the scan's point `number`, before the offset.
+    /// Returns the integers of the scan's point `number`: thousandths, before the offset.
     static glm::ivec3 integers(uint64_t number) {
         const auto in_wall = static_cast<int>(number % kWall);
         const bool behind = number >= kWall;
         glm::ivec3 p(67'890'123 + in_wall % kAcross * 50, 45'678'457 + (behind ? 2000 : 0),
                      812'006 + in_wall / kAcross * 50);
         const glm::dvec3 place = glm::dvec3(p) * 1e-3 + kOffset;
-        if (!behind && window(place)) p.y += 2000;  // what would be in the window stands behind, too
+        if (!behind && window(place))
+            p.y += 2000;  // points that would be in the window belong to the wall behind
         return p;
     }
     static glm::dvec3 position(uint64_t number) { return glm::dvec3(integers(number)) * 1e-3 + kOffset; }

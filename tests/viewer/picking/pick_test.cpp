@@ -28,7 +28,7 @@ class Pick : public testing::Test {
     static void SetUpTestSuite() { scan_ = new MeasuredScan; }
     static void TearDownTestSuite() { delete std::exchange(scan_, nullptr); }
 
-    /// The whole picture from a place relative to the front wall's corner.
+    /// Returns the complete picture seen from a place relative to the front wall's corner.
     std::shared_ptr<const Picture> look(const glm::dvec3& from, const glm::dvec3& to,
                                         const gi::Look& how = {}) {
         std::counting_semaphore<> published(0);
@@ -105,7 +105,7 @@ TEST_F(Pick, NeverTakesAPointThatAWallHides) {
                 continue;
             }
             ++behind;
-            // Where the sight line crosses the front wall there must be the window, or the wall's end.
+            // Where the line of sight crosses the front wall, there must be the window or the wall's end.
             const glm::dvec3 q = eye + (p - eye) * ((MeasuredScan::kCorner.y - eye.y) / (p.y - eye.y));
             const glm::dvec3 at = q - MeasuredScan::kCorner;
             const bool in_window = at.x > 1.45 && at.x < 2.55 && at.z > 0.95 && at.z < 2.05;
@@ -161,7 +161,7 @@ TEST_F(Pick, WhatWasPickedStandsWithinHalfAPixelOfItsPlace) {
 TEST_F(Pick, LabelsStandAtTheirPointsAndWhatAWallHidesIsDimmed) {
     const auto picture = look({2, -4, 1.5}, {2, 0, 1.5});
     ASSERT_TRUE(picture);
-    // From before the wall, through it, to behind it: one line that is seen, one that is hidden.
+    // From in front of the wall to behind it: one visible line and one hidden line.
     Measurement through;
     through.kind = MeasureKind::distance;
     through.points.resize(2);
@@ -178,7 +178,7 @@ TEST_F(Pick, LabelsStandAtTheirPointsAndWhatAWallHidesIsDimmed) {
     EXPECT_FALSE(overlay.lines[0].hidden);
     EXPECT_TRUE(overlay.lines[1].hidden);
     EXPECT_EQ(overlay.lines[0].to, overlay.lines[1].from);
-    // It passes the wall a quarter of the way.
+    // It crosses the wall after a quarter of its length.
     const auto at_wall = project(*picture, MeasuredScan::kCorner + glm::dvec3(0.55, 0, 0.55));
     EXPECT_LT(glm::distance(overlay.lines[0].to, 2.0 * at_wall->pixel), 8);
     ASSERT_EQ(overlay.labels.size(), 1u);

@@ -1,4 +1,4 @@
-// Windows that are closed in the middle of a conversion, see window_fixture.h.
+// Closes windows in the middle of a conversion, see window_fixture.h.
 #include "tests/viewer/window/window_fixture.h"
 
 namespace lucarne {
@@ -9,8 +9,8 @@ using testing::HasSubstr;
 
 class ConvertingWindow : public ManagedWindow {
  protected:
-    /// `close`: the keys that ask for it. Should the machine convert faster than it is asked, there is
-    /// nothing to ask.
+    /// `close`: the keys that close the window. If the conversion ends before the window is closed, there is
+    /// no question.
     void asks_stays_closes_and_goes_on(const std::string& close) {
         ASSERT_EQ(lucarne("generate nave --points 600k -o " + scan()).code, 0);
         start_with(scan());

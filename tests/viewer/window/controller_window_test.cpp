@@ -1,4 +1,4 @@
-// A 6-DoF controller that umockdev replays, in a real window.
+// A 6-DoF controller, replayed by umockdev, in a real window.
 #include <gtest/gtest.h>
 
 #include "tests/io/input/replayed_controller.h"
@@ -17,8 +17,8 @@ TEST_F(ViewerWindow, ASixDofControllerMovesTheCameraAndMayBeUnpluggedInTheMiddle
     xdo("key ctrl+q");
     ASSERT_TRUE(eventually([&] { return !viewer_->running(); }));
 
-    // Replayed as fast as they are asked for: so many that the push lasts until there is a view to move, also
-    // on a crowded machine.
+    // Reports are replayed as fast as they are requested. There are so many that the push lasts until there
+    // is a view, also on a busy machine.
     std::vector<io::test::Answer> answers(40'000, {io::test::axes_report(1, 120, 0, 0)});
     answers.push_back({{}, -19});
     std::string device;

@@ -6,7 +6,7 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Frames of ImGui without a window.
+/// Makes frames of ImGui without a window.
 class DrawnFrame : public testing::Test {
  protected:
     DrawnFrame() {
@@ -15,7 +15,8 @@ class DrawnFrame : public testing::Test {
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
-        for (int i = 0; i < 3; ++i) of("a", {100, 100});  // new windows are laid out in more than one frame
+        for (int i = 0; i < 3; ++i)
+            of("a", {100, 100});  // the layout of new windows takes more than one frame
     }
     ~DrawnFrame() override { ImGui::DestroyContext(); }
 

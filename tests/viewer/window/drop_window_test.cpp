@@ -1,4 +1,4 @@
-// Files dropped on a real window: x11/drop_files.cpp stands for the file manager.
+// Drops files on a real window; x11/drop_files.cpp acts as the file manager.
 #include <fstream>
 
 #include <fmt/format.h>
@@ -15,7 +15,8 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-/// file:///... with all but letters, digits and a few marks as %XX (RFC 3986), in quotes for the shell.
+/// Returns file:///... with all characters except letters, digits and a few marks as %XX (RFC 3986), quoted
+/// for the shell.
 std::string uri(const std::string& path) {
     std::string text = "file://";
     for (const char c : path) {
@@ -59,7 +60,7 @@ TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
     EXPECT_TRUE(title_comes("Gr\u00fc\u00dfe, 100%.las and 1 more"));
     EXPECT_THAT(log(), HasSubstr(letter + ": is in no format that can be read"));
 
-    // A second drop is added to what is open, also where it is one file.
+    // A second drop adds to the open scans, even if it is one file.
     ASSERT_EQ(drop(uri(cache_)).code, 0);
     EXPECT_TRUE(title_comes(" and 2 more\n")) << "all converted\n" << log();
     xdo("key alt+F4");

@@ -1,4 +1,4 @@
-// Pictures of the whole window against those that are kept: tests/viewer/window/golden/README.md.
+// Compares pictures of the whole window with the golden ones: tests/viewer/window/golden/README.md.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace lucarne::test {
 
-/// How far two pictures of one size are apart, of 255, by the means of squares of 8x8 pixels: where a glyph's
-/// or an edge's pixels fall does not matter, how much of them there is does.
+/// The difference of two pictures of one size, of 255, by the means of squares of 8x8 pixels. So the exact
+/// pixels of a glyph or an edge do not matter, but their amount does.
 struct GoldenDifference {
     static constexpr uint32_t kSquare = 8;  ///< pixels
     static constexpr double kMostMean = 0.5,
-                            kMostWorst = 12;  ///< tolerated: README.md says what that lets through
+                            kMostWorst = 12;  ///< tolerances: README.md says what they let through
 
     double mean = 0;        ///< of all squares
     double worst = 0;       ///< of one square and channel
@@ -36,7 +36,7 @@ inline std::array<double, 3> square_mean(const io::Image8& image, uint32_t x, ui
     return sum;
 }
 
-/// Pictures of different sizes have nothing in common.
+/// Returns the difference. Pictures of different sizes differ completely.
 inline GoldenDifference golden_difference(const io::Image8& a, const io::Image8& b) {
     GoldenDifference found;
     if (a.width != b.width || a.height != b.height) return {255, 255, 0, 0};

@@ -1,4 +1,4 @@
-// The window as it is kept in tests/viewer/window/golden, whose README says how it is renewed.
+// Compares the window with the pictures in tests/viewer/window/golden, whose README says how to renew them.
 #include <fstream>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ std::string golden(const std::string& name) {
 
 class GoldenWindow : public ViewerWindow {
  protected:
-    /// Sections of the side bar that are open, by their names in the settings.
+    /// Opens sections of the side bar by their names in the settings.
     void open_sections(const std::string& list) const {
         std::filesystem::create_directory(folder_ / "config");
         std::ofstream(folder_ / "config/settings.json") << R"({"side_bar": {"open": [)" << list << "]}}";
@@ -82,7 +82,7 @@ TEST_F(GoldenWindow, ShowsAFlythroughsPathAndItsKeyFrames) {
                                  "/data/scenes/cornell.json --engine direct --path flythrough.json");
 }
 
-/// What is kept, changed as defects would change it.
+/// A golden picture, changed as defects would change it.
 class GoldenTolerance : public testing::Test {
  protected:
     void SetUp() override {
@@ -91,7 +91,7 @@ class GoldenTolerance : public testing::Test {
         kept_ = changed_ = std::move(*kept);
     }
     uint8_t* pixel(uint32_t x, uint32_t y) { return &changed_.bytes[3 * (size_t{y} * changed_.width + x)]; }
-    /// Every byte of a rectangle through `change`.
+    /// Passes every byte of a rectangle through `change`.
     template <class Change>
     void alter(uint32_t left, uint32_t top, uint32_t right, uint32_t bottom, const Change& change) {
         for (uint32_t y = top; y < bottom; ++y)
@@ -107,7 +107,7 @@ class GoldenTolerance : public testing::Test {
 
 TEST_F(GoldenTolerance, LetsTheSamePictureAndSmoothedGlyphsThrough) {
     EXPECT_TRUE(tolerated());
-    // Each pixel half its right neighbour, over the menu and a part of the side bar.
+    // Mixes each pixel with half of its right neighbour, over the menu and a part of the side bar.
     const io::Image8 before = kept_;
     alter(0, 0, 300, 200, [&](uint8_t value, uint32_t x, uint32_t y, size_t c) {
         return 0.5 * value + 0.5 * before.bytes[3 * (size_t{y} * before.width + x + 1) + c];

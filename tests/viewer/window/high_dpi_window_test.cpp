@@ -1,4 +1,4 @@
-// A window on a screen of 192 dots an inch: the desktop's resources say so (x11/set_dpi.cpp).
+// A window on a screen with 192 dots an inch, as set in the desktop's resources (x11/set_dpi.cpp).
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +25,7 @@ class FineScreen : public MeasuringWindow {
         scale_ = scale;
         EXPECT_EQ(shell(display_ + LUCARNE_SET_DPI " " + std::to_string(96 * scale)).code, 0);
     }
-    /// The whole window with its panels, saved by itself.
+    /// Returns the whole window with its panels, saved by the window itself.
     io::Image8 window() {
         const std::string file = folder_ / ("window" + std::to_string(scale_) + ".png");
         start_with(cache_ + " --screenshot " + file + " --frames 1 --overwrite");
@@ -36,7 +36,7 @@ class FineScreen : public MeasuringWindow {
     }
 };
 
-/// The rows of the menu bar's letters, and how many of their pixels are neither letter nor bar.
+/// The rows of the menu bar's letters, and the number of their pixels that are neither letter nor bar.
 struct MenuText {
     uint32_t rows = 0;
     double grey = 0;
@@ -81,16 +81,17 @@ TEST_F(FineScreen, TurnsAsFarByADragAndFindsItsSizeAgain) {
     std::filesystem::copy(LUCARNE_SOURCE_DIR "/data/scenes/cornell.json", scene);
     const auto facing = [&] {
         const auto saved = gi::load_scene(scene);
-        if (!saved) return 0.0;  // there is none yet
+        if (!saved) return 0.0;  // no picture yet
         const glm::dvec3 forward = saved->cameras.at(0).target - saved->cameras.at(0).position;
         return std::atan2(forward.y, forward.x) * 180 / M_PI;
     };
     const double before = facing();
     start(" --scene " + scene);
     ASSERT_TRUE(picture(lit));
-    xdo("key Tab key t");  // the panels would take the drag; a turntable turns about the scene's own pivot
-    // A drag over the window's height turns by half a circle. On a machine that is too busy to see where one
-    // begins, part of it is lost.
+    xdo("key Tab key t");  // Tab: the panels would take the drag; T: a turntable turns about the scene's
+                           // pivot
+    // A drag over the window's height turns by half a circle. On a busy machine the start of a drag may be
+    // lost.
     EXPECT_TRUE(eventually([&] {
         xdo("key Home");
         const int from = kWidth, right = kHeight / 2;  // a quarter of the height

@@ -1,4 +1,4 @@
-// Two points of known coordinates in a real window, clicked at.
+// Clicks two points of known coordinates in a real window.
 #pragma once
 
 #include <fstream>
@@ -12,7 +12,7 @@ namespace lucarne::test {
 
 class MeasuringWindow : public ViewerWindow {
  protected:
-    /// With the scan's wall before the camera, two clicks and a saved file.
+    /// With the scan's wall in front of the camera, measures by two clicks and saves the file.
     void measure_a_known_distance(const std::string& options = "") {
         cache_ = scan_.file();
         const std::string scene = folder_ / "front.json";
@@ -42,7 +42,7 @@ class MeasuringWindow : public ViewerWindow {
     }
 
  private:
-    /// Where a point of the front wall, by number, is seen.
+    /// Clicks the point of the front wall with this number.
     void click(uint64_t number) const {
         const glm::dvec3 d = MeasuredScan::position(number) - from_;
         const double half = std::tan(25.0 / 180 * M_PI);

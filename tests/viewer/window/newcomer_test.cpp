@@ -1,4 +1,4 @@
-// A newcomer's half hour in a real window under a window manager.
+// A newcomer's first half hour in a real window under a window manager.
 #include <fstream>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ class Newcomer : public ManagedWindow {
     void SetUp() override {
         ManagedWindow::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        // The desktop's dialog, as the user answers it.
+        // Replaces the desktop's dialog and the user's answer.
         const std::string dialog = folder_ / "zenity";
         std::ofstream(dialog) << "#!/bin/sh\necho " << folder_ / "cornell.las"
                               << "\n";
@@ -33,7 +33,7 @@ class Newcomer : public ManagedWindow {
     std::string at(int x, int y) const {
         return fmt::format("mousemove --window {} {} {} sleep 0.3 ", window_, x, y);
     }
-    /// `answer`: the key that answers the question about what is in no file; empty: none is asked.
+    /// `answer`: the key that answers the question about unsaved work; empty: no question is expected.
     void close_window(const std::string& answer = "") {
         xdo("key alt+F4");
         if (!answer.empty()) {
@@ -44,7 +44,7 @@ class Newcomer : public ManagedWindow {
         ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << "it does not close";
         EXPECT_EQ(viewer_->code(), 0);
     }
-    /// A picture that differs from another one and stays as it is.
+    /// Returns a picture that differs from another one and does not change any more.
     std::optional<io::Image8> changed(const io::Image8& from, double by) {
         std::optional<io::Image8> before;
         return picture([&](const io::Image8& now) {
@@ -92,7 +92,7 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *seen) < 2; }))
         << "and clip nothing";
 
-    xdo("key u");  // without light: a bookmark is a camera
+    xdo("key u");  // without light, since a bookmark has only a camera
     next = changed(*seen, 1);
     ASSERT_TRUE(next) << "light off";
     xdo("key 5");
@@ -104,11 +104,13 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     const auto front = changed(*above, 2);
     ASSERT_TRUE(front) << "from the front";
     xdo("key Insert sleep 0.3");
-    EXPECT_TRUE(picture([&](const io::Image8& now) {  // of two, the one before is each in turn
-        if (nearer(now, *above, *front)) return true;
-        xdo("key alt+Left sleep 2");
-        return false;
-    })) << "a flythrough's first key frame";
+    EXPECT_TRUE(
+        picture([&](const io::Image8& now) {  // with two bookmarks, "previous" alternates between them
+            if (nearer(now, *above, *front)) return true;
+            xdo("key alt+Left sleep 2");
+            return false;
+        }))
+        << "a flythrough's first key frame";
     xdo("key space");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *front, *above); }))
         << "playing ends at the last one";

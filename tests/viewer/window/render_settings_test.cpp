@@ -1,4 +1,4 @@
-// How pictures are computed: from the window into its scene file, and from there into every command.
+// Render settings: from the window to its scene file, and from there to every command.
 #include <fstream>
 
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ class RenderSettingsCommand : public testing::Test {
         cache_ = make_cornell(folder_, "20k");
         cornell_ = bytes_of(LUCARNE_SOURCE_DIR "/data/scenes/cornell.json");
     }
-    /// Cornell's scene with an object `render`, or without.
+    /// Writes Cornell's scene with or without an object `render`.
     std::string scene(const std::string& render) const {
         const std::string file = folder_ / "scene.json";
         std::ofstream(file) << (render.empty() ? cornell_

@@ -1,4 +1,4 @@
-// What stands around the picture, without a window: settings, bookmarks, dialogs, open scans.
+// Tests what surrounds the picture, without a window: settings, bookmarks, dialogs, open scans.
 #include <fstream>
 #include <thread>
 
@@ -43,7 +43,7 @@ TEST(Settings, AreReadAsTheyWereWrittenAndKeepKeysOfOtherVersions) {
     loaded.settings.controller.from[1] = 2;
     loaded.settings.controller.scale[5] = -0.5;
     loaded.settings.opened("/a.las");
-    loaded.settings.opened("/b \xff.las");  // no UTF-8
+    loaded.settings.opened("/b \xff.las");  // invalid UTF-8
     loaded.settings.opened("/a.las");
     ASSERT_TRUE(save_settings(loaded.settings, folder.path()));
     const LoadedSettings again = load_settings(folder.path());
@@ -204,7 +204,7 @@ TEST(FileBrowser, ListsFoldersFirstThenScansAndHidesTheRest) {
     EXPECT_THAT(browser.chosen(), ElementsAre(folder / "a.luc"));
 }
 
-/// A set that is waited for.
+/// A set of scans, with functions that wait for it.
 class OpenScans : public testing::Test {
  protected:
     OpenScans()
@@ -309,7 +309,7 @@ TEST_F(OpenScans, AConversionThatIsStoppedLeavesThePictureAndGoesOnLater) {
     const uint64_t id = set_.rows()[0].id;
     set_.convert_next();
     EXPECT_TRUE(set_.converting());
-    ASSERT_TRUE(eventually([&] {  // beyond what is only sorted
+    ASSERT_TRUE(eventually([&] {  // the conversion is beyond sorting
         const ScanRow& row = set_.rows()[0];
         return row.stage == "normals" || row.stage == "building" || !row.busy();
     }));
@@ -341,7 +341,7 @@ TEST(Floor, IsTheFloorUnderTheEyeAndNotTheCeilingAbove) {
     ASSERT_TRUE(source) << source.error().line();
     const auto& header = (*source)->header();
     const glm::dvec3 size = header.max - header.min;
-    // Near the front, where no box stands.
+    // Near the front, where there is no box.
     const glm::dvec3 eye(header.min.x + 0.5 * size.x, header.min.y + 0.1 * size.y,
                          header.min.z + 0.5 * size.z);
     const auto floor = floor_below(**source, eye, 1.65);

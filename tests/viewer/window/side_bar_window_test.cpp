@@ -10,14 +10,14 @@ using namespace test;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Where a header stands in a bar whose sections are all closed, as high as ImGui makes them of 13 pixels.
+/// Returns the y of a header in a bar with all sections closed, for ImGui's sizes with a font of 13 pixels.
 int header(int number) {
     return 19 + 8 + 23 * number + 9;
 }
 
 class SideBarWindow : public ViewerWindow {
  protected:
-    /// Closes the window; what it keeps of the bar.
+    /// Closes the window. Returns the saved settings of the bar.
     nlohmann::json close() {
         xdo("key ctrl+q");
         EXPECT_TRUE(eventually([&] { return !viewer_->running(); }));
@@ -42,7 +42,7 @@ TEST_F(SideBarWindow, SectionsOpenByKeysAndClicksItsEdgeIsDraggedAndTheNextWindo
     EXPECT_LT(kept["width"], width);
     start();
     ASSERT_TRUE(picture(lit));
-    xdo("key Tab key m");  // the bar goes, and comes back for a section
+    xdo("key Tab key m");  // the bar is hidden, and shown again for a section
     const nlohmann::json then = close();
     EXPECT_THAT(then["open"], ElementsAre("measure", "statistics"));
     EXPECT_EQ(then["shown"], true);

@@ -1,4 +1,4 @@
-// Which work of the user is in no file, and how it gets into one.
+// Tests which work of the user counts as unsaved, and how it is saved.
 #include "viewer/window/unsaved.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ gi::SceneCamera camera_at(double x) {
     return camera;
 }
 
-/// A window's model with a scene as it was opened.
+/// A window's model with an unchanged scene.
 class UnsavedWork : public testing::Test {
  protected:
     UnsavedWork() {

@@ -1,4 +1,4 @@
-// Windows that are closed with work in them that is in no file, see window_fixture.h.
+// Closes windows with unsaved work, see window_fixture.h.
 #include <fstream>
 
 #include "tests/viewer/window/window_fixture.h"
@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 class WindowWithWork : public ManagedWindow {
  protected:
-    /// A key frame, and a light that was put where the camera is.
+    /// Adds a key frame and puts a light at the camera.
     void work() {
         start();
         ASSERT_TRUE(picture(lit));

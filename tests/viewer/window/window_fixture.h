@@ -16,14 +16,14 @@
 namespace lucarne::test {
 
 inline constexpr int kWidth = 480, kHeight = 360;  ///< of the window
-/// Ends a test that hangs; nothing is measured by it.
+/// Ends a test that hangs; not a measurement.
 inline constexpr auto kPatience = std::chrono::seconds(120);
 
 inline bool installed(const std::string& program) {
     return shell("command -v " + program).code == 0;
 }
 
-/// Polls until `there` holds; false once patience ends.
+/// Polls until `there` holds. Returns false after kPatience.
 template <class Condition>
 bool eventually(const Condition& there) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -34,7 +34,7 @@ bool eventually(const Condition& there) {
     return false;
 }
 
-/// A program in the background, ended with this object.
+/// A background program that is ended together with this object.
 class Background {
  public:
     explicit Background(const std::string& command) {
@@ -70,13 +70,13 @@ class Background {
     std::optional<int> code_;
 };
 
-inline double difference(const io::Image8& a, const io::Image8& b) {  ///< mean, of 255
+inline double difference(const io::Image8& a, const io::Image8& b) {  ///< mean difference, of 255
     double sum = 0;
     for (size_t i = 0; i < a.bytes.size(); ++i) sum += std::abs(double(a.bytes[i]) - double(b.bytes[i]));
     return sum / static_cast<double>(a.bytes.size());
 }
 
-inline double deviation(const io::Image8& image) {  ///< standard, of 255
+inline double deviation(const io::Image8& image) {  ///< standard deviation, of 255
     double sum = 0, squares = 0;
     for (const uint8_t byte : image.bytes) {
         sum += byte;
@@ -100,10 +100,10 @@ class ViewerWindow : public testing::Test {
     }
 
     void start(const std::string& more = "") { start_with(cache_ + more); }
-    /// `arguments` follow `lucarne view`; `variables`: of the environment.
+    /// Starts `lucarne view` with `arguments` and environment `variables`.
     void start_with(const std::string& arguments, const std::string& variables = "") {
-        // LeakSanitizer would report what X's and Mesa's drivers, unloaded by then, have left: modules
-        // without a name, which no suppression can match.
+        // LeakSanitizer would report leaks of X's and Mesa's drivers. They are unloaded by then, so they have
+        // no module name that a suppression could match.
         const std::string environment = display_ + "LUCARNE_CONFIG=" + (folder_ / "config") +
                                         " ASAN_OPTIONS=detect_leaks=0 " + variables + " ";
         viewer_.emplace("env -C " + folder_.path().string() + " " + environment + LUCARNE_BINARY + " view " +
@@ -126,7 +126,8 @@ class ViewerWindow : public testing::Test {
         EXPECT_EQ(xdo(moves + " mouseup " + std::to_string(button)).code, 0);
     }
 
-    /// The picture at rest: saved by the viewer's own key until it is whole and `wanted` accepts it.
+    /// Returns the picture at rest: saves it with the viewer's key until it is complete and `wanted` accepts
+    /// it.
     template <class Wanted>
     std::optional<io::Image8> picture(const Wanted& wanted) {
         std::optional<io::Image8> result;
@@ -135,7 +136,7 @@ class ViewerWindow : public testing::Test {
             const std::string file = folder_ / "lucarne-0001.png";
             std::error_code ignored;
             std::filesystem::remove(file, ignored);
-            // Said once it is written; what was said of an earlier one does not count.
+            // The log reports a written picture; reports of earlier ones do not count.
             const size_t before = times_saved();
             xdo("key F12");
             for (int i = 0; i < 40 && times_saved() == before; ++i)
@@ -157,13 +158,14 @@ class ViewerWindow : public testing::Test {
         for (size_t at = said.find(kName); at != said.npos; at = said.find(kName, at + 1)) ++times;
         return times;
     }
-    /// Whether the picture saved last had all its points, and nothing moved.
+    /// Whether the last saved picture had all its points, and nothing moved.
     bool whole() const {
         const std::string said = log();
         const size_t at = said.rfind("lucarne-0001.png");
         return at != std::string::npos && said.find("sketch", at) == std::string::npos;
     }
-    /// However far both are averaged: the same view differs in its edges alone.
+    /// Whether `image` is nearer to `to` than to `than`. Pictures of the same view differ only at edges,
+    /// however far both are averaged.
     static bool nearer(const io::Image8& image, const io::Image8& to, const io::Image8& than) {
         return difference(image, to) < difference(image, than) / 4;
     }
@@ -172,11 +174,11 @@ class ViewerWindow : public testing::Test {
     TemporaryFolder folder_;
     std::optional<Background> server_, viewer_;
     std::string display_, cache_;
-    uint32_t scale_ = 1;     ///< pixels of the screen along a side of what a desktop counts as one
-    double resolution_ = 1;  ///< of the window's sides that pictures are made at (--scale)
+    uint32_t scale_ = 1;     ///< screen pixels along a side of a desktop's unit
+    double resolution_ = 1;  ///< share of the window's width and height at which pictures are made (--scale)
 };
 
-/// Under a small window manager (openbox), which frames windows, gives focus and closes politely.
+/// A window under a small window manager (openbox), which adds frames, sets the focus and requests closing.
 class ManagedWindow : public ViewerWindow {
  protected:
     void SetUp() override {
@@ -186,7 +188,7 @@ class ManagedWindow : public ViewerWindow {
         manager_.emplace("env " + display_ + "openbox --sm-disable 2>/dev/null");
         ASSERT_TRUE(eventually([&] { return xdo("get_num_desktops").code == 0; })) << "no window manager";
     }
-    /// Of the window that has focus; empty: none has.
+    /// Returns the title of the focused window, or an empty text.
     std::string title() const {
         const Outcome name = xdo("getactivewindow getwindowname");
         return name.code == 0 ? name.output : "";

@@ -41,7 +41,7 @@ TEST_F(ViewerWindow, OrbitsAndMovesTheLightAndComesHome) {
     EXPECT_EQ(viewer_->code(), 0);
 }
 
-/// Mean of the bytes of some rows.
+/// Returns the mean of the bytes of some rows.
 double brightness(const io::Image8& image, uint32_t from_row, uint32_t to_row) {
     double sum = 0;
     for (size_t i = size_t{from_row} * image.width * 3; i < size_t{to_row} * image.width * 3; ++i)
@@ -50,7 +50,7 @@ double brightness(const io::Image8& image, uint32_t from_row, uint32_t to_row) {
 }
 
 TEST_F(ViewerWindow, SwitchesLightAndColoursByKeysAndRaisesAClipsTopByItsHandle) {
-    // The camera looks straight at the edge of what the clip leaves of the box.
+    // The camera looks straight at the clipped edge of the box.
     start(" --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json --clip-box=-1,-1,-1,7,7,2.75");
     const auto lower_half = [](const io::Image8& now) {
         return brightness(now, 0, 170) < 1 && brightness(now, 200, 360) > 20;
@@ -66,7 +66,7 @@ TEST_F(ViewerWindow, SwitchesLightAndColoursByKeysAndRaisesAClipsTopByItsHandle)
     const auto heights =
         picture([&](const io::Image8& now) { return lower_half(now) && difference(now, *unlit) > 5; });
     ASSERT_TRUE(heights) << "C does not colour";
-    // The handle in the middle of the clip's top, 10.6 m away and .25 m to the right.
+    // The handle at the centre of the clip's top, 10.6 m away and .25 m to the right.
     drag(1, 252, 180, 252, 120);
     EXPECT_TRUE(picture([](const io::Image8& now) {
         return brightness(now, 140, 165) > 20 && brightness(now, 0, 90) < 1;
@@ -75,10 +75,10 @@ TEST_F(ViewerWindow, SwitchesLightAndColoursByKeysAndRaisesAClipsTopByItsHandle)
 
 TEST_F(ViewerWindow, AnEndOfTheLegendIsDraggedToAnotherRangeAndADoubleClickTakesItBack) {
     start(" --colour elevation --legend");
-    xdo("key Tab");  // the side bar would narrow what is seen
+    xdo("key Tab");  // the side bar would narrow the picture
     const auto first = picture(lit);
     ASSERT_TRUE(first);
-    // 13 pixels of text: the bar's upper end is 10 of them from the right and 4 from the top.
+    // The legend bar's upper end is 10 text heights (of 13 pixels) from the right and 4 from the top.
     drag(1, 350, 52, 350, 152);
     EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *first) > 2; }))
         << "the handle changes no colours";
@@ -109,7 +109,7 @@ TEST_F(ViewerWindow, SavesItselfForScripts) {
 
 TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
     start();
-    // Only what is averaged to its end is the same in both, to a step of its bytes here and there.
+    // Only completely averaged pictures agree, up to single steps of some bytes.
     const auto finished = [&] { return log().ends_with("lucarne-0001.png\n"); };
     const auto of_cache = picture([&](const io::Image8& now) { return finished() && lit(now); });
     ASSERT_TRUE(of_cache);
@@ -127,7 +127,7 @@ TEST_F(MeasuringWindow, MeasuresAKnownDistanceByClicksAndSavesItWithTheScansOwnD
 }
 
 TEST_F(ViewerWindow, OpensWithNothingTakesFilesFromTheDesktopsDialogAndOutlivesABrokenOne) {
-    // A dialog that answers at once stands for the desktop's: what is tested is our side of it.
+    // A dialog that answers at once replaces the desktop's.
     const std::string dialog = folder_ / "zenity";
     std::ofstream(dialog) << "#!/bin/sh\necho " << folder_ / "broken.las"
                           << "\necho " << cache_ << "\n";
@@ -139,7 +139,7 @@ TEST_F(ViewerWindow, OpensWithNothingTakesFilesFromTheDesktopsDialogAndOutlivesA
     const auto oblique = picture(lit);
     ASSERT_TRUE(oblique) << log();
     EXPECT_THAT(log(), HasSubstr("broken.las"));
-    // A bookmark from above is found again by the next window, as are the files.
+    // The next window has a bookmark from above again, and the recent files.
     xdo("key 9 key 5");
     std::optional<io::Image8> before;
     const auto from_above = picture([&](const io::Image8& now) {
@@ -171,7 +171,7 @@ TEST_F(ViewerWindow, ABrokenSettingsFileIsReportedAndPutAside) {
 }
 
 TEST_F(ViewerWindow, AFlythroughIsMadePlayedSavedAndRenderedByKeys) {
-    // What stands for ffmpeg keeps what it gets; the last argument is file:NAME.
+    // The replacement for ffmpeg keeps its input; the last argument is file:NAME.
     const std::string program = folder_ / "ffmpeg";
     std::ofstream(program) << "#!/bin/sh\nfor last; do :; done\nexec cat > \"${last#file:}\"\n";
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
@@ -185,11 +185,13 @@ TEST_F(ViewerWindow, AFlythroughIsMadePlayedSavedAndRenderedByKeys) {
         picture([&](const io::Image8& now) { return whole() && difference(now, *first) > 2; });
     ASSERT_TRUE(turned);
     xdo("key Insert sleep 0.3");
-    EXPECT_TRUE(picture([&](const io::Image8& now) {  // of two, the one before is each in turn
-        if (nearer(now, *first, *turned)) return true;
-        xdo("key alt+Left sleep 2");
-        return false;
-    })) << "the key frame before is not where it was set";
+    EXPECT_TRUE(
+        picture([&](const io::Image8& now) {  // with two bookmarks, "previous" alternates between them
+            if (nearer(now, *first, *turned)) return true;
+            xdo("key alt+Left sleep 2");
+            return false;
+        }))
+        << "the key frame before is not where it was set";
     xdo("key space");
     EXPECT_TRUE(picture([&](const io::Image8& now) { return nearer(now, *turned, *first); }))
         << "playing does not end at the last key frame";

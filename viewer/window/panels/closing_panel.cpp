@@ -1,4 +1,4 @@
-// The question whether to close the window, with what would be lost.
+// The question whether to close the window, with a list of what would be lost.
 #include <algorithm>
 
 #include <imgui.h>

@@ -16,7 +16,7 @@ void row(const char* key, const char* what) {
     ImGui::TextUnformatted(what);
 }
 
-/// In lines that the window holds.
+/// Draws a warning, wrapped to the window's width.
 void warning(const std::string& text, float width) {
     ImGui::PushTextWrapPos(width - 4 * ImGui::GetFontSize());
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.8f, 0.4f, 1.0f));

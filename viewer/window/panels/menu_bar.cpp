@@ -6,8 +6,8 @@
 namespace lucarne::viewer {
 namespace {
 
-/// Opens the menus of a path from the outside in, calls `inside` in the innermost, and closes them. ImGui
-/// adds to a menu that was begun before in the frame.
+/// Opens the nested menus of a path, calls `inside` in the innermost one, and closes them. A menu that was
+/// opened before in the same frame is extended.
 template <class Inside>
 void in_menu(std::string_view path, const Inside& inside) {
     const size_t slash = path.find('/');

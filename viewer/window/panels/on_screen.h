@@ -10,7 +10,7 @@
 
 namespace lucarne::viewer {
 
-/// Where a world point stands in the window; none where it is behind the camera.
+/// Returns a world point's place in the window, or nothing if it is behind the camera.
 inline std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3& world) {
     const auto seen = project(picture, world);
     if (!seen) return std::nullopt;
@@ -19,14 +19,14 @@ inline std::optional<ImVec2> on_screen(const Picture& picture, const glm::dvec3&
                   static_cast<float>(seen->pixel.y / picture.size.height) * size.y);
 }
 
-/// The ray through the cursor.
+/// Returns the ray through the cursor.
 inline CameraRig::Ray cursor_ray(const CameraRig& rig) {
     const ImGuiIO& io = ImGui::GetIO();
     return rig.ray({2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
                    static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
 }
 
-/// A length for what is drawn over the picture, of `dots` on a screen of scale 1: it grows with the text.
+/// Returns a length for drawing over the picture: `dots` pixels on a screen of scale 1, scaled with the text.
 inline float scaled(float dots) {
     return dots * ImGui::GetFontSize() / kTextPixels;
 }

@@ -33,7 +33,7 @@ void preset_choice(ViewModel& model) {
     ImGui::EndCombo();
 }
 
-/// cd/m^2 that false colours span.
+/// Edits the range of false colours, cd/m^2.
 void luminance_range(ViewModel& model) {
     const double ev = model.picture ? model.picture->exposure_ev : 0;
     const gi::ValueRange shown = gi::luminance_range(model.scene.luminance, ev);
@@ -76,7 +76,7 @@ void tell_cost(const char* text) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
 }
 
-/// A slider over the powers of two within the option's slider; true where the user moved it.
+/// Draws a slider over the powers of two within the option's range. Returns true if the user moved it.
 bool choose_power(const char* label, const gi::SliderRange& slider, int64_t& value) {
     const int least = static_cast<int>(std::log2(slider.least)),
               most = static_cast<int>(std::log2(slider.most));
@@ -137,7 +137,7 @@ bool edit_colour(const char* label, gi::OptionValue& value) {
     return true;
 }
 
-/// Draws the option's control; true where the user changed `value`.
+/// Draws the option's control. Returns true if the user changed `value`.
 bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
     const std::string label(option.label);
     switch (option.kind) {
@@ -155,7 +155,7 @@ bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
     return false;
 }
 
-/// The engine's options, each with what it costs, and the pictures' size.
+/// Draws the engine's options with their costs, and the size of pictures.
 void effort(ViewModel& model) {
     if (!fold("Effort")) return;
     if (const auto engine = gi::find_engine(model.engine))

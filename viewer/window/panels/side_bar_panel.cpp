@@ -1,5 +1,4 @@
-// The one bar that all panels stand in, so that none covers another and each can be reached in a small
-// window.
+// The bar that contains all panels, so that no panel covers another and all can be reached in a small window.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,7 +30,8 @@ constexpr std::array<SectionEntry, kSections> kEntries = {{
     {"6-DoF controller", draw_controller_panel, false},
 }};
 
-/// With nothing open the start page is all there is, unless something was asked for that needs no scan.
+/// Returns whether a section is shown. With nothing open there is only the start page, and sections that need
+/// no scan if the user opened them.
 bool is_there(const ViewModel& model, BarSection section, bool has_view) {
     if (has_view) return true;
     if (section == BarSection::scans) return model.shell.scans && !model.shell.scans->rows().empty();
@@ -79,11 +79,12 @@ void draw_side_bar(ViewModel& model, bool has_view) {
     ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
                              ImGuiWindowFlags_AlwaysVerticalScrollbar;
-    // Tab goes from one field to the next only from within one: it is an action's key.
+    // Tab is the key of an action: it moves between fields only while a field is active.
     if (!ImGui::IsAnyItemActive()) flags |= ImGuiWindowFlags_NoNavInputs;
     if (ImGui::Begin("##side bar", nullptr, flags)) {
         const float dragged = ImGui::GetWindowWidth();
-        // ImGui floors sizes: only a whole pixel more or less, and only by the mouse, is the user's will.
+        // ImGui rounds sizes down. So count a change as the user's only if the mouse is pressed and it is at
+        // least one pixel.
         if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && std::abs(dragged - width) >= 1)
             bar.width = std::clamp(static_cast<double>(dragged / font), SideBar::kLeast, SideBar::kMost);
         ImGui::PushItemWidth(-9 * font);  // leaves room for labels

@@ -1,8 +1,7 @@
-// A file manager, as far as a window that files are dropped on can tell: a source of the drag-and-drop
-// protocol of X11 (XDND 5, freedesktop.org), driven by nobody, with the files of its command line.
-//   drop_files X Y URI...     drops URIs on the window at X, Y of the screen
-// Says "finished" and exits 0 once the window has taken them; 3 where it refuses, 1 where there is no such
-// window.
+// Acts as a file manager for a window that files are dropped on: a source of X11's drag-and-drop protocol
+// (XDND 5, freedesktop.org) that drops the files of its command line without a user.
+//   drop_files X Y URI...     drops URIs on the window at X, Y of the screen Prints "finished" and exits with
+//   0 once the window has accepted them; exits with 3 if it refuses, with 1 if there is no such window.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,7 +25,7 @@ class Source {
  public:
     Source(Display* display, std::string list) : display_(display), list_(std::move(list)) {
         window_ = XCreateSimpleWindow(display_, root(), 0, 0, 1, 1, 0, 0, 0);
-        // As many as a file manager offers: more than the three that the first message has room for.
+        // Like a file manager, offers more types than the three that fit the first message.
         const std::array<Atom, 4> types = {atom("x-special/gnome-icon-list"), atom("text/uri-list"),
                                            atom("UTF8_STRING"), atom("text/plain")};
         XChangeProperty(display_, window_, atom("XdndTypeList"), XA_ATOM, 32, PropModeReplace,
@@ -37,13 +36,13 @@ class Source {
     Source(const Source&) = delete;
     Source& operator=(const Source&) = delete;
 
-    /// Drags over the window at a place of the screen, and lets go.
+    /// Drags over the window at a place of the screen, and drops.
     Ending drop(int x, int y) {
         target_ = aware_window_at(x, y);
         if (target_ == None) return Ending::nothing_there;
         send("XdndEnter", {kVersion << 24 | 1, 0, 0, 0});
         bool accepts = false;
-        for (int step = 4; step >= 0; --step) {  // it comes from the right
+        for (int step = 4; step >= 0; --step) {  // the pointer comes from the right
             send("XdndPosition",
                  {0, (x + step) << 16 | y, CurrentTime, static_cast<long>(atom("XdndActionCopy"))});
             const auto status = answer("XdndStatus");
@@ -57,7 +56,7 @@ class Source {
         send("XdndDrop", {0, CurrentTime, 0, 0});
         const auto finished = answer("XdndFinished");
         if (!finished) return Ending::no_answer;
-        // Bit 0 says so; GLFW 3.3 writes the number of bytes that it has read.
+        // Bit 0 means accepted; GLFW 3.3 writes the number of bytes read instead.
         return finished->data.l[1] != 0 ? Ending::finished : Ending::refused;
     }
 
@@ -76,7 +75,7 @@ class Source {
         if (value) XFree(value);
         return type == XA_ATOM && count == 1;
     }
-    /// Below the root and whatever frames a window manager puts around windows.
+    /// Returns the window below the root and below the frames of a window manager.
     Window aware_window_at(int x, int y) const {
         Window from = root(), child = None;
         int inner_x = 0, inner_y = 0;
@@ -87,7 +86,7 @@ class Source {
         }
         return None;
     }
-    /// After its first word, the source.
+    /// Sends a message whose first word is the source.
     void send(const char* type, const std::array<long, 4>& words) const {
         XEvent event{};
         event.xclient.type = ClientMessage;
@@ -99,7 +98,7 @@ class Source {
         XSendEvent(display_, target_, False, NoEventMask, &event);
         XFlush(display_);
     }
-    /// The next message of a type; the list of files is handed out meanwhile.
+    /// Waits for the next message of a type; answers requests for the list of files meanwhile.
     std::optional<XClientMessageEvent> answer(const char* type) const {
         const auto end = std::chrono::steady_clock::now() + kPatience;
         while (std::chrono::steady_clock::now() < end) {
@@ -145,7 +144,7 @@ int main(int count, char** arguments) {
         std::fputs("usage: drop_files X Y URI...\n", stderr);
         return 2;
     }
-    std::string list;  // RFC 2483: a line each, which ends with CR and LF
+    std::string list;  // RFC 2483: one line for each, ending with CR and LF
     for (int i = 3; i < count; ++i) list += std::string(arguments[i]) + "\r\n";
     Display* display = XOpenDisplay(nullptr);
     if (!display) {

@@ -1,5 +1,5 @@
-// What a desktop's settings do for a screen of fine pixels: the dots per inch of the X server's resources,
-// which programs that start later read.
+// Sets the dots per inch in the X server's resources, as a desktop does for a high-resolution screen.
+// Programs that start later read them.
 //   set_dpi DPI     96: the usual scale of 1
 #include <cstdio>
 #include <string>
