@@ -2,10 +2,11 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shading/isolated.h"
 #include "gi/engines/vpl/shading/join.glsl"
 
 layout(std430, binding = kBindLonely) buffer Lonely {  // isolated pixels, which lack too many interleaved tiles
-    uint lonely_count;
+    IsolatedHeader lonely;
     uint lonely_pixels[];
 };
 
@@ -43,5 +44,10 @@ void main() {
         if (!found) missing |= 1u << i;
     }
     joints[index] = uvec2(candidates, missing);
-    if (panes_lacking(n, missing) > 0) lonely_pixels[atomicAdd(lonely_count, 1u)] = index;
+    if (panes_lacking(n, missing) > 0) {
+        uint place = atomicAdd(lonely.count, 1u);
+        lonely_pixels[place] = index;
+        if (place % kIsolatedGroup == 0u)
+            atomicMax(lonely.groups[0], min(place / kIsolatedGroup + 1u, kMostIsolatedGroups));
+    }
 }

@@ -1,21 +1,19 @@
 // Shades isolated pixels, which have too few neighbours of their own surface, with the VPLs of the panes that they
 // lack.
-layout(local_size_x = 64) in;
 #include "gi/engines/vpl/bindings.h"
-#include "gi/shared/many_threads.glsl"
+#include "gi/engines/vpl/shading/isolated.h"
 #include "gi/engines/vpl/shading/join.glsl"
 
 layout(std430, binding = kBindLonely) readonly buffer Lonely {
-    uint lonely_count;
+    IsolatedHeader lonely;
     uint lonely_pixels[];
 };
 layout(std430, binding = kBindDiffuse) buffer OwnDiffuse { vec4 own_diffuse[]; };
 layout(std430, binding = kBindSpecular) buffer OwnSpecular { vec4 own_specular[]; };
 
-void main() {
-    uint number = thread_number();
-    if (number >= lonely_count) return;
-    uint index = lonely_pixels[number];
+layout(local_size_x = kIsolatedGroup) in;
+
+void shade(uint index) {
     uvec2 pixel = uvec2(index % camera.width, index / camera.width);
     Receiver receiver = pixel_receiver(pixel, camera_texel(index));
     int n = int(interleave);
@@ -33,4 +31,13 @@ void main() {
 #ifdef LUCARNE_GLOSSY
     own_specular[index] += vec4(sum.specular, 0.0);
 #endif
+}
+
+void main() {
+    uint number = gl_GlobalInvocationID.x;
+    if (number >= lonely.count) return;
+    do {
+        shade(lonely_pixels[number]);
+        number += gl_NumWorkGroups.x * kIsolatedGroup;
+    } while (number < lonely.count);
 }

@@ -3,6 +3,7 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
+#include "gi/engines/vpl/shading/isolated.h"
 #include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
@@ -32,10 +33,11 @@ Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
     LUCARNE_TRY(
         frame.gl.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
     LUCARNE_TRY(frame.gl.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "panes"));
-    LUCARNE_TRY(frame.gl.device.reserve(target.lonely, (1 + pixels) * sizeof(uint32_t), "panes"));
+    LUCARNE_TRY(
+        frame.gl.device.reserve(target.lonely, sizeof(IsolatedHeader) + pixels * sizeof(uint32_t), "panes"));
     for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
         light->clear(0);
-    target.lonely.upload_all(std::vector<uint32_t>{0});
+    target.lonely.upload_all(std::vector<IsolatedHeader>{{{0, 1, 1}, 0}});
     target.joints.bind(kBindJoints);
     target.lonely.bind(kBindLonely);
     bind_pixels(frame, *join);
@@ -67,7 +69,7 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
     target.lonely.bind(kBindLonely);
     target.own_diffuse.bind(kBindDiffuse);
     target.own_specular.bind(kBindSpecular);
-    shade_lonely->dispatch(target.lonely.download_all<uint32_t>(1)[0]);
+    shade_lonely->dispatch_indirect(target.lonely, offsetof(IsolatedHeader, groups));
     return {};
 }
 

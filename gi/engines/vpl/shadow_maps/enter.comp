@@ -1,7 +1,7 @@
 // Enqueues the pairs of surfel and map that have to be drawn: a workgroup a block, an invocation a surfel. Each
 // surfel is tested against the maps for which meet.comp did not cull its block. Splatting without a queue would leave
 // most lanes idle.
-layout(local_size_x = 256) in;
+layout(local_size_x = 256) in;  // kBlockSurfels
 
 #include "gi/engines/vpl/shadow_maps/casters.glsl"
 #include "gi/engines/vpl/lights.glsl"
@@ -9,11 +9,11 @@ layout(local_size_x = 256) in;
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
 
 uniform uint first_block, first_map;
-uniform uint places;  // length of pairs[]: drivers disagree on the length of a runtime array behind a header
+uniform uint places;  // length of pairs[]
 
 void queue_pairs(uint id, uint first, uint entered) {
     if (entered == 0u) return;
-    uint place = atomicAdd(pair_count, uint(bitCount(entered)));
+    uint place = atomicAdd(queues[queue].pair_count, uint(bitCount(entered)));
     do {
         if (place < places) pairs[place] = uvec2(id, first + uint(findLSB(entered)));
         ++place;

@@ -1,3 +1,4 @@
+#include "gi/engines/vpl/shadow_maps/texel.h"
 #include "gi/engines/vpl/bindings.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/engines/vpl/shadow_maps/thinning.glsl"
@@ -17,7 +18,6 @@ uniform uint map_side;  // texels along a side of a map; maps lie one after the 
 //   distance: a float from 2^-16 to 2^16 m with 11 bits of mantissa (steps of .05 %)
 //   radius:   2^(code - 11) m
 //   normal:   octahedral, 2 x 6 bits (off by up to 2 degrees), in the VPL's frame, toward the VPL
-const uint kNothing = 0xffffffffu;
 
 uint map_surface(float radius, vec3 normal) {
     uint code = uint(clamp(log2(radius) + 11.5, 0.0, 15.0));

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +12,8 @@
 #include <fmt/format.h>
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shadow_maps/queue.h"
+#include "gi/engines/vpl/shadow_maps/texel.h"
 #include "gi/engines/vpl/vpl_light.h"
 #include "gi/shared/surfel.h"
 
@@ -18,20 +22,16 @@ namespace {
 
 constexpr uint32_t kSideStep = 8;     // so that 2 x 2 blocks of three levels never cross the border of a map
 constexpr double kSplatTexels = 1.6;  // radius of the thinned splats
-constexpr uint32_t kNothing = 0xffffffffu;             // parabolic.glsl
-constexpr size_t kCasterBytes = 4 * sizeof(uint32_t);  // casters.glsl
-constexpr size_t kBoundsBytes = 8 * sizeof(float);     // queue.glsl, as the next three
-constexpr uint32_t kRunMaps = 256;
-constexpr size_t kQueueHeader = 4 * sizeof(uint32_t);
 constexpr size_t kPairBytes = 2 * sizeof(uint32_t);
 // Room of the queue: an atlas of 2048 x 2048 has some 2M pairs. The least room is what one block may need.
 // On a device with little memory the queue takes no more than this share of it.
 constexpr uint64_t kMostPairs = 4 << 20, kLeastPairs = uint64_t{kBlockSurfels} * kRunMaps, kQueueShare = 16;
-constexpr uint32_t kLargeGroups = 65535;  // workgroups that OpenGL guarantees; they share the large discs
-constexpr uint32_t kLargeGroup = 16;      // local size of splat_large.comp
 
 struct Range {
     uint32_t first, end;
+};
+struct BlocksAndMaps {
+    Range blocks, maps;
 };
 
 Result<void> pull_push(Device& device, const ShadowMaps& maps) {
@@ -79,55 +79,80 @@ uint32_t queue_places(const Device& device) {
 }
 
 struct SplatPrograms {
-    const Program *meet, *enter, *draw, *draw_large;
+    const Program *meet, *enter, *plan, *draw, *draw_large;
 };
 
-/// Draws the surfels of a range of blocks into a range of maps. If the range has more pairs than the queue
-/// holds (large maps among many surfaces), it is drawn in halves; a single block has at most kBlockSurfels
-/// pairs per map.
-void splat_range(const SplatPrograms& splat, Range blocks, Range maps, uint32_t places, ShadowMaps& target) {
-    target.queue.upload_all(std::vector<uint32_t>(kQueueHeader / sizeof(uint32_t), 0));
+/// Draws the surfels of a range of blocks into a range of maps, unless it has more pairs than the queue
+/// holds.
+void splat_range(const SplatPrograms& splat, const BlocksAndMaps& range, uint32_t queue,
+                 const ShadowMaps& target) {
+    const auto& [blocks, maps] = range;
+    for (const Program* program : {splat.enter, splat.plan, splat.draw, splat.draw_large})
+        program->set("queue", queue);
     splat.meet->set("first_block", blocks.first);
     splat.meet->set("block_end", blocks.end);
     splat.meet->set("map_end", maps.end);
     splat.enter->set("first_block", blocks.first);
-    splat.enter->set("places", places);
     for (const Program* program : {splat.meet, splat.enter}) program->set("first_map", maps.first);
-    splat.meet->dispatch(blocks.end - blocks.first, kRunMaps / 32);
+    const size_t header = queue * sizeof(SplatQueue);
+    splat.meet->dispatch(blocks.end - blocks.first, kRunWords);
     splat.enter->dispatch((blocks.end - blocks.first) * kBlockSurfels);
-    const uint32_t pairs = target.queue.download_all<uint32_t>(1)[0];
-    if (pairs > places) {
-        const uint32_t half = (blocks.first + blocks.end) / 2;
-        splat_range(splat, {blocks.first, half}, maps, places, target);
-        splat_range(splat, {half, blocks.end}, maps, places, target);
-        return;
+    splat.plan->dispatch(1);
+    splat.draw->dispatch_indirect(target.queues, header + offsetof(SplatQueue, pair_groups));
+    splat.plan->dispatch(1);
+    splat.draw_large->dispatch_indirect(target.queues, header + offsetof(SplatQueue, large_groups));
+}
+
+/// Draws all ranges. The host learns only after the last one which of them had too many pairs (large maps
+/// among many surfaces); those are drawn in halves. A single block has at most kBlockSurfels pairs per map,
+/// for which there is room.
+Result<void> splat_ranges(Device& device, const SplatPrograms& splat, std::vector<BlocksAndMaps> ranges,
+                          uint32_t places, ShadowMaps& target) {
+    while (!ranges.empty()) {
+        LUCARNE_TRY(device.reserve(target.queues, ranges.size() * sizeof(SplatQueue), "ISM queue"));
+        target.queues.upload_all(std::vector<SplatQueue>(ranges.size()));
+        target.queues.bind(kBindQueues);
+        for (size_t i = 0; i < ranges.size(); ++i)
+            splat_range(splat, ranges[i], static_cast<uint32_t>(i), target);
+        const auto drawn = target.queues.download_all<SplatQueue>(ranges.size());
+        std::vector<BlocksAndMaps> halves;
+        for (size_t i = 0; i < ranges.size(); ++i) {
+            if (drawn[i].pair_count <= places) continue;
+            const auto& [blocks, maps] = ranges[i];
+            const uint32_t half = (blocks.first + blocks.end) / 2;
+            assert(half > blocks.first);
+            halves.push_back({{blocks.first, half}, maps});
+            halves.push_back({{half, blocks.end}, maps});
+        }
+        ranges = std::move(halves);
     }
-    splat.draw->dispatch(pairs);
-    const uint32_t large = std::min(target.queue.download_all<uint32_t>(2)[1], kLargeGroups);
-    splat.draw_large->dispatch(large * kLargeGroup);
+    return {};
 }
 
 Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, ShadowMaps& target) {
     if (cut.blocks() == 0) return {};
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/engines/vpl/shadow_maps/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/engines/vpl/shadow_maps/enter.comp"));
+    LUCARNE_ASSIGN(const Program* plan, device.program("gi/engines/vpl/shadow_maps/plan.comp"));
     const Defines defines = source_defines(target);
     LUCARNE_ASSIGN(const Program* draw, device.program("gi/engines/vpl/shadow_maps/splat.comp", defines));
     LUCARNE_ASSIGN(const Program* draw_large,
                    device.program("gi/engines/vpl/shadow_maps/splat_large.comp", defines));
     target.casters.bind_texels(kUnitCasters, TexelView::four_words);
-    LUCARNE_TRY(device.reserve(target.meetings, size_t{cut.blocks()} * kRunMaps / 8, "ISM queue"));
+    const size_t meeting_bytes = size_t{cut.blocks()} * kRunWords * sizeof(uint32_t);
+    LUCARNE_TRY(device.reserve(target.meetings, meeting_bytes, "ISM queue"));
     const uint32_t places = queue_places(device);
-    LUCARNE_TRY(device.reserve(target.queue, kQueueHeader + places * kPairBytes, "ISM queue"));
+    LUCARNE_TRY(device.reserve(target.pairs, places * kPairBytes, "ISM queue"));
     LUCARNE_TRY(device.reserve(target.large, places * sizeof(uint32_t), "ISM queue"));
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     target.bounds.bind_texels(kUnitBounds, TexelView::four_words);
     target.atlas.bind(kBindAtlas);
     target.fringe.bind(kBindFringe);
-    target.queue.bind(kBindQueue);
+    target.pairs.bind(kBindPairs);
     target.large.bind(kBindLarge);
     target.meetings.bind(kBindMeetings);
-    const SplatPrograms programs{meet, enter, draw, draw_large};
+    const SplatPrograms programs{meet, enter, plan, draw, draw_large};
+    for (const Program* program : {enter, plan}) program->set("places", places);
     for (const Program* program : {meet, enter}) program->set("splat_angle", target.layout.splat_angle);
     for (const Program* program : {enter, draw, draw_large}) program->set("cut_size", cut.size());
     for (const Program* program : {draw, draw_large}) {
@@ -138,10 +163,10 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
         target.sources.bind(kBindSources);
         target.fringe_sources.bind(kBindFringeSources);
     }
+    std::vector<BlocksAndMaps> ranges;
     for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
-        splat_range(programs, {0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)},
-                    places, target);
-    return {};
+        ranges.push_back({{0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)}});
+    return splat_ranges(device, programs, std::move(ranges), places, target);
 }
 
 }  // namespace
@@ -179,8 +204,8 @@ Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& ta
     LUCARNE_ASSIGN(const Program* casters, device.program("gi/engines/vpl/shadow_maps/casters.comp"));
     LUCARNE_ASSIGN(const Program* bounds, device.program("gi/engines/vpl/shadow_maps/block_bounds.comp"));
     const size_t ids = size_t{cut.blocks()} * kBlockSurfels;
-    LUCARNE_TRY(device.reserve(target.casters, ids * kCasterBytes, "ISM casters"));
-    LUCARNE_TRY(device.reserve(target.bounds, cut.blocks() * kBoundsBytes, "ISM casters"));
+    LUCARNE_TRY(device.reserve(target.casters, ids * kCasterWords * sizeof(uint32_t), "ISM casters"));
+    LUCARNE_TRY(device.reserve(target.bounds, cut.blocks() * kBoundsWords * sizeof(float), "ISM casters"));
     for (const Program* program : {casters, bounds}) program->set("cut_size", cut.size());
     bounds->set("block_count", cut.blocks());
     cut.bind();

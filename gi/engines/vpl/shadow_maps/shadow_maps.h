@@ -33,7 +33,8 @@ struct ShadowMaps {
     Buffer sources;                 ///< the surfel of each texel of the atlas (sources.glsl), if requested
     uint32_t id_bits = 0;           ///< bits of the surfel ids in `sources`; 0: not requested
     Buffer fringe, fringe_sources;  ///< scratch: fringe.glsl
-    Buffer casters, bounds, meetings, queue, large;  ///< scratch of splatting (casters.glsl, queue.glsl)
+    Buffer casters, bounds, meetings, queues, pairs,
+        large;  ///< scratch of splatting (casters.glsl, queue.glsl)
 };
 
 /// Decodes the casters for the maps of all bounces: the surfels of the cut, and the bounds of its blocks.

@@ -1,8 +1,8 @@
 // Splats the queued pairs of surfel and map into the imperfect shadow maps of the VPLs (Ritschel et al. 2008): one
 // invocation a pair. Large discs go to splat_large.comp.
-layout(local_size_x = 256) in;
-
 #include "gi/engines/vpl/shadow_maps/disc.glsl"
+
+layout(local_size_x = kSplatGroup) in;
 
 const int kLargeTexels = 32;  // one bit each
 
@@ -20,7 +20,7 @@ float distance_at(Disc disc, float offset, uvec2 at) {
 
 void main() {
     uint place = gl_GlobalInvocationID.x;
-    if (place >= pair_count) return;
+    if (place >= queues[queue].pair_count) return;
     uvec2 pair = pairs[place];
     Disc disc;
     if (!disc_over(pair.y, read_caster(pair.x), disc)) return;
@@ -29,7 +29,7 @@ void main() {
     if (first.x > last.x || first.y > last.y) return;
     ivec2 size = last - first + 1;
     if (size.x * size.y > kLargeTexels) {
-        large_places[atomicAdd(large_count, 1u)] = place;
+        large_places[atomicAdd(queues[queue].large_count, 1u)] = place;
         return;
     }
     float offset = disc_offset(disc);

@@ -1,7 +1,7 @@
 // Splats large discs: a workgroup each, whose invocations share the texels.
-layout(local_size_x = 16) in;
-
 #include "gi/engines/vpl/shadow_maps/disc.glsl"
+
+layout(local_size_x = kLargeGroup) in;
 
 void draw(uvec2 pair) {
     Disc disc;
@@ -12,7 +12,7 @@ void draw(uvec2 pair) {
     int texels = width * (last.y - first.y + 1);
     float offset = disc_offset(disc);
     uint surface = disc_surface(disc);
-    for (int i = int(gl_LocalInvocationID.x); i < texels; i += 16) {
+    for (int i = int(gl_LocalInvocationID.x); i < texels; i += int(kLargeGroup)) {
         int row = int((float(i) + 0.5) / float(width));  // exact below 2^23, and faster than integers
         uvec2 at = uvec2(first + ivec2(i - row * width, row));
         vec2 uv = texel_centre(at);
@@ -25,5 +25,6 @@ void draw(uvec2 pair) {
 }
 
 void main() {
-    for (uint i = gl_WorkGroupID.x; i < large_count; i += gl_NumWorkGroups.x) draw(pairs[large_places[i]]);
+    uint count = queues[queue].large_count;
+    for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) draw(pairs[large_places[i]]);
 }
