@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "gi/device/gl/device.h"
+#include "gi/device/gl/pass_times.h"
 #include "gi/raster/gbuffer.h"
 #include "gi/surfels/surfel_pool.h"
 

@@ -533,6 +533,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
         state.choose_cuts(request);
     }
     LUCARNE_TRY(state.device.check());
+    state.times.finish();
     state.last = request;
     state.changed = state.fresh = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gi/device/gl/device.h"
+#include "gi/device/gl/pass_times.h"
 #include "gi/engine.h"
 #include "gi/raster/gbuffer.h"
 #include "gi/scene/scene.h"

@@ -310,21 +310,4 @@ void Buffer::clear(uint32_t word) {
     if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
-namespace {
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-}  // namespace
-
-void PassTimes::begin(std::string name) {
-    device_.finish();
-    name_ = std::move(name);
-    start_ = seconds_now();
-}
-
-void PassTimes::end() {
-    device_.finish();
-    passes_.push_back({std::move(name_), seconds_now() - start_});
-}
-
 }  // namespace lucarne::gi

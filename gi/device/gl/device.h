@@ -178,25 +178,4 @@ class Device {
     std::unique_ptr<State> state_;
 };
 
-/// Times the passes of a frame by wall clock, with `finish` around each pass. The times are exact on
-/// software devices and on GPUs; on a GPU some overlap of passes is lost.
-class PassTimes {
- public:
-    explicit PassTimes(Device& device) : device_(device) {}
-    void begin(std::string name);
-    void end();
-    struct Pass {
-        std::string name;
-        double seconds;
-    };
-    const std::vector<Pass>& passes() const { return passes_; }
-    void clear() { passes_.clear(); }
-
- private:
-    Device& device_;
-    std::string name_;
-    double start_ = 0;
-    std::vector<Pass> passes_;
-};
-
 }  // namespace lucarne::gi

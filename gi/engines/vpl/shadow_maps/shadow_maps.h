@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "gi/device/gl/device.h"
+#include "gi/device/gl/pass_times.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/surfels/surfel_pool.h"
 

@@ -1,4 +1,5 @@
-// What a texel of the atlas holds where there is no surface, shared by C++ and GLSL. parabolic.glsl has the others.
+// What a texel of the atlas holds where there is no surface, shared by C++ and GLSL. parabolic.glsl has the
+// others.
 #ifndef LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_TEXEL_H
 #define LUCARNE_GI_ENGINES_VPL_SHADOW_MAPS_TEXEL_H
 

@@ -1,11 +1,14 @@
 #include "gi/device/gl/device.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "gi/device/gl/pass_times.h"
 #include "gi/device/gl/shader_source.h"
 #include "tests/gi/on_device.h"
 
@@ -101,16 +104,28 @@ TEST_F(DeviceTest, UniformThatNoShaderDeclaresIsAnError) {
     EXPECT_TRUE(device->check()) << "it is said once";
 }
 
-TEST_F(DeviceTest, PassesAreTimedInOrder) {
-    PassTimes times(*device);
-    times.begin("first");
-    times.end();
-    times.begin("second");
-    times.end();
-    ASSERT_EQ(times.passes().size(), 2u);
-    EXPECT_EQ(times.passes()[0].name, "first");
-    EXPECT_EQ(times.passes()[1].name, "second");
-    EXPECT_GE(times.passes()[0].seconds, 0.0);
+/// The host sleeps in the first pass, the device works in the second.
+TEST_F(DeviceTest, PassesAreTimedInOrderByEitherClockWhetherHostOrDeviceWorks) {
+    for (const PassTimes::Clock clock : {PassTimes::Clock::wall, PassTimes::Clock::queries}) {
+        PassTimes times(*device, clock);
+        auto buffer = device->buffer(size_t{64} << 20, "test");
+        ASSERT_TRUE(buffer);
+        for (int frame = 0; frame < 3; ++frame) {
+            times.clear();
+            times.begin("host");
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            times.end();
+            times.begin("device");
+            buffer->clear(1);
+            times.end();
+            times.finish();
+            ASSERT_EQ(times.passes().size(), 2u);
+            EXPECT_EQ(times.passes()[0].name, "host");
+            EXPECT_EQ(times.passes()[1].name, "device");
+            EXPECT_GE(times.passes()[0].seconds, 0.02);
+            EXPECT_GT(times.passes()[1].seconds, 0.0);
+        }
+    }
 }
 
 TEST(DeviceDeathTest, MachineWithoutADriverGetsOneClearLine) {
