@@ -7,6 +7,7 @@
 namespace lucarne::gi {
 
 std::vector<Surfel> download_light_surfels(const Frame& frame) {
+    assert(frame.gl.cuts.light);
     return frame.gl.pool.download(*frame.gl.cuts.light);
 }
 

@@ -3,10 +3,10 @@
 #ifndef LUCARNE_GI_LIGHTING_BINDINGS_H
 #define LUCARNE_GI_LIGHTING_BINDINGS_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi::lighting {
-using uint = uint32_t;
 #endif
 
 const uint kBindCameraTexels = 3u;  // GBufferTexel[] of the picture

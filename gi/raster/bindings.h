@@ -2,10 +2,10 @@
 #ifndef LUCARNE_GI_RASTER_BINDINGS_H
 #define LUCARNE_GI_RASTER_BINDINGS_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi::raster {
-using uint = uint32_t;
 #endif
 
 // Storage buffers.

@@ -2,10 +2,10 @@
 #ifndef LUCARNE_GI_SURFELS_BINDINGS_H
 #define LUCARNE_GI_SURFELS_BINDINGS_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi {
-using uint = uint32_t;
 #endif
 
 const uint kBindFlatSurfels = 5u;

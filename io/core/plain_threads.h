@@ -23,12 +23,14 @@ void for_each(size_t count, const Each& each) {
     std::exception_ptr thrown;
     const auto work = [&] {
         // Relaxed: an order between calls would hide their races.
-        for (size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) try {
+        for (size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) {
+            try {
                 each(i);
             } catch (...) {
                 const std::lock_guard lock(mutex);
                 if (!thrown) thrown = std::current_exception();
             }
+        }
     };
     const size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     std::vector<std::jthread> threads;

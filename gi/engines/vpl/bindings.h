@@ -2,10 +2,10 @@
 #ifndef LUCARNE_GI_ENGINES_VPL_BINDINGS_H
 #define LUCARNE_GI_ENGINES_VPL_BINDINGS_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi::vpl {
-using uint = uint32_t;
 #endif
 
 // Storage bindings of this engine's shaders; bindings 0 to 2 belong to the cut.

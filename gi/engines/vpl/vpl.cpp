@@ -14,6 +14,7 @@
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 #include "gi/gl_frame.h"
+#include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
 #include "io/core/random.h"
@@ -87,10 +88,8 @@ bool glossy(const Frame& frame) {
 
 template <class Body>
 Result<void> pass(Frame& frame, const char* name, const Body& body) {
-    frame.times.begin(name);
-    auto done = body();
-    frame.times.end();
-    return done;
+    const TimedPass timed(frame, name);
+    return body();
 }
 
 Result<void> VplEngine::prepare(Frame& frame) {

@@ -44,11 +44,13 @@ class Newcomer : public ManagedWindow {
         ASSERT_TRUE(eventually([&] { return !viewer_->running(); })) << "it does not close";
         EXPECT_EQ(viewer_->code(), 0);
     }
-    /// Returns a picture that differs from another one and does not change any more.
+    /// Returns a complete picture that differs from another one and does not change any more. A sketch may
+    /// stand still as well while other programs keep the processor busy, but what follows it differs by as
+    /// much.
     std::optional<io::Image8> changed(const io::Image8& from, double by) {
         std::optional<io::Image8> before;
         return picture([&](const io::Image8& now) {
-            const bool still = before && difference(now, *before) < 0.2;
+            const bool still = before && whole() && difference(now, *before) < 0.2;
             before = now;
             return still && difference(now, from) > by;
         });
