@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -57,6 +58,8 @@ struct SceneMaterial {
     std::optional<std::pair<glm::dvec3, glm::dvec3>> box;
 
     bool operator==(const SceneMaterial&) const = default;
+    /// What decides which points have this material, for comparisons.
+    auto assignment() const { return std::tie(classification, scan, box); }
 };
 
 /// How the colours of the points become their albedo.
@@ -107,6 +110,14 @@ struct Scene {
     Look look;  ///< how points are shown, whichever engine lights them
     std::optional<Comparison> comparison;
     RenderSettings render;  ///< as the file states it; the command line overrides it
+
+    /// All that the light of a picture depends on, for comparisons: not how it is shown (exposure, tone
+    /// curve, a comparison's border), nor the cameras.
+    auto light_inputs() const {
+        return std::tuple_cat(
+            std::tie(lights, materials, background, environment, environment_on, albedo, look),
+            std::make_tuple(comparison ? comparison->engine : std::string()));
+    }
 };
 
 /// Reads a scene file. Errors name the file and the place: the line for syntax, the JSON pointer for a wrong

@@ -16,6 +16,7 @@ Result<uint64_t> parse_count(std::string_view option, std::string_view text);
 
 struct ImageSize {
     uint32_t width = 0, height = 0;
+    bool operator==(const ImageSize&) const = default;
 };
 /// Converts "1280x720" to a size. Width and height must be between 1 and 16384.
 Result<ImageSize> parse_size(std::string_view option, std::string_view text);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -26,6 +27,12 @@ struct PictureRequest {
     uint64_t shader_version = 0;           ///< changes when the shader files are to be read again
     bool moving = false;                   ///< one picture is enough, since the next request will follow
     uint32_t pictures = kMostAccumulated;  ///< number to average at rest; then the worker sleeps
+
+    /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
+    auto content() const {
+        return std::tie(frame.camera, frame.size, engine, settings, budgets, scene_version, shader_version,
+                        moving);
+    }
 };
 
 /// A finished picture, on the host.

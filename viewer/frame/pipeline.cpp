@@ -47,27 +47,6 @@ uint64_t pool_bytes(uint64_t surfels) {
     return pages(surfels) * gi::SurfelPool::kPageSurfels * sizeof(gi::PackedSurfel);
 }
 
-bool same_view(const FrameRequest& a, const FrameRequest& b) {
-    return a.camera.position == b.camera.position && a.camera.target == b.camera.target &&
-           a.camera.up == b.camera.up && a.camera.vertical_fov == b.camera.vertical_fov &&
-           a.camera.orthographic_height == b.camera.orthographic_height && a.size.width == b.size.width &&
-           a.size.height == b.size.height;
-}
-
-bool same_assignments(const std::vector<gi::SceneMaterial>& a, const std::vector<gi::SceneMaterial>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-        return x.classification == y.classification && x.scan == y.scan && x.box == y.box;
-    });
-}
-
-/// Returns whether two scenes differ only in how light is shown: exposure, tone curve, borders, cameras.
-bool same_light(const gi::Scene& a, const gi::Scene& b) {
-    const auto other = [](const gi::Scene& s) { return s.comparison ? s.comparison->engine : std::string(); };
-    return a.lights == b.lights && a.materials == b.materials && a.background == b.background &&
-           a.environment == b.environment && a.environment_on == b.environment_on && a.albedo == b.albedo &&
-           a.look == b.look && other(a) == other(b);
-}
-
 }  // namespace
 
 struct Pipeline::State {
@@ -506,10 +485,11 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
         state_->changed = true;
     }
     // A point's material and colour are packed into its surfel.
-    state_->repack |= !same_assignments(scene.materials, state_->scene.materials) ||
+    state_->repack |= !std::ranges::equal(scene.materials, state_->scene.materials, {},
+                                          &gi::SceneMaterial::assignment, &gi::SceneMaterial::assignment) ||
                       !gi::same_colours(scene.look, state_->scene.look) ||
                       scene.albedo.flatten != state_->scene.albedo.flatten;
-    state_->changed |= !same_light(scene, state_->scene);
+    state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
     state_->scene = std::move(scene);
     return {};
 }
@@ -521,7 +501,7 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     if (!state.engine) LUCARNE_TRY(set_engine(gi::default_engine().name));
     if (state.repack) LUCARNE_TRY(state.colour_anew());
     state.times.begin("cuts");
-    if (state.changed || !same_view(request, state.last)) {
+    if (state.changed || request.camera != state.last.camera || request.size != state.last.size) {
         state.choose_cuts(request);
         state.presentation.restart();
     }
