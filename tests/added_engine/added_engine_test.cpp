@@ -139,7 +139,7 @@ class Panel {
         ImGui::SetNextWindowSize(ImVec2(400, 900));
         ImGui::Begin("panel");
         ImGui::GetStateStorage()->SetInt(ImGui::GetID("Effort"), 1);  // opened as if clicked
-        draw_rendering_panel(model);
+        draw_rendering_panel(model.rendering());
         ImGui::End();
         ImGui::EndFrame();
     }
@@ -156,19 +156,20 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
     std::set<std::string> changed;
     const auto look = [&](const ViewModel& model, const gi::EngineSettings& before) {
         for (const gi::OptionInfo* option : gi::engine_options())
-            if (model.settings.get(*option) != before.get(*option)) changed.insert(std::string(option->key));
+            if (model.view.settings.get(*option) != before.get(*option))
+                changed.insert(std::string(option->key));
     };
     // Click at all heights: a click on a control changes something, and another click below chooses from an
     // open list.
     for (float y = 20; y < 500; y += 6) {
         Panel panel;
         ViewModel model(10);
-        model.engine = "paint";
-        ASSERT_TRUE(model.choose_preset("interactive"));
-        const gi::EngineSettings before = model.settings;
+        model.view.engine = "paint";
+        ASSERT_TRUE(model.view.choose_preset("interactive"));
+        const gi::EngineSettings before = model.view.settings;
         for (const ImVec2 at : {ImVec2(60, y), ImVec2(60, y + 40)}) {
             panel.click(model, at);
-            if (model.engine == "paint" && model.preset == "interactive") look(model, before);
+            if (model.view.engine == "paint" && model.view.preset == "interactive") look(model, before);
         }
     }
     for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"})

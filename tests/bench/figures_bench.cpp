@@ -19,7 +19,7 @@
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
 #include "tests/bench/scan.h"
-#include "viewer/commands/drawing_options.h"
+#include "viewer/commands/options/drawing_options.h"
 #include "viewer/frame/rgba.h"
 #include "viewer/inputs/input.h"
 

@@ -16,7 +16,7 @@
 #include "gi/bounce_options.h"
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
-#include "viewer/commands/drawing_options.h"
+#include "viewer/commands/options/drawing_options.h"
 #include "viewer/flythrough/flight.h"
 #include "viewer/inputs/input.h"
 

@@ -15,7 +15,7 @@
 #include "gi/raster/gbuffer.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
-#include "viewer/commands/drawing_options.h"
+#include "viewer/commands/options/drawing_options.h"
 #include "viewer/frame/views.h"
 #include "viewer/inputs/input.h"
 

@@ -10,8 +10,8 @@
 #include "io/core/random.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
+#include "io/files/put_aside.h"
 #include "viewer/frame/picture_worker.h"
-#include "viewer/window/settings.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -1,16 +1,16 @@
 #include <imgui.h>
 
-#include "viewer/window/panels/panels.h"
+#include "viewer/bookmarks/bookmarking.h"
 
 namespace lucarne::viewer {
 
-void draw_bookmarks_panel(ViewModel& model) {
-    Shell& shell = model.shell;
+void draw_bookmarks_panel(const Bookmarking& model) {
+    BookmarkModel& bookmarks = model.bookmarks;
     const float font = ImGui::GetFontSize();
-    size_t gone = shell.bookmarks.size();
-    if (shell.bookmarks.empty()) ImGui::TextWrapped("Ctrl+B sets one where you are.");
-    for (size_t i = 0; i < shell.bookmarks.size(); ++i) {
-        Bookmark& bookmark = shell.bookmarks[i];
+    size_t gone = bookmarks.all.size();
+    if (bookmarks.all.empty()) ImGui::TextWrapped("Ctrl+B sets one where you are.");
+    for (size_t i = 0; i < bookmarks.all.size(); ++i) {
+        Bookmark& bookmark = bookmarks.all[i];
         ImGui::PushID(static_cast<int>(i));
         const float height = 4.5f * font;
         const float width = bookmark.thumbnail.height
@@ -30,15 +30,15 @@ void draw_bookmarks_panel(ViewModel& model) {
         if (ImGui::SmallButton("remove")) gone = i;
         ImGui::EndGroup();
         if (chosen) {
-            shell.bookmark = i;
-            model.go_to(bookmark.camera);
+            bookmarks.visited = i;
+            model.view.go_to(bookmark.camera);
         }
         ImGui::PopID();
     }
-    if (gone >= shell.bookmarks.size()) return;
-    if (shell.bookmarks[gone].texture) shell.stale_textures.push_back(shell.bookmarks[gone].texture);
-    shell.bookmarks.erase(shell.bookmarks.begin() + static_cast<std::ptrdiff_t>(gone));
-    shell.bookmarks_changed = true;
+    if (gone >= bookmarks.all.size()) return;
+    if (bookmarks.all[gone].texture) bookmarks.commands.push(FreeThumbnail{bookmarks.all[gone].texture});
+    bookmarks.all.erase(bookmarks.all.begin() + static_cast<std::ptrdiff_t>(gone));
+    bookmarks.commands.push(SaveBookmarks{});
 }
 
 }  // namespace lucarne::viewer

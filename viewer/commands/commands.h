@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "viewer/commands/arguments.h"
+#include "viewer/commands/options/arguments.h"
 
 namespace lucarne::viewer {
 

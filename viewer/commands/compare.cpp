@@ -18,7 +18,7 @@
 #include "io/files/json.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/outputs.h"
+#include "viewer/commands/options/outputs.h"
 
 namespace lucarne::viewer {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/formats/scan.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/outputs.h"
+#include "viewer/commands/options/outputs.h"
 
 namespace lucarne::viewer {
 namespace {

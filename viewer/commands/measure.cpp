@@ -11,11 +11,11 @@
 #include "io/core/terminal.h"
 #include "io/files/file.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/input_options.h"
-#include "viewer/commands/outputs.h"
+#include "viewer/commands/options/input_options.h"
+#include "viewer/commands/options/outputs.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
-#include "viewer/measure/section.h"
+#include "viewer/measure/section/section.h"
 #include "viewer/picking/nearest.h"
 
 namespace lucarne::viewer {

@@ -20,9 +20,9 @@
 #include "io/files/json.h"
 #include "io/image/image.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/drawing_options.h"
-#include "viewer/commands/input_options.h"
-#include "viewer/commands/outputs.h"
+#include "viewer/commands/options/drawing_options.h"
+#include "viewer/commands/options/input_options.h"
+#include "viewer/commands/options/outputs.h"
 #include "viewer/inputs/input.h"
 #include "viewer/publish/finished_picture.h"
 

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -11,9 +10,9 @@
 #include "io/core/log.h"
 #include "octree/tree/bulk.h"
 #include "viewer/commands/commands.h"
-#include "viewer/commands/drawing_options.h"
-#include "viewer/commands/input_options.h"
-#include "viewer/commands/outputs.h"
+#include "viewer/commands/options/drawing_options.h"
+#include "viewer/commands/options/input_options.h"
+#include "viewer/commands/options/outputs.h"
 #include "viewer/flythrough/path.h"
 #include "viewer/inputs/input.h"
 #include "viewer/measure/file.h"
@@ -52,34 +51,29 @@ Result<void> check_scene(const ViewOptions& options) {
 
 ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     ViewModel model(1.0);
-    model.engine = options.drawing.render.engine;
-    model.resolution_scale = options.drawing.render.scale.value_or(1);
-    model.preset = drawing.preset.name;
-    model.settings = drawing.preset.engine;
-    model.budgets = drawing.preset.budgets;
-    model.frame_time = options.frame_time_ms * 1e-3;
-    model.caps = drawing.caps;
-    model.light_tools.scene_file = options.drawing.scene;
+    model.view.engine = options.drawing.render.engine;
+    model.view.resolution_scale = options.drawing.render.scale.value_or(1);
+    model.view.preset = drawing.preset.name;
+    model.view.settings = drawing.preset.engine;
+    model.view.budgets = drawing.preset.budgets;
+    model.view.frame_time = options.frame_time_ms * 1e-3;
+    model.view.caps = drawing.caps;
+    model.scene_file.set_path(options.drawing.scene);
     if (!options.measurements.empty()) {
         model.measure.file = options.measurements;
-        model.measure.wish = MeasureModel::FileWish::load;
+        model.measure.commands.push(LoadMeasurements{});
     }
     if (!options.path.empty()) {
-        model.show.path_file = options.path;
-        model.show.wish = ShowModel::Wish::load_path;
+        model.publish.path_file = options.path;
+        model.publish.commands.push(LoadPath{});
     }
     return model;
 }
 
-std::string absolute(const std::string& path) {
-    std::error_code unknown;
-    const auto whole = std::filesystem::absolute(path, unknown);
-    return unknown ? path : whole.lexically_normal().string();
-}
-
 void take_settings(Settings settings, ViewModel& model) {
-    if (const auto mode = navigation_mode(settings.navigation)) model.navigation.set_mode(*mode);
-    model.shell.settings = std::move(settings);
+    if (const auto mode = navigation_mode(settings.navigation)) model.view.navigation.set_mode(*mode);
+    model.view.side_bar = settings.side_bar;
+    model.settings = std::move(settings);
 }
 
 Result<void> view(ViewOptions options) {
@@ -105,7 +99,7 @@ Result<void> view(ViewOptions options) {
     scans.open(options.input.paths, true);  // loads while the window starts
     LoadedSettings kept = load_settings(config_folder());
     if (!kept.problem.empty()) log::warn("{}", kept.problem);
-    for (const std::string& path : options.input.paths) kept.settings.opened(absolute(path));
+    for (const std::string& path : options.input.paths) kept.settings.opened(absolute_path(path));
     const ImageSize size =
         options.size_given || !kept.settings.window.width ? drawing.size : kept.settings.window;
     LUCARNE_ASSIGN(const auto window, Window::open(size, "Lucarne"));
@@ -113,9 +107,9 @@ Result<void> view(ViewOptions options) {
     LUCARNE_ASSIGN(const auto worker, PictureWorker::start(window->worker_device(Window::Hidden::view),
                                                            nullptr, drawing.caps, &Window::wake));
     ViewModel model = first_model(options, drawing);
-    model.device = worker->device();
-    model.shell.scans = &scans;
-    model.message = std::move(kept.problem);
+    model.view.device = worker->device();
+    model.scans = &scans;
+    model.view.message = std::move(kept.problem);
     take_settings(std::move(kept.settings), model);
     auto done = ViewSession(*window, *worker, model, shot, scans, interrupt).run();
     awake = false;

@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "viewer/light/tools.h"
+#include "viewer/light/model.h"
 
 namespace lucarne::viewer {
 

@@ -7,8 +7,7 @@
 #include "gi/scene/photometry.h"
 #include "gi/shared/surfel_code.h"
 #include "viewer/light/edits.h"
-#include "viewer/window/actions.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/light/lighting.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -43,7 +42,7 @@ void dye(gi::SceneLight& light, const glm::dvec3& colour) {
 }
 
 /// Edits the light's colour as the screen shows it, or as linear values.
-bool edit_colour(ViewModel& model, gi::SceneLight& light) {
+bool edit_colour(const Lighting& model, gi::SceneLight& light) {
     const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
     float shown[3];
     for (int i = 0; i < 3; ++i)
@@ -61,10 +60,10 @@ bool edit_colour(ViewModel& model, gi::SceneLight& light) {
         dye(light, {linear[0], linear[1], linear[2]});
         changed = true;
     }
-    float kelvin = static_cast<float>(model.light_tools.kelvin);
+    float kelvin = static_cast<float>(model.lights.kelvin);
     if (ImGui::SliderFloat("temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
-        model.light_tools.kelvin = kelvin;
+        model.lights.kelvin = kelvin;
         dye(light, gi::black_body_colour(kelvin));
         changed = true;
     }
@@ -72,11 +71,11 @@ bool edit_colour(ViewModel& model, gi::SceneLight& light) {
 }
 
 /// Edits the strength: in the kind's radiometric unit for the strongest channel, or in photometric units.
-bool edit_strength(ViewModel& model, gi::SceneLight& light) {
+bool edit_strength(const Lighting& model, gi::SceneLight& light) {
     static constexpr const char* kUnits[] = {"W/sr", "W/sr", "W/m2", "W/(sr m2)", "W/(sr m2)"};
     const bool sun = light.kind == gi::LightKind::directional;
-    const double metres = model.picture ? model.picture->metres_per_unit : 1;
-    bool& lumens = model.light_tools.lumens;
+    const double metres = model.view.picture ? model.view.picture->metres_per_unit : 1;
+    bool& lumens = model.lights.lumens;
     const double most = std::max({light.strength.x, light.strength.y, light.strength.z});
     double value = lumens ? gi::luminous_flux(light, metres) : most;
     const double least = 1e-6, largest = 1e12;
@@ -124,34 +123,34 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
     return changed;
 }
 
-bool edit_light(ViewModel& model, gi::SceneLight& light) {
-    if (ImGui::InputText("name", &light.name)) model.shown_changed();
+bool edit_light(const Lighting& model, gi::SceneLight& light) {
+    if (ImGui::InputText("name", &light.name)) model.view.shown_changed();
     bool changed = false;
     if (light.kind == gi::LightKind::directional) {
         draw_sun(model);
     } else {
-        changed |= drag_point("position", light.position, model.scene_size);
+        changed |= drag_point("position", light.position, model.view.scene_size);
         if (light.kind != gi::LightKind::point)
-            changed |= drag_point("aims at", light.target, model.scene_size);
+            changed |= drag_point("aims at", light.target, model.view.scene_size);
     }
-    changed |= edit_shape(light, model.scene_size);
+    changed |= edit_shape(light, model.view.scene_size);
     return edit_strength(model, light) || changed;
 }
 
-void draw_list(ViewModel& model) {
-    for (size_t i = 0; i < model.scene.lights.size(); ++i) {
-        gi::SceneLight& light = model.scene.lights[i];
+void draw_list(const Lighting& model) {
+    for (size_t i = 0; i < model.view.scene.lights.size(); ++i) {
+        gi::SceneLight& light = model.view.scene.lights[i];
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Checkbox("##on", &light.on)) model.scene_changed();
+        if (ImGui::Checkbox("##on", &light.on)) model.view.scene_changed();
         ImGui::SameLine();
         const std::string label = std::to_string(i + 1) + " " + light.name;
-        if (ImGui::Selectable(label.c_str(), model.light == i)) model.light = i;
+        if (ImGui::Selectable(label.c_str(), model.lights.selected == i)) model.lights.selected = i;
         ImGui::PopID();
     }
-    if (model.scene.lights.empty()) ImGui::TextDisabled("The scene has no light.");
+    if (model.view.scene.lights.empty()) ImGui::TextDisabled("The scene has no light.");
 }
 
-void draw_buttons(ViewModel& model) {
+void draw_buttons(const Lighting& model) {
     static constexpr const char* kKinds[] = {"spot", "point", "sun", "rectangle", "disc"};
     if (ImGui::Button("Add")) ImGui::OpenPopup("kinds");
     if (ImGui::BeginPopup("kinds")) {
@@ -164,21 +163,21 @@ void draw_buttons(ViewModel& model) {
     ImGui::SameLine();
     if (ImGui::Button("Delete")) remove_light(model);
     ImGui::SameLine();
-    ImGui::BeginDisabled(model.light_tools.undo.empty());
+    ImGui::BeginDisabled(model.lights.undo.empty());
     if (ImGui::Button("Undo")) undo_lights(model);
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::Checkbox("handles", &model.light_tools.show_handles);
+    ImGui::Checkbox("handles", &model.lights.show_handles);
 }
 
 }  // namespace
 
-void draw_light_panel(ViewModel& model) {
+void draw_light_panel(const Lighting& model) {
     draw_list(model);
     draw_buttons(model);
     if (gi::SceneLight* light = model.selected_light()) {
         ImGui::Separator();
-        if (edit_light(model, *light)) model.scene_changed();
+        if (edit_light(model, *light)) model.view.scene_changed();
         if (light->kind != gi::LightKind::directional && ImGui::Button("Put it where the camera is"))
             place_light_at_camera(model);
     }

@@ -10,7 +10,8 @@
 
 #include "gi/scene/colour_map.h"
 #include "viewer/light/edits.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/light/lighting.h"
+#include "viewer/ui/widgets.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -64,15 +65,15 @@ bool edit_radiance(const char* label, glm::dvec3& radiance) {
 
 /// Replaces the scene's sky by an edited copy, because the sky is shared with the worker.
 template <class Edit>
-void change_sky(ViewModel& model, const Edit& edit) {
-    auto sky = std::make_shared<gi::Environment>(*model.scene.environment);
+void change_sky(const Lighting& model, const Edit& edit) {
+    auto sky = std::make_shared<gi::Environment>(*model.view.scene.environment);
     edit(*sky);
-    model.scene.environment = std::move(sky);
-    model.scene_changed();
+    model.view.scene.environment = std::move(sky);
+    model.view.scene_changed();
 }
 
-void edit_even_sky(ViewModel& model) {
-    glm::dvec3 radiance = model.scene.environment->scale;
+void edit_even_sky(const Lighting& model) {
+    glm::dvec3 radiance = model.view.scene.environment->scale;
     if (!edit_radiance("sky", radiance)) return;
     change_sky(model, [&](gi::Environment& sky) {
         sky.scale = radiance;
@@ -81,11 +82,12 @@ void edit_even_sky(ViewModel& model) {
 }
 
 /// Lets the user choose a sky picture, which a thread reads.
-void choose_sky(LightTools& tools) {
+void choose_sky(LightModel& tools) {
     const bool entered = ImGui::InputTextWithHint("##image", "sky.exr or sky.hdr", &tools.sky_image,
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
-    if ((ImGui::Button("Load") || entered) && !tools.sky_image.empty()) tools.load_sky = true;
+    if ((ImGui::Button("Load") || entered) && !tools.sky_image.empty())
+        tools.commands.push(LoadSky{tools.sky_image});
     if (!tools.reading_sky.empty()) {
         // The progress is unknown: the bar moves back and forth.
         const auto seconds = static_cast<float>(ImGui::GetTime());
@@ -96,7 +98,7 @@ void choose_sky(LightTools& tools) {
     }
 }
 
-void choose_class(gi::SceneMaterial& material, ViewModel& model) {
+void choose_class(gi::SceneMaterial& material, const Lighting& model) {
     const auto name_of = [](int number) {
         return std::to_string(number) + " " + std::string(gi::class_name(static_cast<uint8_t>(number)));
     };
@@ -105,14 +107,14 @@ void choose_class(gi::SceneMaterial& material, ViewModel& model) {
         if (ImGui::Selectable(name_of(number).c_str(), number == *material.classification)) {
             material.classification = number;
             material.name = gi::class_name(static_cast<uint8_t>(number));
-            model.scene_changed();
+            model.view.scene_changed();
         }
     ImGui::EndCombo();
 }
 
 }  // namespace
 
-void draw_sun(ViewModel& model) {
+void draw_sun(const Lighting& model) {
     gi::SceneLight& light = *model.selected_light();
     bool by_time = light.sun.has_value();
     if (ImGui::Checkbox("by place and time", &by_time))
@@ -136,67 +138,67 @@ void draw_sun(ViewModel& model) {
     changed |= edit_degrees("elevation", elevation, -90, 90);
     if (!changed) return;
     light.target = light.position - gi::towards({azimuth, elevation}, 0);
-    model.scene_changed();
+    model.view.scene_changed();
 }
 
-void draw_sky(ViewModel& model) {
+void draw_sky(const Lighting& model) {
     if (!fold("Sky")) return;
     ImGui::PushID("sky");
-    if (!model.scene.environment) {
+    if (!model.view.scene.environment) {
         if (ImGui::Button("Even sky")) {
             auto sky = std::make_shared<gi::Environment>();
             sky->texels = {glm::vec3(1.0f)};
-            model.scene.environment = std::move(sky);
-            model.scene.environment_on = true;
-            model.scene_changed();
+            model.view.scene.environment = std::move(sky);
+            model.view.scene.environment_on = true;
+            model.view.scene_changed();
         }
     } else {
-        if (ImGui::Checkbox("on", &model.scene.environment_on)) model.scene_changed();
+        if (ImGui::Checkbox("on", &model.view.scene.environment_on)) model.view.scene_changed();
         ImGui::SameLine();
         if (ImGui::Button("Remove")) {
-            model.scene.environment.reset();
-            model.scene_changed();
+            model.view.scene.environment.reset();
+            model.view.scene_changed();
         }
     }
-    if (model.scene.environment) {
-        if (model.scene.environment->image.empty())
+    if (model.view.scene.environment) {
+        if (model.view.scene.environment->image.empty())
             edit_even_sky(model);
         else
-            ImGui::TextWrapped("%s", model.scene.environment->image.c_str());
-        float degrees = static_cast<float>(model.scene.environment->rotation / kDegree);
+            ImGui::TextWrapped("%s", model.view.scene.environment->image.c_str());
+        float degrees = static_cast<float>(model.view.scene.environment->rotation / kDegree);
         if (ImGui::SliderFloat("rotation", &degrees, -180, 180, "%.1f degrees"))
             change_sky(model,
                        [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
     }
-    choose_sky(model.light_tools);
+    choose_sky(model.lights);
     ImGui::PopID();
 }
 
-void draw_emitters(ViewModel& model) {
+void draw_emitters(const Lighting& model) {
     if (!fold("Classes that shine")) return;
     ImGui::PushID("emitters");
-    for (size_t i = 0; i < model.scene.materials.size(); ++i) {
-        gi::SceneMaterial& material = model.scene.materials[i];
+    for (size_t i = 0; i < model.view.scene.materials.size(); ++i) {
+        gi::SceneMaterial& material = model.view.scene.materials[i];
         if (!material.classification) continue;
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Checkbox("##on", &material.emits)) model.scene_changed();
+        if (ImGui::Checkbox("##on", &material.emits)) model.view.scene_changed();
         ImGui::SameLine();
         choose_class(material, model);
-        if (edit_radiance("emission", material.emission)) model.scene_changed();
+        if (edit_radiance("emission", material.emission)) model.view.scene_changed();
         const bool gone = ImGui::Button("Remove");
         ImGui::PopID();
         if (!gone) continue;
-        model.scene.materials.erase(model.scene.materials.begin() + static_cast<ptrdiff_t>(i));
-        model.scene_changed();
+        model.view.scene.materials.erase(model.view.scene.materials.begin() + static_cast<ptrdiff_t>(i));
+        model.view.scene_changed();
         break;
     }
-    if (model.scene.materials.size() < 255 && ImGui::Button("Add a class")) {
+    if (model.view.scene.materials.size() < 255 && ImGui::Button("Add a class")) {
         gi::SceneMaterial material;
         material.classification = 6;
         material.name = gi::class_name(6);
         material.emission = glm::dvec3(1);
-        model.scene.materials.push_back(material);
-        model.scene_changed();
+        model.view.scene.materials.push_back(material);
+        model.view.scene_changed();
     }
     ImGui::PopID();
 }

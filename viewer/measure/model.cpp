@@ -68,7 +68,7 @@ void MeasureModel::copy_selected() {
     const Measurement* one = selected_one();
     const std::span<const Measurement> what = one ? std::span(one, 1) : std::span(list.all());
     if (what.empty()) return;
-    clipboard = measurements_text(what, units());
+    commands.push(CopyText{measurements_text(what, units())});
     message = one ? "copied " + one->name : fmt::format("copied {} measurements", what.size());
 }
 

@@ -6,11 +6,21 @@
 #include <string>
 
 #include "viewer/measure/list.h"
-#include "viewer/measure/section.h"
+#include "viewer/measure/section/section.h"
+#include "viewer/ui/command_queue.h"
 
 namespace lucarne::viewer {
 
-/// The measuring part of the ViewModel: tools, options and measurements.
+// Commands of the actions and panels. The session carries them out once there is a picture, since the first
+// scan determines the unit.
+struct SaveMeasurements {};  ///< to MeasureModel::file
+struct LoadMeasurements {};
+struct SaveSection {};  ///< the selected one
+struct CopyText {
+    std::string text;
+};
+
+/// Measuring tools, options and measurements.
 struct MeasureModel {
     std::optional<MeasureKind> tool;  ///< the active tool, which receives the next clicks
     std::vector<ExactPoint> pending;  ///< points that the tool has received
@@ -23,11 +33,7 @@ struct MeasureModel {
     std::string file = "measurements.json";
     std::filesystem::path own_file;  ///< the file that was saved or loaded last
 
-    // Requests from actions and panels, which the session carries out.
-    enum class FileWish { none, save, load };
-    FileWish wish = FileWish::none;
-    bool save_section = false;
-    std::optional<std::string> clipboard;
+    CommandQueue<SaveMeasurements, LoadMeasurements, SaveSection, CopyText> commands;
     // Results of the session.
     std::shared_ptr<const Section> section;  ///< the selected section, as far as it has been read
     std::string message;                     ///< message to be shown once

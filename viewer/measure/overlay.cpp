@@ -4,8 +4,8 @@
 #include <imgui.h>
 
 #include "viewer/measure/marks.h"
-#include "viewer/window/panels/on_screen.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/measure/measuring.h"
+#include "viewer/ui/on_screen.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -65,11 +65,11 @@ std::optional<size_t> label_under_cursor(const Overlay& overlay) {
     return std::nullopt;
 }
 
-void draw_pending(const ViewModel& model, const glm::dvec2& window, const UnitChoice& units) {
+void draw_pending(const Measuring& model, const glm::dvec2& window, const UnitChoice& units) {
     const MeasureModel& measure = model.measure;
     if (!measure.tool) return;
     const Measurement unfinished{*measure.tool, "", measure.pending, measure.thickness};
-    const Overlay overlay = overlay_of({&unfinished, 1}, *model.picture, window, units);
+    const Overlay overlay = overlay_of({&unfinished, 1}, *model.view.picture, window, units);
     draw(overlay, true, [](size_t) { return kPending; });
     if (ImGui::GetIO().WantCaptureMouse) return;
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
@@ -80,23 +80,19 @@ void draw_pending(const ViewModel& model, const glm::dvec2& window, const UnitCh
 
 }  // namespace
 
-void draw_measurements(ViewModel& model) {
+void draw_measurements(const Measuring& model) {
     MeasureModel& measure = model.measure;
-    if (measure.clipboard) {
-        ImGui::SetClipboardText(measure.clipboard->c_str());
-        measure.clipboard.reset();
-    }
-    if (!model.picture) return;
+    if (!model.view.picture) return;
     const ImGuiIO& io = ImGui::GetIO();
     const glm::dvec2 window(io.DisplaySize.x, io.DisplaySize.y);
     const UnitChoice units = measure.units();
-    const Overlay overlay = overlay_of(measure.list.all(), *model.picture, window, units);
+    const Overlay overlay = overlay_of(measure.list.all(), *model.view.picture, window, units);
     draw(overlay, measure.labels, [&](size_t i) { return measure.selected == i ? kSelected : kColor; });
     if (!measure.tool && measure.labels && !io.WantCaptureMouse &&
         ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         if (const auto under = label_under_cursor(overlay)) {
             measure.selected = under;
-            model.side_bar().unfold(BarSection::measure);
+            model.view.side_bar.unfold(BarSection::measure);
         }
     draw_pending(model, window, units);
 }

@@ -5,7 +5,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "viewer/window/panels/panels.h"
+#include "viewer/measure/measuring.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -113,16 +113,16 @@ void edit_buttons(MeasureModel& measure, const UnitChoice& units) {
     if (ImGui::RadioButton(("file's unit: " + unit_name(units.metres_per_unit)).c_str(), !measure.metres))
         measure.metres = false;
     ImGui::InputText("file", &measure.file);
-    if (button("Save", !measure.list.all().empty())) measure.wish = MeasureModel::FileWish::save;
+    if (button("Save", !measure.list.all().empty())) measure.commands.push(SaveMeasurements{});
     ImGui::SameLine();
-    if (button("Load", true)) measure.wish = MeasureModel::FileWish::load;
+    if (button("Load", true)) measure.commands.push(LoadMeasurements{});
     ImGui::SameLine();
     ImGui::TextDisabled(".csv or .json");
 }
 
 }  // namespace
 
-void draw_measure_panel(ViewModel& model) {
+void draw_measure_panel(const Measuring& model) {
     MeasureModel& measure = model.measure;
     const UnitChoice units = measure.units();
     tool_buttons(measure);

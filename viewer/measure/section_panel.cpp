@@ -44,14 +44,15 @@ void axes(ImDrawList& list, const ProfileRaster& raster, const ImVec2& corner, c
 
 }  // namespace
 
-void SectionPanel::draw(ViewModel& model) {
+void SectionPanel::draw(const Measuring& model) {
     MeasureModel& measure = model.measure;
     const Measurement* one = measure.selected_one();
-    if (!one || one->kind != MeasureKind::section || !model.side_bar().is_open(BarSection::measure)) return;
+    if (!one || one->kind != MeasureKind::section || !model.view.side_bar.is_open(BarSection::measure))
+        return;
     const UnitChoice units = measure.units();
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const float font = ImGui::GetFontSize();
-    const float left = static_cast<float>(model.side_bar().pixels(font, display.x)) + font;
+    const float left = static_cast<float>(model.view.side_bar.pixels(font, display.x)) + font;
     ImGui::SetNextWindowPos(ImVec2(left, display.y - font * 19), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(display.x - left - font, font * 17), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowBgAlpha(1);
@@ -67,7 +68,7 @@ void SectionPanel::draw(ViewModel& model) {
             ImGui::TextUnformatted("Reading the points.");
         ImGui::SameLine();
         ImGui::BeginDisabled(!section);
-        if (ImGui::SmallButton("Save as CSV and SVG")) measure.save_section = true;
+        if (ImGui::SmallButton("Save as CSV and SVG")) measure.commands.push(SaveSection{});
         ImGui::EndDisabled();
         const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
         if (section && size.x > 20 && size.y > 20) plot(measure.section, corner, size, units);

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "viewer/measure/profile_raster.h"
-#include "viewer/window/view_model.h"
+#include "viewer/measure/measuring.h"
+#include "viewer/measure/section/profile_raster.h"
 
 struct ImVec2;
 
@@ -12,7 +12,7 @@ namespace lucarne::viewer {
 /// Draws the selected section. Keeps its dots from frame to frame.
 class SectionPanel {
  public:
-    void draw(ViewModel& model);
+    void draw(const Measuring& model);
 
  private:
     void plot(const std::shared_ptr<const Section>& section, const ImVec2& corner, const ImVec2& size,

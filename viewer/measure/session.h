@@ -1,8 +1,8 @@
 #pragma once
 
+#include "viewer/measure/measuring.h"
 #include "viewer/measure/section_panel.h"
 #include "viewer/measure/worker.h"
-#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 
@@ -12,13 +12,16 @@ class MeasureSession {
     explicit MeasureSession(std::function<void()> wake) : worker_(std::move(wake)) {}
 
     /// Call take_input() and draw() between the window's begin_frame and draw.
-    void take_input(ViewModel& model);
-    void draw(ViewModel& model);
+    void take_input(const Measuring& model);
+    void draw(const Measuring& model);
 
  private:
-    void take_results(ViewModel& model);
-    void follow_section(ViewModel& model);
-    void files(ViewModel& model);
+    void take_results(const Measuring& model);
+    void follow_section(const Measuring& model);
+    void carry_out(const Measuring& model);
+    void save(const Measuring& model);
+    void load(const Measuring& model);
+    void save_section(const Measuring& model);
 
     MeasureWorker worker_;
     SectionPanel section_panel_;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/core/job_queue.h"
-#include "viewer/measure/section.h"
+#include "viewer/measure/section/section.h"
 #include "viewer/picking/pick.h"
 
 namespace lucarne::viewer {

@@ -3,51 +3,51 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "viewer/window/actions.h"
+#include "viewer/publish/publishing.h"
 
 namespace lucarne::viewer {
 namespace {
 
-using Wish = ShowModel::Wish;
+using Entry = Action<const Publishing>;
 
-template <Wish kWish>
-void wish(ViewModel& model) {
-    model.show.wish = kWish;
+template <class Command>
+void push(const Publishing& model) {
+    model.publish.commands.push(Command{});
 }
-bool has_picture(const ViewModel& model) {
-    return model.picture != nullptr;
+bool has_picture(const Publishing& model) {
+    return model.view.picture != nullptr;
 }
-bool has_keys(const ViewModel& model) {
-    return !model.show.editor.empty();
+bool has_keys(const Publishing& model) {
+    return !model.publish.editor.empty();
 }
-bool has_selected(const ViewModel& model) {
-    return model.show.editor.selected().has_value();
+bool has_selected(const Publishing& model) {
+    return model.publish.editor.selected().has_value();
 }
-bool can_undo(const ViewModel& model) {
-    return model.show.editor.can_undo();
+bool can_undo(const Publishing& model) {
+    return model.publish.editor.can_undo();
 }
-bool is_rendering(const ViewModel& model) {
-    return model.show.rendering.running;
+bool is_rendering(const Publishing& model) {
+    return model.publish.rendering.running;
 }
 
-void add_key(ViewModel& model) {
-    model.side_bar().unfold(BarSection::flythrough);
-    model.show.add_key(model.rig.camera());
+void add_key(const Publishing& model) {
+    model.view.side_bar.unfold(BarSection::flythrough);
+    model.publish.add_key(model.view.rig.camera());
 }
-void replace_key(ViewModel& model) {
-    model.show.take(model.show.editor.replace(model.rig.camera()));
+void replace_key(const Publishing& model) {
+    model.publish.take(model.publish.editor.replace(model.view.rig.camera()));
 }
-void remove_key(ViewModel& model) {
-    model.show.take(model.show.editor.remove());
+void remove_key(const Publishing& model) {
+    model.publish.take(model.publish.editor.remove());
 }
 template <int kBy>
-void move_key(ViewModel& model) {
-    model.show.take(model.show.editor.move(kBy));
+void move_key(const Publishing& model) {
+    model.publish.take(model.publish.editor.move(kBy));
 }
 /// Selects the key frame `kBy` places further; wraps around at the ends.
 template <int kBy>
-void select_key(ViewModel& model) {
-    ShowModel& show = model.show;
+void select_key(const Publishing& model) {
+    PublishModel& show = model.publish;
     const size_t count = show.editor.path().keys.size();
     show.playing = false;
     show.go_to_key((show.editor.selected().value_or(0) + count + kBy) % count);
@@ -55,45 +55,47 @@ void select_key(ViewModel& model) {
 
 }  // namespace
 
-std::span<const Action> show_actions() {
+std::span<const Action<const Publishing>> publish_actions() {
     static constexpr const char* kMenu = "Flythrough";
     static constexpr int kShift = GLFW_MOD_SHIFT, kCtrl = GLFW_MOD_CONTROL, kAlt = GLFW_MOD_ALT;
     static constexpr std::array kActions = {
-        Action{{GLFW_KEY_F12, kCtrl}, "Picture", "Save it in any size", wish<Wish::picture>, has_picture},
-        Action{{GLFW_KEY_T, kShift},
-               "Picture",
-               "Transparent where no point is",
-               [](ViewModel& m) { m.show.finish.transparent = !m.show.finish.transparent; },
-               nullptr,
-               [](const ViewModel& m) { return m.show.finish.transparent; }},
-        Action{{GLFW_KEY_BACKSPACE, kAlt}, "Picture", "Cancel rendering", wish<Wish::cancel>, is_rendering},
-        Action{{GLFW_KEY_INSERT}, kMenu, "Add this view", add_key, has_picture},
-        Action{
+        Entry{{GLFW_KEY_F12, kCtrl}, "Picture", "Save it in any size", push<RenderPicture>, has_picture},
+        Entry{{GLFW_KEY_T, kShift},
+              "Picture",
+              "Transparent where no point is",
+              [](const Publishing& m) { m.publish.finish.transparent = !m.publish.finish.transparent; },
+              nullptr,
+              [](const Publishing& m) { return m.publish.finish.transparent; }},
+        Entry{{GLFW_KEY_BACKSPACE, kAlt}, "Picture", "Cancel rendering", push<CancelRendering>, is_rendering},
+        Entry{{GLFW_KEY_INSERT}, kMenu, "Add this view", add_key, has_picture},
+        Entry{
             {GLFW_KEY_INSERT, kShift}, kMenu, "Replace the selected by this view", replace_key, has_selected},
-        Action{{GLFW_KEY_DELETE, kShift}, kMenu, "Delete the selected", remove_key, has_selected},
-        Action{{GLFW_KEY_LEFT, kAlt}, kMenu, "Select the one before", select_key<-1>, has_keys},
-        Action{{GLFW_KEY_RIGHT, kAlt}, kMenu, "Select the next", select_key<1>, has_keys},
-        Action{
-            {GLFW_KEY_LEFT, kAlt | kShift}, kMenu, "Move the selected earlier", move_key<-1>, has_selected},
-        Action{{GLFW_KEY_RIGHT, kAlt | kShift}, kMenu, "Move the selected later", move_key<1>, has_selected},
-        Action{
-            {GLFW_KEY_Z, kAlt | kShift}, kMenu, "Undo", [](ViewModel& m) { m.show.editor.undo(); }, can_undo},
-        Action{{GLFW_KEY_SPACE},
-               kMenu,
-               "Play",
-               [](ViewModel& m) { m.show.play(); },
-               has_keys,
-               [](const ViewModel& m) { return m.show.playing; }},
-        Action{{GLFW_KEY_P, kAlt},
-               kMenu,
-               "Draw the path",
-               [](ViewModel& m) { m.show.draw_path = !m.show.draw_path; },
-               nullptr,
-               [](const ViewModel& m) { return m.show.draw_path; }},
-        Action{{GLFW_KEY_S, kAlt}, kMenu, "Save the path", wish<Wish::save_path>, has_keys},
-        Action{{GLFW_KEY_O, kAlt | kShift}, kMenu, "Load the path", wish<Wish::load_path>, has_picture},
-        Action{{GLFW_KEY_F11, kShift}, kMenu, "Render PNG frames", wish<Wish::frames>, has_keys},
-        Action{{GLFW_KEY_F11, kCtrl}, kMenu, "Render a video", wish<Wish::video>, has_keys},
+        Entry{{GLFW_KEY_DELETE, kShift}, kMenu, "Delete the selected", remove_key, has_selected},
+        Entry{{GLFW_KEY_LEFT, kAlt}, kMenu, "Select the one before", select_key<-1>, has_keys},
+        Entry{{GLFW_KEY_RIGHT, kAlt}, kMenu, "Select the next", select_key<1>, has_keys},
+        Entry{{GLFW_KEY_LEFT, kAlt | kShift}, kMenu, "Move the selected earlier", move_key<-1>, has_selected},
+        Entry{{GLFW_KEY_RIGHT, kAlt | kShift}, kMenu, "Move the selected later", move_key<1>, has_selected},
+        Entry{{GLFW_KEY_Z, kAlt | kShift},
+              kMenu,
+              "Undo",
+              [](const Publishing& m) { m.publish.editor.undo(); },
+              can_undo},
+        Entry{{GLFW_KEY_SPACE},
+              kMenu,
+              "Play",
+              [](const Publishing& m) { m.publish.play(); },
+              has_keys,
+              [](const Publishing& m) { return m.publish.playing; }},
+        Entry{{GLFW_KEY_P, kAlt},
+              kMenu,
+              "Draw the path",
+              [](const Publishing& m) { m.publish.draw_path = !m.publish.draw_path; },
+              nullptr,
+              [](const Publishing& m) { return m.publish.draw_path; }},
+        Entry{{GLFW_KEY_S, kAlt}, kMenu, "Save the path", push<SavePath>, has_keys},
+        Entry{{GLFW_KEY_O, kAlt | kShift}, kMenu, "Load the path", push<LoadPath>, has_picture},
+        Entry{{GLFW_KEY_F11, kShift}, kMenu, "Render PNG frames", push<RenderFrames>, has_keys},
+        Entry{{GLFW_KEY_F11, kCtrl}, kMenu, "Render a video", push<RenderVideo>, has_keys},
     };
     return kActions;
 }

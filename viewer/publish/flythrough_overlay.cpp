@@ -2,7 +2,7 @@
 #include <imgui.h>
 
 #include "viewer/measure/marks_layout.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/publish/publishing.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -24,13 +24,13 @@ ImU32 shade(ImU32 colour, bool hidden) {
 
 }  // namespace
 
-void draw_flythrough(const ViewModel& model) {
-    const ShowModel& show = model.show;
+void draw_flythrough(const Publishing& model) {
+    const PublishModel& show = model.publish;
     // Not drawn while it plays, because the path would run through the eye.
-    if (!show.draw_path || show.playing || show.editor.empty() || !model.picture) return;
+    if (!show.draw_path || show.playing || show.editor.empty() || !model.view.picture) return;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     Overlay overlay;
-    OverlayLayout layout(*model.picture, {display.x, display.y}, overlay);
+    OverlayLayout layout(*model.view.picture, {display.x, display.y}, overlay);
     const auto places = places_along(show.editor.path(), kMostPlaces);
     for (size_t i = 1; i < places.size(); ++i) layout.line(places[i - 1], places[i], 0, kPieces);
     const auto& keys = show.editor.path().keys;

@@ -7,8 +7,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "viewer/publish/publishing.h"
 #include "viewer/publish/render_progress.h"
-#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -22,7 +22,7 @@ bool button(const char* label, bool enabled) {
     return pressed;
 }
 
-void key_list(ShowModel& show) {
+void key_list(PublishModel& show) {
     if (!ImGui::BeginListBox("##keys", ImVec2(-1, ImGui::GetTextLineHeightWithSpacing() * 6))) return;
     const auto& keys = show.editor.path().keys;
     ImGuiListClipper clipper;
@@ -42,12 +42,12 @@ void key_list(ShowModel& show) {
     ImGui::EndListBox();
 }
 
-void key_buttons(ViewModel& model) {
-    ShowModel& show = model.show;
+void key_buttons(const Publishing& model) {
+    PublishModel& show = model.publish;
     const bool one = show.editor.selected().has_value();
-    if (button("Add", model.picture != nullptr)) show.add_key(model.rig.camera());
+    if (button("Add", model.view.picture != nullptr)) show.add_key(model.view.rig.camera());
     ImGui::SameLine();
-    if (button("Replace", one)) show.take(show.editor.replace(model.rig.camera()));
+    if (button("Replace", one)) show.take(show.editor.replace(model.view.rig.camera()));
     ImGui::SameLine();
     if (button("Delete", one)) show.take(show.editor.remove());
     ImGui::SameLine();
@@ -63,7 +63,7 @@ void key_buttons(ViewModel& model) {
 /// is no error. ImGui reports "changed" in every frame in which the text differs from `value`; the last such
 /// number counts, unless the user restored the old one.
 template <class Take>
-void number_field(ShowModel& show, const char* label, double value, const Take& take) {
+void number_field(PublishModel& show, const char* label, double value, const Take& take) {
     if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))
         show.typed = value;
     else if (ImGui::IsItemActive() || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
@@ -73,7 +73,7 @@ void number_field(ShowModel& show, const char* label, double value, const Take& 
     show.typed.reset();
 }
 
-void key_fields(ShowModel& show) {
+void key_fields(PublishModel& show) {
     const auto selected = show.editor.selected();
     if (!selected) return;
     const KeyFrame key = show.editor.path().keys[*selected];
@@ -84,7 +84,7 @@ void key_fields(ShowModel& show) {
     ImGui::PopID();
 }
 
-void preview(ShowModel& show) {
+void preview(PublishModel& show) {
     const bool any = !show.editor.empty();
     if (button(show.playing ? "Stop" : "Play", any)) show.play();
     ImGui::SameLine();
@@ -99,12 +99,12 @@ void preview(ShowModel& show) {
     ImGui::EndDisabled();
 }
 
-void files(ShowModel& show) {
+void files(PublishModel& show) {
     const bool any = !show.editor.empty();
     ImGui::InputText("path's file", &show.path_file);
-    if (button("Save", any)) show.wish = ShowModel::Wish::save_path;
+    if (button("Save", any)) show.commands.push(SavePath{});
     ImGui::SameLine();
-    if (button("Load", true)) show.wish = ShowModel::Wish::load_path;
+    if (button("Load", true)) show.commands.push(LoadPath{});
     ImGui::Separator();
     number_field(show, "frames a second", show.editor.path().frames_per_second,
                  [&](double rate) { show.take(show.editor.set_frames_per_second(rate)); });
@@ -112,15 +112,15 @@ void files(ShowModel& show) {
     ImGui::InputText("PNG folder", &show.frames_folder);
     ImGui::InputText("video's file", &show.video_file);
     if (!render_progress(show)) return;
-    if (button("Render frames", any)) show.wish = ShowModel::Wish::frames;
+    if (button("Render frames", any)) show.commands.push(RenderFrames{});
     ImGui::SameLine();
-    if (button("Render video", any)) show.wish = ShowModel::Wish::video;
+    if (button("Render video", any)) show.commands.push(RenderVideo{});
 }
 
 }  // namespace
 
-void draw_flythrough_panel(ViewModel& model) {
-    ShowModel& show = model.show;
+void draw_flythrough_panel(const Publishing& model) {
+    PublishModel& show = model.publish;
     key_buttons(model);
     key_list(show);
     key_fields(show);

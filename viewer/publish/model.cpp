@@ -7,7 +7,7 @@
 
 namespace lucarne::viewer {
 
-void ShowModel::set_sizes(int window_width, int window_height) {
+void PublishModel::set_sizes(int window_width, int window_height) {
     for (const auto& [wide, high] : {std::pair(&width, &height), std::pair(&flight_width, &flight_height)}) {
         if (*wide > 0) continue;
         *wide = window_width;
@@ -15,32 +15,32 @@ void ShowModel::set_sizes(int window_width, int window_height) {
     }
 }
 
-Result<void> ShowModel::save_path(const std::filesystem::path& file) {
+Result<void> PublishModel::save_path(const std::filesystem::path& file) {
     LUCARNE_TRY(editor.save(file, file == own_path));
     own_path = file;
     return {};
 }
 
-Result<void> ShowModel::load_path(const std::filesystem::path& file) {
+Result<void> PublishModel::load_path(const std::filesystem::path& file) {
     LUCARNE_TRY(editor.load(file));
     own_path = file;
     time = editor.path().start();
     return {};
 }
 
-void ShowModel::add_key(const gi::SceneCamera& camera) {
+void PublishModel::add_key(const gi::SceneCamera& camera) {
     const auto added = editor.add(camera);
     if (!added) return take(added);
     time = editor.path().keys[*editor.selected()].time;
     message = fmt::format("key frame {} of {}", *editor.selected() + 1, editor.path().keys.size());
 }
 
-void ShowModel::play() {
+void PublishModel::play() {
     playing = !playing && !editor.empty();
     if (playing && time >= editor.path().keys.back().time) time = editor.path().start();
 }
 
-void ShowModel::advance(double seconds) {
+void PublishModel::advance(double seconds) {
     if (editor.empty()) playing = false;
     if (!playing) return;
     const double end = editor.path().keys.back().time;
@@ -49,7 +49,7 @@ void ShowModel::advance(double seconds) {
     sought = true;
 }
 
-void ShowModel::go_to_key(size_t key) {
+void PublishModel::go_to_key(size_t key) {
     if (key >= editor.path().keys.size()) return;
     editor.select(key);
     time = editor.path().keys[key].time;

@@ -4,11 +4,20 @@
 
 #include "viewer/publish/editor.h"
 #include "viewer/publish/render_worker.h"
+#include "viewer/ui/command_queue.h"
 
 namespace lucarne::viewer {
 
-/// The part of the ViewModel for saved pictures and flythroughs.
-struct ShowModel {
+// Commands of the actions and panels, with the sizes and files that the model names.
+struct SavePath {};
+struct LoadPath {};
+struct RenderPicture {};
+struct RenderFrames {};
+struct RenderVideo {};
+struct CancelRendering {};
+
+/// Saved pictures and flythroughs.
+struct PublishModel {
     PathEditor editor;
     double time = 0;  ///< s on the path: the preview's position
     bool playing = false;
@@ -27,8 +36,7 @@ struct ShowModel {
     std::string frames_folder = "frames";
     std::string video_file = "flythrough.mp4";
 
-    // Requests from actions and panels, which the session carries out.
-    enum class Wish { none, save_path, load_path, picture, frames, video, cancel } wish = Wish::none;
+    CommandQueue<SavePath, LoadPath, RenderPicture, RenderFrames, RenderVideo, CancelRendering> commands;
     RenderState rendering;
     std::string message;          ///< message to be shown once
     std::optional<double> typed;  ///< number typed in the field that has the keyboard

@@ -4,13 +4,13 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "viewer/publish/publishing.h"
 #include "viewer/publish/render_progress.h"
-#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 
-void draw_picture_panel(ViewModel& model) {
-    ShowModel& show = model.show;
+void draw_picture_panel(const Publishing& model) {
+    PublishModel& show = model.publish;
     size_fields("size", show.width, show.height);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (ImGui::Button("the window's size")) {
@@ -22,7 +22,7 @@ void draw_picture_panel(ViewModel& model) {
     ImGui::Checkbox("transparent where no point is", &show.finish.transparent);
     ImGui::Checkbox("legend, axes and scale bar", &show.finish.overlays);
     ImGui::InputText("file", &show.picture_file);
-    if (render_progress(show) && ImGui::Button("Save")) show.wish = ShowModel::Wish::picture;
+    if (render_progress(show) && ImGui::Button("Save")) show.commands.push(RenderPicture{});
 }
 
 }  // namespace lucarne::viewer

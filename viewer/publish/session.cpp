@@ -1,5 +1,6 @@
 #include "viewer/publish/session.h"
 
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,54 +9,70 @@
 namespace lucarne::viewer {
 namespace {
 
-using Wish = ShowModel::Wish;
-
 ImageSize size_of(int width, int height) {
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
-RenderOrder order_of(const ViewModel& model, std::shared_ptr<const octree::NodeSource> source, Wish wish) {
-    const ShowModel& show = model.show;
-    RenderOrder order{std::move(source), model.scene, model.engine, model.settings,
-                      model.budgets,     model.caps,  {},           {}};
-    if (wish == Wish::picture) {
-        order.size = size_of(show.width, show.height);
-        order.what = StillOrder{model.rig.camera(), static_cast<uint32_t>(show.frames), show.finish,
-                                model.pictures / show.picture_file};
-        return order;
-    }
-    order.size = size_of(show.flight_width, show.flight_height);
-    FlightOrder flight{show.editor.path(), {}, {}};
-    if (wish == Wish::frames) flight.frames_folder = model.pictures / show.frames_folder;
-    if (wish == Wish::video) flight.video = model.pictures / show.video_file;
-    order.what = std::move(flight);
+RenderOrder order_of(const View& view, std::shared_ptr<const octree::NodeSource> source) {
+    return {std::move(source), view.scene, view.engine, view.settings, view.budgets, view.caps, {}, {}};
+}
+
+RenderOrder picture_order(const Publishing& model, std::shared_ptr<const octree::NodeSource> source) {
+    const PublishModel& publish = model.publish;
+    RenderOrder order = order_of(model.view, std::move(source));
+    order.size = size_of(publish.width, publish.height);
+    order.what = StillOrder{model.view.rig.camera(), static_cast<uint32_t>(publish.frames), publish.finish,
+                            model.view.pictures / publish.picture_file};
+    return order;
+}
+
+/// `frames_folder` or `video` is empty.
+RenderOrder flight_order(const Publishing& model, std::shared_ptr<const octree::NodeSource> source,
+                         std::filesystem::path frames_folder, std::filesystem::path video) {
+    const PublishModel& publish = model.publish;
+    RenderOrder order = order_of(model.view, std::move(source));
+    order.size = size_of(publish.flight_width, publish.flight_height);
+    order.what = FlightOrder{publish.editor.path(), std::move(frames_folder), std::move(video)};
     return order;
 }
 
 }  // namespace
 
-void ShowSession::path_files(ViewModel& model, bool save) {
-    ShowModel& show = model.show;
-    const auto file = model.pictures / show.path_file;
+void PublishSession::path_files(const Publishing& model, bool save) {
+    PublishModel& show = model.publish;
+    const auto file = model.view.pictures / show.path_file;
     const auto done = save ? show.save_path(file) : show.load_path(file);
     show.message =
         done ? fmt::format("{} {}", save ? "saved" : "loaded", file.string()) : done.error().line();
 }
 
-void ShowSession::fulfil(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source) {
-    ShowModel& show = model.show;
-    const Wish wish = std::exchange(show.wish, Wish::none);
-    if (wish == Wish::none) return;
-    if (wish == Wish::cancel) return worker_.cancel();
-    if (wish == Wish::save_path || wish == Wish::load_path) return path_files(model, wish == Wish::save_path);
-    if (!source)
-        show.message = "there is nothing to render";
-    else
-        show.take(render(order_of(model, source, wish)));
+void PublishSession::carry_out(const Publishing& model,
+                               const std::shared_ptr<const octree::NodeSource>& source) {
+    PublishModel& publish = model.publish;
+    const auto& folder = model.view.pictures;
+    const auto start = [&](const auto& order) {
+        if (!source)
+            publish.message = "there is nothing to render";
+        else
+            publish.take(render(order()));
+    };
+    const Overloaded run{
+        [&](SavePath) { path_files(model, true); },
+        [&](LoadPath) { path_files(model, false); },
+        [&](RenderPicture) { start([&] { return picture_order(model, source); }); },
+        [&](RenderFrames) {
+            start([&] { return flight_order(model, source, folder / publish.frames_folder, {}); });
+        },
+        [&](RenderVideo) {
+            start([&] { return flight_order(model, source, {}, folder / publish.video_file); });
+        },
+        [&](CancelRendering) { worker_.cancel(); },
+    };
+    for (const auto& command : publish.commands.take()) std::visit(run, command);
 }
 
 /// Renders with a new context each time, so that a failure of the last context has no effect.
-Result<void> ShowSession::render(RenderOrder order) {
+Result<void> PublishSession::render(RenderOrder order) {
     if (worker_.state().running)
         return failed(worker_.state().file, "is still being rendered", "wait, or cancel it");
     LUCARNE_ASSIGN(WorkerDevice device, device_());
@@ -63,18 +80,19 @@ Result<void> ShowSession::render(RenderOrder order) {
     return {};
 }
 
-bool ShowSession::follow(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source) {
-    ShowModel& show = model.show;
+bool PublishSession::follow(const Publishing& model,
+                            const std::shared_ptr<const octree::NodeSource>& source) {
+    PublishModel& show = model.publish;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     show.set_sizes(static_cast<int>(window.x), static_cast<int>(window.y));
     if (auto outcome = worker_.take_outcome())  // before the next order discards it
         show.message = *outcome ? std::move(**outcome) : outcome->error().line();
-    fulfil(model, source);
+    carry_out(model, source);
     show.rendering = worker_.state();
-    if (!show.message.empty()) model.message = std::exchange(show.message, {});
+    if (!show.message.empty()) model.view.message = std::exchange(show.message, {});
     show.advance(ImGui::GetIO().DeltaTime);
     if (!std::exchange(show.sought, false) || show.editor.empty()) return false;
-    model.go_to(show.editor.path().at(show.time));
+    model.view.go_to(show.editor.path().at(show.time));
     return true;
 }
 

@@ -1,23 +1,23 @@
 #pragma once
 
+#include "viewer/publish/publishing.h"
 #include "viewer/publish/render_worker.h"
-#include "viewer/window/view_model.h"
 
 namespace lucarne::viewer {
 
 /// Pictures and flights in the window: carries out requests and moves the camera with the preview.
-class ShowSession {
+class PublishSession {
  public:
     /// `device` makes a new device for each order. `changed` is called by any thread.
-    ShowSession(std::function<Result<WorkerDevice>()> device, std::function<void()> changed)
+    PublishSession(std::function<Result<WorkerDevice>()> device, std::function<void()> changed)
         : device_(std::move(device)), worker_(std::move(changed)) {}
 
     /// Call between the window's begin_frame and draw. Returns true if the preview has moved the camera.
-    bool follow(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source);
+    bool follow(const Publishing& model, const std::shared_ptr<const octree::NodeSource>& source);
 
  private:
-    void fulfil(ViewModel& model, const std::shared_ptr<const octree::NodeSource>& source);
-    void path_files(ViewModel& model, bool save);
+    void carry_out(const Publishing& model, const std::shared_ptr<const octree::NodeSource>& source);
+    void path_files(const Publishing& model, bool save);
     Result<void> render(RenderOrder order);
 
     std::function<Result<WorkerDevice>()> device_;

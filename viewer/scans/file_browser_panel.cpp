@@ -2,12 +2,12 @@
 
 #include "io/core/options.h"
 #include "viewer/scans/file_browser.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/scans/scan_commands.h"
 
 namespace lucarne::viewer {
 namespace {
 
-void entries(FileBrowser& browser, std::vector<std::string>& to_open) {
+void entries(FileBrowser& browser, ScanCommands& commands) {
     const FolderListing listing = browser.listing();
     if (!listing.problem.empty()) ImGui::TextWrapped("%s", listing.problem.c_str());
     if (listing.folder != browser.folder()) return ImGui::TextDisabled("...");
@@ -26,7 +26,7 @@ void entries(FileBrowser& browser, std::vector<std::string>& to_open) {
             const bool twice = picked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
             if (twice && entry.folder) return browser.go(browser.folder() / entry.name);
             if (twice) {
-                to_open = {(browser.folder() / entry.name).string()};
+                commands.push(OpenFiles{{(browser.folder() / entry.name).string()}});
                 return browser.close();
             }
             if (picked) browser.toggle(entry.name);
@@ -35,7 +35,7 @@ void entries(FileBrowser& browser, std::vector<std::string>& to_open) {
 
 }  // namespace
 
-void draw_file_browser(ViewModel& model, FileBrowser& browser) {
+void draw_file_browser(FileBrowser& browser, ScanCommands& commands) {
     if (!browser.is_open()) return;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float font = ImGui::GetFontSize();
@@ -48,7 +48,7 @@ void draw_file_browser(ViewModel& model, FileBrowser& browser) {
         ImGui::SameLine();
         ImGui::TextUnformatted(browser.folder().c_str());
         if (ImGui::BeginChild("entries", ImVec2(0, -2 * ImGui::GetFrameHeight()), true))
-            entries(browser, model.shell.to_open);
+            entries(browser, commands);
         ImGui::EndChild();
         bool all = browser.shows_all();
         if (ImGui::Checkbox("all files", &all)) browser.show_all(all);
@@ -56,7 +56,7 @@ void draw_file_browser(ViewModel& model, FileBrowser& browser) {
         const std::vector<std::string> chosen = browser.chosen();
         const bool here = chosen.empty();
         if (ImGui::Button(here ? "Open the whole folder" : "Open")) {
-            model.shell.to_open = here ? std::vector{browser.folder().string()} : chosen;
+            commands.push(OpenFiles{here ? std::vector{browser.folder().string()} : chosen});
             open = false;
         }
         ImGui::SameLine();

@@ -2,8 +2,8 @@
 #include <imgui.h>
 
 #include "io/core/options.h"
+#include "viewer/scans/scan_commands.h"
 #include "viewer/scans/scan_set.h"
-#include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -91,11 +91,9 @@ void draw_row(ScanSet& scans, const ScanRow& row) {
 
 }  // namespace
 
-void draw_scans_panel(ViewModel& model) {
-    ScanSet* scans = model.shell.scans;
-    if (!scans) return;
-    const std::vector<ScanRow> rows = scans->rows();  // a copy: a row may be removed while the rows are drawn
-    for (const ScanRow& row : rows) draw_row(*scans, row);
+void draw_scans_panel(ScanSet& scans) {
+    const std::vector<ScanRow> rows = scans.rows();  // a copy: a row may be removed while the rows are drawn
+    for (const ScanRow& row : rows) draw_row(scans, row);
 }
 
 }  // namespace lucarne::viewer

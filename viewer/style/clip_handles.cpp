@@ -1,81 +1,91 @@
+#include "viewer/style/clip_handles.h"
+
 #include <algorithm>
-#include <optional>
+#include <cmath>
+#include <numbers>
 
-#include <imgui.h>
-
-#include "viewer/picking/pick.h"
-#include "viewer/window/panels/on_screen.h"
-#include "viewer/window/panels/panels.h"
+#include <glm/geometric.hpp>
 
 namespace lucarne::viewer {
 namespace {
 
-constexpr float kHandle = 7;  // radius, to be scaled()
-constexpr ImU32 kEdge = IM_COL32(255, 210, 80, 200), kFace = IM_COL32(255, 240, 200, 255),
-                kHeld = IM_COL32(255, 120, 40, 255);
+using glm::dvec3;
 
-void draw_edges(const Picture& picture, const gi::ClipBox& box) {
-    const auto corners = box_corners(box);
-    for (size_t i = 0; i < 8; ++i)
-        for (size_t axis = 0; axis < 3; ++axis) {
-            if (i >> axis & 1) continue;
-            const auto from = on_screen(picture, corners[i]),
-                       to = on_screen(picture, corners[i | 1u << axis]);
-            if (from && to) ImGui::GetBackgroundDrawList()->AddLine(*from, *to, kEdge, scaled(1.5f));
-        }
-}
-
-void drag(ViewModel& model, const ClipHandle& handle) {
-    if (!handle.plane && handle.face == ClipHandle::kCorner) {
-        gi::ClipBox& box = model.scene.look.clip.boxes[handle.index];
-        const CameraRig::Ray ray = cursor_ray(model.rig);
-        const auto turned = turned_to(box, ray.from, ray.along);
-        if (!turned || *turned == box.rotation) return;
-        box.rotation = *turned;
-        return model.scene_changed();
-    }
-    const HandlePlace place = handle_place(model.scene.look.clip, handle);
-    const CameraRig::Ray ray = cursor_ray(model.rig);
-    const auto by = along_axis(place.position, place.axis, ray.from, ray.along);
-    if (!by || *by == 0) return;
-    move_handle(model.scene.look.clip, handle, *by);
-    model.scene_changed();
+/// Returns a unit vector.
+dvec3 box_axis(const gi::ClipBox& box, int axis) {
+    const double c = std::cos(box.rotation), s = std::sin(box.rotation);
+    return axis == 0 ? dvec3(c, s, 0) : axis == 1 ? dvec3(-s, c, 0) : dvec3(0, 0, 1);
 }
 
 }  // namespace
 
-bool take_clip_handles(ViewModel& model) {
-    gi::Clip& clip = model.scene.look.clip;
-    LookTools& tools = model.look_tools;
-    if (!tools.show_handles || !clip.active() || !model.picture) {
-        tools.held.reset();
-        return false;
+std::vector<ClipHandle> clip_handles(const gi::Clip& clip) {
+    std::vector<ClipHandle> handles;
+    for (size_t i = 0; i < clip.boxes.size(); ++i)
+        for (int face = 0; face <= ClipHandle::kCorner; ++face) handles.push_back({false, i, face});
+    for (size_t i = 0; i < clip.planes.size(); ++i) handles.push_back({true, i, 0});
+    return handles;
+}
+
+HandlePlace handle_place(const gi::Clip& clip, const ClipHandle& handle) {
+    if (handle.plane) {
+        const gi::ClipPlane& plane = clip.planes[handle.index];
+        return {plane.position, glm::normalize(plane.normal)};
     }
-    for (const gi::ClipBox& box : clip.boxes) draw_edges(*model.picture, box);
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const bool free = !ImGui::GetIO().WantCaptureMouse;
-    const float radius = scaled(kHandle);
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) tools.held.reset();
-    std::optional<ClipHandle> under;
-    const auto handles = clip_handles(clip);
-    if (tools.held && std::find(handles.begin(), handles.end(), *tools.held) == handles.end())
-        tools.held.reset();
-    for (const ClipHandle& handle : handles) {
-        const auto at = on_screen(*model.picture, handle_place(clip, handle).position);
-        if (!at) continue;
-        const float x = at->x - mouse.x, y = at->y - mouse.y;
-        const bool hovered = free && x * x + y * y < 4 * radius * radius;
-        if (hovered) under = handle;
-        const bool lit = tools.held ? *tools.held == handle : hovered;
-        ImDrawList& list = *ImGui::GetBackgroundDrawList();
-        if (!handle.plane && handle.face == ClipHandle::kCorner)  // a ring marks a handle that turns the box
-            list.AddCircle(*at, radius, lit ? kHeld : kFace, 0, scaled(3));
-        else
-            list.AddCircleFilled(*at, radius, lit ? kHeld : kFace);
+    const gi::ClipBox& box = clip.boxes[handle.index];
+    const dvec3 half = (box.max - box.min) / 2.0;
+    if (handle.face == ClipHandle::kCorner) return {box_corners(box)[7], {0, 0, 1}};
+    const int axis = handle.face / 2;
+    const dvec3 outward = box_axis(box, axis) * (handle.face % 2 ? 1.0 : -1.0);
+    return {(box.min + box.max) / 2.0 + outward * half[axis], outward};
+}
+
+void move_handle(gi::Clip& clip, const ClipHandle& handle, double by) {
+    const dvec3 outward = handle_place(clip, handle).axis;
+    if (handle.plane) {
+        clip.planes[handle.index].position += outward * by;
+        return;
     }
-    if (under && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) tools.held = under;
-    if (tools.held) drag(model, *tools.held);
-    return tools.held.has_value();
+    gi::ClipBox& box = clip.boxes[handle.index];
+    const int axis = handle.face / 2;
+    dvec3 centre = (box.min + box.max) / 2.0, half = (box.max - box.min) / 2.0;
+    const double least = half[axis] / 1000;
+    const double moved = std::max(half[axis] + by / 2, least);
+    centre += outward * (moved - half[axis]);
+    half[axis] = moved;
+    box.min = centre - half;
+    box.max = centre + half;
+}
+
+std::array<dvec3, 8> box_corners(const gi::ClipBox& box) {
+    const dvec3 centre = (box.min + box.max) / 2.0, half = (box.max - box.min) / 2.0;
+    std::array<dvec3, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        dvec3 corner = centre;
+        for (int axis = 0; axis < 3; ++axis)
+            corner += box_axis(box, axis) * half[axis] * (i >> axis & 1 ? 1.0 : -1.0);
+        corners[static_cast<size_t>(i)] = corner;
+    }
+    return corners;
+}
+
+std::optional<double> turned_to(const gi::ClipBox& box, const dvec3& eye, const dvec3& ray) {
+    const dvec3 centre = (box.min + box.max) / 2.0, corner = box_corners(box)[7] - centre;
+    if (!(std::abs(ray.z) > 1e-3 * glm::length(ray)))
+        return std::nullopt;  // the ray is parallel to the plane
+    const double along = (centre.z + corner.z - eye.z) / ray.z;
+    const dvec3 place = eye + ray * along - centre;
+    if (!(along > 0) || !(place.x * place.x + place.y * place.y > 0)) return std::nullopt;
+    const double turn = std::atan2(place.y, place.x) - std::atan2(corner.y, corner.x);
+    return std::remainder(box.rotation + turn, 2 * std::numbers::pi);
+}
+
+std::optional<double> along_axis(const dvec3& origin, const dvec3& axis, const dvec3& eye, const dvec3& ray) {
+    // The axis's end of the shortest segment between two lines.
+    const dvec3 direction = glm::normalize(ray), between = origin - eye;
+    const double cosine = glm::dot(axis, direction), sine2 = 1 - cosine * cosine;
+    if (!(sine2 > 1e-4)) return std::nullopt;
+    return (cosine * glm::dot(direction, between) - glm::dot(axis, between)) / sine2;
 }
 
 }  // namespace lucarne::viewer

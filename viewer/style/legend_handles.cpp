@@ -6,7 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/style/overlay_view.h"
-#include "viewer/window/panels/on_screen.h"
+#include "viewer/ui/on_screen.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -34,9 +34,10 @@ void draw_handle(const LegendBar& bar, float y, double value, bool lit) {
 
 }  // namespace
 
-bool LegendHandles::take(ViewModel& model) {
-    const auto bar = model.picture ? legend_bar(model.scene.look, model.picture->values, overlay_view(model))
-                                   : std::nullopt;
+bool LegendHandles::take(const Styling& model) {
+    const auto bar = model.view.picture
+                         ? legend_bar(model.view.scene.look, model.view.picture->values, overlay_view(model))
+                         : std::nullopt;
     if (!bar || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) held_.reset();
     if (!bar) return false;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -44,15 +45,15 @@ bool LegendHandles::take(ViewModel& model) {
         return mouse.x >= from.x && mouse.x < to.x && mouse.y >= from.y && mouse.y < to.y;
     };
     if (!held_ && (ImGui::GetIO().WantCaptureMouse || !over(bar->paper_from, bar->paper_to))) return false;
-    gi::Look& look = model.scene.look;
-    const gi::ValueRange range = look.range.value_or(*model.picture->values.range);
+    gi::Look& look = model.view.scene.look;
+    const gi::ValueRange range = look.range.value_or(*model.view.picture->values.range);
     const double reach = scaled(kReach);
     for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {
         const double y = end == RangeEnd::high ? bar->from.y : bar->to.y;
         const bool hovered = !held_ && over({bar->from.x - reach, y - reach}, {bar->to.x + reach, y + reach});
         if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
             look.range.reset();
-            model.scene_changed();
+            model.view.scene_changed();
             return true;
         }
         if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
@@ -68,7 +69,7 @@ bool LegendHandles::take(ViewModel& model) {
     const gi::ValueRange dragged = dragged_range(held_->range, held_->end, up);
     if (up != 0 && dragged != range) {
         look.range = dragged;
-        model.scene_changed();
+        model.view.scene_changed();
     }
     return true;
 }

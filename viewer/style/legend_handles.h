@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "viewer/overlay/overlay.h"
-#include "viewer/window/view_model.h"
+#include "viewer/style/styling.h"
 
 namespace lucarne::viewer {
 
@@ -13,7 +13,7 @@ class LegendHandles {
  public:
     /// Draws the handles and applies the mouse. Returns true while a handle is dragged. A double-click on one
     /// makes the range automatic again.
-    bool take(ViewModel& model);
+    bool take(const Styling& model);
 
  private:
     /// The handle that is dragged, and the state when the drag began.

@@ -8,35 +8,35 @@
 
 namespace lucarne::viewer {
 
-bool is_lit(const ViewModel& model) {
-    return !gi::engine_is(model.engine, &gi::EngineInfo::unlit);
+bool is_lit(const Styling& model) {
+    return !gi::engine_is(model.view.engine, &gi::EngineInfo::unlit);
 }
 
-void switch_light(ViewModel& model) {
-    std::string& lit = model.look_tools.lit_engine;
+void switch_light(const Styling& model) {
+    std::string& lit = model.look.lit_engine;
     if (is_lit(model)) {
-        lit = model.engine;
-        model.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
+        lit = model.view.engine;
+        model.view.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
     } else {
-        model.engine = lit.empty() ? gi::default_engine().name : lit;
+        model.view.engine = lit.empty() ? gi::default_engine().name : lit;
     }
 }
 
-void add_clip_box(ViewModel& model) {
-    gi::Clip& clip = model.scene.look.clip;
+void add_clip_box(const Styling& model) {
+    gi::Clip& clip = model.view.scene.look.clip;
     if (clip.boxes.size() + clip.planes.size() >= gi::kMostClips) return;
-    const glm::dvec3 half(model.scene_size / 8);
-    clip.boxes.push_back({model.rig.pivot() - half, model.rig.pivot() + half});
-    model.look_tools.show_handles = true;
-    model.scene_changed();
+    const glm::dvec3 half(model.view.scene_size / 8);
+    clip.boxes.push_back({model.view.rig.pivot() - half, model.view.rig.pivot() + half});
+    model.look.show_handles = true;
+    model.view.scene_changed();
 }
 
-void add_clip_plane(ViewModel& model) {
-    gi::Clip& clip = model.scene.look.clip;
+void add_clip_plane(const Styling& model) {
+    gi::Clip& clip = model.view.scene.look.clip;
     if (clip.boxes.size() + clip.planes.size() >= gi::kMostClips) return;
-    clip.planes.push_back({model.rig.pivot(), model.rig.forward()});
-    model.look_tools.show_handles = true;
-    model.scene_changed();
+    clip.planes.push_back({model.view.rig.pivot(), model.view.rig.forward()});
+    model.look.show_handles = true;
+    model.view.scene_changed();
 }
 
 std::vector<std::string> attribute_names(const octree::NodeSource& source) {

@@ -6,7 +6,7 @@
 #include <imgui.h>
 
 #include "viewer/style/look_edits.h"
-#include "viewer/window/panels/panels.h"
+#include "viewer/style/styling.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -35,11 +35,12 @@ bool slider(const char* label, double& value, float least, float most, const cha
     return true;
 }
 
-bool attribute_choice(const ViewModel& model, gi::Look& look) {
-    if (!model.picture || !model.picture->source || !ImGui::BeginCombo("attribute", look.attribute.c_str()))
+bool attribute_choice(const Styling& model, gi::Look& look) {
+    if (!model.view.picture || !model.view.picture->source ||
+        !ImGui::BeginCombo("attribute", look.attribute.c_str()))
         return false;
     bool changed = false;
-    for (const std::string& name : attribute_names(*model.picture->source)) {
+    for (const std::string& name : attribute_names(*model.view.picture->source)) {
         if (!ImGui::Selectable(name.c_str(), name == look.attribute)) continue;
         look.attribute = name;
         look.range.reset();
@@ -49,8 +50,8 @@ bool attribute_choice(const ViewModel& model, gi::Look& look) {
     return changed;
 }
 
-bool edit_range(const ViewModel& model, gi::Look& look) {
-    const auto& measured = model.picture ? model.picture->values.range : std::nullopt;
+bool edit_range(const Styling& model, gi::Look& look) {
+    const auto& measured = model.view.picture ? model.view.picture->values.range : std::nullopt;
     bool automatic = !look.range;
     bool changed = ImGui::Checkbox("range where most values lie", &automatic);
     if (changed) look.range = automatic ? std::nullopt : std::optional(measured.value_or(gi::ValueRange{}));
@@ -68,7 +69,7 @@ bool edit_range(const ViewModel& model, gi::Look& look) {
     return changed || dragged;
 }
 
-bool edit_colours(const ViewModel& model, gi::Look& look) {
+bool edit_colours(const Styling& model, gi::Look& look) {
     bool changed = choice("colour", look.colour, gi::colour_names());
     if (changed) look.range.reset();
     if (look.colour == gi::ColourBy::attribute) changed |= attribute_choice(model, look);
@@ -88,7 +89,7 @@ bool edit_points(gi::Look& look) {
            changed;
 }
 
-bool edit_shading(ViewModel& model, gi::Look& look) {
+bool edit_shading(const Styling& model, gi::Look& look) {
     bool lit = is_lit(model);
     if (ImGui::Checkbox("light", &lit)) switch_light(model);
     if (lit) return false;
@@ -115,11 +116,12 @@ bool edit_backdrop(gi::Look& look) {
     return changed;
 }
 
-bool edit_classes(const ViewModel& model, gi::Look& look) {
-    if (!model.picture || model.picture->values.classes.none() || !ImGui::TreeNode("Classes")) return false;
+bool edit_classes(const Styling& model, gi::Look& look) {
+    if (!model.view.picture || model.view.picture->values.classes.none() || !ImGui::TreeNode("Classes"))
+        return false;
     bool changed = false;
     for (size_t number = 0; number < 256; ++number) {
-        if (!model.picture->values.classes[number] && !look.hidden_classes[number]) continue;
+        if (!model.view.picture->values.classes[number] && !look.hidden_classes[number]) continue;
         const auto small = static_cast<uint8_t>(number);
         const glm::vec3 c = gi::class_colour(small);
         bool shown = !look.hidden_classes[number];
@@ -192,14 +194,14 @@ bool edit_shapes(const char* name, Shapes& shapes, const auto& edit) {
     return changed;
 }
 
-bool edit_clip(ViewModel& model, gi::Clip& clip) {
+bool edit_clip(const Styling& model, gi::Clip& clip) {
     if (!ImGui::TreeNode("Clip")) return false;
     if (ImGui::Button("Add box")) add_clip_box(model);
     ImGui::SameLine();
     if (ImGui::Button("Add plane")) add_clip_plane(model);
     ImGui::SameLine();
-    ImGui::Checkbox("handles", &model.look_tools.show_handles);
-    const double speed = model.scene_size / 1000;
+    ImGui::Checkbox("handles", &model.look.show_handles);
+    const double speed = model.view.scene_size / 1000;
     bool changed =
         edit_shapes("box", clip.boxes, [&](auto& box, bool& gone) { return edit_box(box, speed, gone); });
     changed |= edit_shapes("plane", clip.planes,
@@ -211,8 +213,8 @@ bool edit_clip(ViewModel& model, gi::Clip& clip) {
 
 }  // namespace
 
-void draw_look_panel(ViewModel& model) {
-    gi::Look& look = model.scene.look;
+void draw_look_panel(const Styling& model) {
+    gi::Look& look = model.view.scene.look;
     bool changed = edit_colours(model, look);
     changed |= edit_points(look);
     changed |= edit_shading(model, look);
@@ -225,7 +227,7 @@ void draw_look_panel(ViewModel& model) {
     ImGui::Checkbox("axes", &look.axes);
     ImGui::SameLine();
     ImGui::Checkbox("scale bar", &look.scale_bar);
-    if (changed) model.scene_changed();
+    if (changed) model.view.scene_changed();
 }
 
 }  // namespace lucarne::viewer

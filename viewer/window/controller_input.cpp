@@ -13,17 +13,18 @@ bool ControllerInput::take(ViewModel& model, double seconds) {
     ControllerModel& shown = model.controller;
     if (const auto status = controller_->status(); !(status == shown.status)) {
         shown.status = status;
-        if (status.kind == io::ControllerStatus::Kind::connected) model.message = status.name + " connected";
+        if (status.kind == io::ControllerStatus::Kind::connected)
+            model.view.message = status.name + " connected";
         if (status.kind == io::ControllerStatus::Kind::refused)
-            model.message = status.name + ": " + status.message;
+            model.view.message = status.name + ": " + status.message;
     }
     const uint32_t pressed = controller_->take_pressed();
-    if (pressed & 1) model.rig = CameraRig(model.home);
+    if (pressed & 1) model.view.go_to(model.view.home);
     if (pressed & 2) shown.holds_object = !shown.holds_object;
     shown.cap = controller_->state();
-    const io::SixDofState cap = model.shell.settings.controller.apply(shown.cap);
+    const io::SixDofState cap = model.settings.controller.apply(shown.cap);
     const bool moved = drive(cap, shown.holds_object ? SixDofHold::object : SixDofHold::camera,
-                             model.navigation.speed(), seconds, model.rig);
+                             model.view.navigation.speed(), seconds, model.view.rig);
     return moved || (pressed & 1);
 }
 

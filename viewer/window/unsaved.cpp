@@ -6,17 +6,16 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/files/free_name.h"
-#include "viewer/light/edits.h"
 
 namespace lucarne::viewer {
 namespace {
 
 /// Returns `file`, or a free name if a file other than `own` has that name. With SaveTo::free_names returns a
-/// name in ViewModel::pictures, because the folder of an opened file may belong to somebody else.
+/// name in View::pictures, because the folder of an opened file may belong to somebody else.
 std::filesystem::path place(const ViewModel& model, const std::filesystem::path& file,
                             const std::filesystem::path& own, SaveTo to) {
     if (to == SaveTo::own_files && file == own) return file;
-    const auto wanted = to == SaveTo::own_files ? file : model.pictures / file.filename();
+    const auto wanted = to == SaveTo::own_files ? file : model.view.pictures / file.filename();
     std::error_code ignored;
     if (!std::filesystem::exists(wanted, ignored)) return wanted;
     const std::string extension = wanted.extension().string();
@@ -32,22 +31,22 @@ std::string measurements_text(const MeasureModel& measure) {
 std::vector<Unsaved> unsaved(const ViewModel& model, SaveTo to) {
     std::vector<Unsaved> all;
     if (const MeasureModel& measure = model.measure; measure.unsaved()) {
-        const auto file = place(model, model.pictures / measure.file, measure.own_file, to);
+        const auto file = place(model, model.view.pictures / measure.file, measure.own_file, to);
         all.push_back({measurements_text(measure), file, [file](ViewModel& of) {
                            of.measure.finish();
                            return of.measure.save(file);
                        }});
     }
-    if (const ShowModel& show = model.show; show.editor.unsaved()) {
-        const auto file = place(model, model.pictures / show.path_file, show.own_path, to);
+    if (const PublishModel& show = model.publish; show.editor.unsaved()) {
+        const auto file = place(model, model.view.pictures / show.path_file, show.own_path, to);
         const size_t keys = show.editor.path().keys.size();
         all.push_back({"a flythrough of " + counted(keys, "key frames"), file,
-                       [file](ViewModel& of) { return of.show.save_path(file); }});
+                       [file](ViewModel& of) { return of.publish.save_path(file); }});
     }
-    if (const LightTools& tools = model.light_tools; tools.saved.differs(model.scene, model.scene_version)) {
-        const auto file = place(model, scene_place(model), tools.scene_file, to);
+    if (const SceneFile& scene = model.scene_file; scene.differs(model.view)) {
+        const auto file = place(model, scene.place(model.view), scene.path(), to);
         all.push_back({"the scene: lights, look or clips were changed", file,
-                       [file](ViewModel& of) { return save_scene_as(of, file); }});
+                       [file](ViewModel& of) { return of.scene_file.save_as(of.view, file); }});
     }
     return all;
 }

@@ -20,7 +20,7 @@ struct Unsaved {
 enum class SaveTo {
     own_files,  ///< the files it was saved to or loaded from, or that the panels name; a free name if another
                 ///< file has that name
-    free_names  ///< free names in the folder ViewModel::pictures
+    free_names  ///< free names in the folder View::pictures
 };
 
 /// Returns all unsaved work: measurements, key frames of the flythrough, the scene. A changed view does not

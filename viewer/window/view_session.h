@@ -6,16 +6,21 @@
 #include <optional>
 
 #include "io/core/interrupt.h"
+#include "viewer/bookmarks/session.h"
+#include "viewer/camera/floor_finder.h"
 #include "viewer/frame/cost_model.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/quality.h"
-#include "viewer/light/sky_loader.h"
+#include "viewer/light/session.h"
 #include "viewer/measure/session.h"
 #include "viewer/publish/session.h"
 #include "viewer/scans/scan_set.h"
 #include "viewer/style/legend_handles.h"
+#include "viewer/window/actions/actions.h"
+#include "viewer/window/closing.h"
 #include "viewer/window/controller_input.h"
-#include "viewer/window/desk.h"
+#include "viewer/window/file_opener.h"
+#include "viewer/window/kept_settings.h"
 #include "viewer/window/view_model.h"
 #include "viewer/window/window.h"
 
@@ -39,13 +44,19 @@ class ViewSession {
         : window_(window),
           worker_(worker),
           model_(model),
+          actions_(bound_actions(model)),
           shot_(std::move(shot)),
           scans_(scans),
           interrupt_(interrupt),
-          desk_(window, model, scans),
-          quality_(model.frame_time),
-          budget_(model.frame_time),
-          show_([&window] { return window.renew_worker_device(Window::Hidden::rendering); }, &Window::wake) {}
+          settings_(window, model),
+          files_(window, model, settings_),
+          closing_(window, model),
+          bookmarks_([&window](const io::Image8& image) { return window.make_texture(image); },
+                     [&window](unsigned texture) { window.free_texture(texture); }),
+          quality_(model.view.frame_time),
+          budget_(model.view.frame_time),
+          publish_([&window] { return window.renew_worker_device(Window::Hidden::rendering); },
+                   &Window::wake) {}
 
     /// Runs until the window is closed. If it ends without asking the user (SIGTERM, an error), saves unsaved
     /// work in files with free names. Errors: the scripted shot cannot be made or written, or does not show
@@ -60,25 +71,31 @@ class ViewSession {
     Result<void> recover();
     void follow_device();
     void follow_scans();
-    void follow_sky();
     void take_extent();
     void take_input();
-    void take_light_gesture();
     bool take_navigation();
+    std::optional<double> floor();
+    void follow_bookmarks();
     void draw_panels();
     void send_request();
     std::string unfinished() const;
-    Result<void> save();
+    Result<void> carry_out();
+    void save_picture();
     Result<void> save_shot();
     double seconds_at_rest() const;
 
     Window& window_;
     PictureWorker& worker_;
     ViewModel& model_;
+    const std::vector<BoundAction> actions_;
     std::optional<ScriptedShot> shot_;
     ScanSet& scans_;
     InterruptRequest& interrupt_;
-    Desk desk_;
+    KeptSettings settings_;
+    FileOpener files_;
+    Closing closing_;
+    BookmarkSession bookmarks_;
+    FloorFinder floor_;
     bool placed_ = false;  ///< the starting view has been applied
     bool first_told_ = false;
     ControllerInput controller_{&Window::wake};
@@ -87,9 +104,9 @@ class ViewSession {
     MovingQuality quality_;
     FrameBudget budget_;
     LegendHandles legend_;
-    SkyLoader skies_{&Window::wake};
+    LightSession light_{&Window::wake};
     MeasureSession measure_{&Window::wake};
-    ShowSession show_;
+    PublishSession publish_;
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the scene version before any change by the user

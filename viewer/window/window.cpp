@@ -1,5 +1,7 @@
 #include "viewer/window/window.h"
 
+#include "viewer/ui/on_screen.h"
+
 // Include epoxy before GLFW, which otherwise includes the system's GL header.
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE

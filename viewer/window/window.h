@@ -13,14 +13,12 @@
 #include "io/core/options.h"
 #include "io/image/image.h"
 #include "viewer/frame/picture_worker.h"
-#include "viewer/window/key_chord.h"
+#include "viewer/ui/key_chord.h"
 #include "viewer/window/pointer_input.h"
 
 struct GLFWwindow;
 
 namespace lucarne::viewer {
-
-inline constexpr float kTextPixels = 13;  ///< font height on a screen of scale 1, as it was designed
 
 /// The program's window with Dear ImGui, and hidden contexts of the same driver for drawing threads. Use from
 /// the main thread, except wake().

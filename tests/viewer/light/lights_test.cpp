@@ -7,6 +7,7 @@
 #include "viewer/light/edits.h"
 #include "viewer/light/handles.h"
 #include "viewer/overlay/figure_scale.h"
+#include "viewer/ui/scene_file.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -22,77 +23,85 @@ gi::SceneLight light_of(gi::LightKind kind) {
     return light;
 }
 
+/// A view, its lights and its scene file.
+struct LitView {
+    View view{10};
+    LightModel lights;
+    SceneFile scene_file;
+    Lighting lighting() { return {view, lights}; }
+};
+
 TEST(LightEdits, AddCopyDeleteAndUndoLeadBackStepByStep) {
-    ViewModel model(10);
-    add_light(model, gi::LightKind::spot);
-    ASSERT_EQ(model.scene.lights.size(), 1u);
-    EXPECT_GT(model.scene.lights[0].strength.x, 0);
-    const auto one = model.scene.lights;
-    duplicate_light(model);
-    ASSERT_EQ(model.scene.lights.size(), 2u);
-    EXPECT_EQ(model.light, 1u);
-    EXPECT_NE(model.scene.lights[1].position, model.scene.lights[0].position);
-    remove_light(model);
-    EXPECT_EQ(model.scene.lights, one);
-    undo_lights(model);
-    EXPECT_EQ(model.scene.lights.size(), 2u);
-    undo_lights(model);
-    EXPECT_EQ(model.scene.lights, one);
-    undo_lights(model);
-    EXPECT_TRUE(model.scene.lights.empty());
-    undo_lights(model);
-    remove_light(model);
-    switch_selected_light(model);
-    EXPECT_TRUE(model.scene.lights.empty());
+    LitView model;
+    add_light(model.lighting(), gi::LightKind::spot);
+    ASSERT_EQ(model.view.scene.lights.size(), 1u);
+    EXPECT_GT(model.view.scene.lights[0].strength.x, 0);
+    const auto one = model.view.scene.lights;
+    duplicate_light(model.lighting());
+    ASSERT_EQ(model.view.scene.lights.size(), 2u);
+    EXPECT_EQ(model.lights.selected, 1u);
+    EXPECT_NE(model.view.scene.lights[1].position, model.view.scene.lights[0].position);
+    remove_light(model.lighting());
+    EXPECT_EQ(model.view.scene.lights, one);
+    undo_lights(model.lighting());
+    EXPECT_EQ(model.view.scene.lights.size(), 2u);
+    undo_lights(model.lighting());
+    EXPECT_EQ(model.view.scene.lights, one);
+    undo_lights(model.lighting());
+    EXPECT_TRUE(model.view.scene.lights.empty());
+    undo_lights(model.lighting());
+    remove_light(model.lighting());
+    switch_selected_light(model.lighting());
+    EXPECT_TRUE(model.view.scene.lights.empty());
 }
 
 TEST(LightEdits, ASceneHoldsNoMoreLightsThanItsFileMay) {
-    ViewModel model(10);
-    for (int i = 0; i < 80; ++i) add_light(model, gi::LightKind::point);
-    for (int i = 0; i < 3; ++i) duplicate_light(model);
-    EXPECT_EQ(model.scene.lights.size(), 64u);
-    EXPECT_TRUE(gi::parse_scene(gi::write_scene(scene_to_save(model)), "full.json"));
+    LitView model;
+    for (int i = 0; i < 80; ++i) add_light(model.lighting(), gi::LightKind::point);
+    for (int i = 0; i < 3; ++i) duplicate_light(model.lighting());
+    EXPECT_EQ(model.view.scene.lights.size(), 64u);
+    EXPECT_TRUE(gi::parse_scene(gi::write_scene(scene_to_save(model.view)), "full.json"));
 }
 
 TEST(LightEdits, EveryKindThatIsAddedIsReadBackFromTheSavedScene) {
-    ViewModel model(10);
-    for (uint32_t kind = 0; kind < 5; ++kind) add_light(model, static_cast<gi::LightKind>(kind));
-    model.light = 2;
-    set_sun(model, gi::SunMoment{});
-    switch_selected_light(model);
+    LitView model;
+    for (uint32_t kind = 0; kind < 5; ++kind) add_light(model.lighting(), static_cast<gi::LightKind>(kind));
+    model.lights.selected = 2;
+    set_sun(model.lighting(), gi::SunMoment{});
+    switch_selected_light(model.lighting());
     const test::TemporaryFolder folder;
-    model.light_tools.scene_file = folder / "saved.json";
-    save_scene(model);
+    model.scene_file.set_path(folder / "saved.json");
+    model.scene_file.save(model.view);
     const auto saved = gi::load_scene(folder / "saved.json");
     ASSERT_TRUE(saved) << saved.error().line();
-    EXPECT_EQ(saved->lights, model.scene.lights);
+    EXPECT_EQ(saved->lights, model.view.scene.lights);
     EXPECT_FALSE(saved->lights[2].on);
     ASSERT_EQ(saved->cameras.size(), 1u);
     EXPECT_EQ(saved->cameras[0].name, "view");
-    EXPECT_LT(glm::distance(saved->cameras[0].position, model.rig.position()), 1e-9);
+    EXPECT_LT(glm::distance(saved->cameras[0].position, model.view.rig.position()), 1e-9);
 }
 
 TEST(LightEdits, SavingAgainReplacesTheViewAndNotTheFileOfAnother) {
     const test::TemporaryFolder folder;
-    ViewModel model(10);
-    model.pictures = folder.path();
-    save_scene(model);
-    save_scene(model);
-    ViewModel other(10);
-    other.pictures = folder.path();
-    save_scene(other);
+    LitView model;
+    model.view.pictures = folder.path();
+    model.scene_file.save(model.view);
+    model.scene_file.save(model.view);
+    LitView other;
+    other.view.pictures = folder.path();
+    other.scene_file.save(other.view);
     EXPECT_TRUE(std::filesystem::exists(folder / "scene-0001.json"));
     EXPECT_TRUE(std::filesystem::exists(folder / "scene-0002.json"));
     EXPECT_FALSE(std::filesystem::exists(folder / "scene-0003.json"));
 }
 
 TEST(LightEdits, WhatIsOnlyShownOtherwiseIsNoMove) {
-    ViewModel model(10);
-    const uint64_t moves = model.scene_version - model.shown_changes;
-    model.shown_changed();
-    EXPECT_EQ(model.scene_version - model.shown_changes, moves);
-    model.scene_changed();
-    EXPECT_NE(model.scene_version - model.shown_changes, moves);
+    LitView model;
+    const uint64_t moves = model.view.scene_version - model.view.shown_changes;
+    model.view.shown_changed();
+    EXPECT_EQ(model.view.scene_version - model.view.shown_changes, moves);
+    model.view.scene_changed();
+    EXPECT_NE(model.view.scene_version - model.view.shown_changes, moves);
 }
 
 TEST(LightHandles, AreWhereALightStandsAndWhatItShinesAt) {

@@ -11,8 +11,8 @@
 #include "tests/viewer/program.h"
 #include "viewer/measure/file.h"
 #include "viewer/measure/model.h"
-#include "viewer/measure/profile_raster.h"
-#include "viewer/measure/section.h"
+#include "viewer/measure/section/profile_raster.h"
+#include "viewer/measure/section/section.h"
 #include "viewer/overlay/axis_marks.h"
 #include "viewer/picking/nearest.h"
 
@@ -162,7 +162,9 @@ TEST(Measure, ToolsTakeTheirPointsAndEveryChangeCanBeUndone) {
     for (int i = 0; i < 9; ++i) model.redo();
     EXPECT_EQ(model.list.all().size(), 1u);
     model.copy_selected();
-    EXPECT_THAT(model.clipboard.value_or(""), HasSubstr("Path 1"));
+    const auto commands = model.commands.take();
+    ASSERT_EQ(commands.size(), 1u);
+    EXPECT_THAT(std::get<CopyText>(commands[0]).text, HasSubstr("Path 1"));
 }
 
 TEST(Measure, AxesHaveRoundMarksAndEndWhereverTheyLie) {

@@ -8,7 +8,7 @@
 
 #include "viewer/overlay/axis_marks.h"
 #include "viewer/overlay/draw_marks.h"
-#include "viewer/style/look_tools.h"
+#include "viewer/style/clip_handles.h"
 
 namespace lucarne::viewer {
 namespace {

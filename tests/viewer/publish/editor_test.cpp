@@ -169,8 +169,8 @@ TEST(PathEditor, UndoesAndHoldsASelectionThatIsThere) {
     EXPECT_TRUE(editor.remove()) << "nothing is selected: nothing happens";
 }
 
-TEST(ShowModel, ThePreviewEndsWithThePathAndBeginsAgain) {
-    ShowModel show;
+TEST(PublishModel, ThePreviewEndsWithThePathAndBeginsAgain) {
+    PublishModel show;
     show.play();
     EXPECT_FALSE(show.playing) << "there is nothing to play";
     show.editor = with_keys(2);
@@ -188,7 +188,7 @@ TEST(ShowModel, ThePreviewEndsWithThePathAndBeginsAgain) {
     EXPECT_EQ(show.editor.selected(), 1u);
 }
 
-TEST(ShowModel, TheDrawnPathIsTheFlownOne) {
+TEST(PublishModel, TheDrawnPathIsTheFlownOne) {
     const PathEditor editor = with_keys(4);
     const auto places = places_along(editor.path(), 1000);
     ASSERT_GE(places.size(), 4u);

@@ -1,4 +1,4 @@
-#include "viewer/window/actions.h"
+#include "viewer/window/actions/actions.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -8,11 +8,13 @@ namespace lucarne::viewer {
 namespace {
 
 TEST(Actions, EachHasAKeyOfItsOwnAPlaceInAMenuAndAName) {
-    for (const Action& action : actions()) {
+    ViewModel model(10);
+    const auto actions = bound_actions(model);
+    for (const BoundAction& action : actions) {
         EXPECT_NE(action.chord.key, 0) << action.name;
         EXPECT_NE(std::string(action.menu), "") << action.name;
-        EXPECT_NE(action.run, nullptr) << action.name;
-        for (const Action& other : actions()) {
+        EXPECT_TRUE(action.run && action.enabled && action.checked) << action.name;
+        for (const BoundAction& other : actions) {
             if (&other == &action) continue;
             EXPECT_NE(other.chord, action.chord)
                 << key_text(action.chord) << ": " << action.name << " and " << other.name;
@@ -23,7 +25,8 @@ TEST(Actions, EachHasAKeyOfItsOwnAPlaceInAMenuAndAName) {
 }
 
 TEST(Actions, LeaveTheKeysThatFlyAlone) {
-    for (const Action& action : actions())
+    ViewModel model(10);
+    for (const BoundAction& action : bound_actions(model))
         for (const int key : {GLFW_KEY_W, GLFW_KEY_A, GLFW_KEY_S, GLFW_KEY_D, GLFW_KEY_Q, GLFW_KEY_E})
             EXPECT_NE(action.chord, (KeyChord{key, 0})) << action.name;
 }
@@ -33,17 +36,20 @@ TEST(Actions, KeysAreWrittenAsPeopleWriteThem) {
     EXPECT_EQ(key_text({GLFW_KEY_F12, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT}),
               "Ctrl+Alt+Shift+F12");
     EXPECT_EQ(key_text({GLFW_KEY_PAGE_UP}), "Page up");
-    for (const Action& action : actions()) EXPECT_EQ(key_text(action.chord).find("key "), std::string::npos);
+    ViewModel model(10);
+    for (const BoundAction& action : bound_actions(model))
+        EXPECT_EQ(key_text(action.chord).find("key "), std::string::npos);
 }
 
 TEST(Actions, RunByTheirKeyWithWhatIsHeldDownBesideItAndOnlyWhereEnabled) {
     ViewModel model(10);
+    const auto actions = bound_actions(model);
     const KeyChord help{GLFW_KEY_F1}, help_shifted{GLFW_KEY_F1, GLFW_MOD_SHIFT}, picture{GLFW_KEY_F12};
-    run_actions(model, std::array{help_shifted});
+    run_actions(actions, std::array{help_shifted});
     EXPECT_FALSE(model.show_help);
-    run_actions(model, std::array{help, picture});
+    run_actions(actions, std::array{help, picture});
     EXPECT_TRUE(model.show_help);
-    EXPECT_FALSE(model.save_picture) << "there is no picture to save";
+    EXPECT_TRUE(model.commands.empty()) << "there is no picture to save";
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "gi/lighting/light_options.h"
 #include "gi/scene/render_settings_file.h"
 #include "tests/viewer/window/measuring_window.h"
-#include "viewer/light/edits.h"
+#include "viewer/ui/scene_file.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -19,24 +19,24 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
-ViewModel changed_model() {
-    ViewModel model(10);
-    model.engine = "reference";
-    EXPECT_TRUE(model.choose_preset("high"));
-    model.settings.set(gi::kBounces, 3);
-    model.settings.set(gi::kOnlyBounce, 2);
-    model.settings.set(gi::vpl::kVpls, 64);
-    model.settings.set(gi::vpl::kInterleave, 2);
-    model.settings.set(gi::vpl::kAtlas, 512);
-    model.settings.set(gi::kLightResolution, 256);
-    model.settings.set(gi::reference::kSamples, 5);
-    model.resolution_scale = 0.5;
-    return model;
+View changed_view() {
+    View view(10);
+    view.engine = "reference";
+    EXPECT_TRUE(view.choose_preset("high"));
+    view.settings.set(gi::kBounces, 3);
+    view.settings.set(gi::kOnlyBounce, 2);
+    view.settings.set(gi::vpl::kVpls, 64);
+    view.settings.set(gi::vpl::kInterleave, 2);
+    view.settings.set(gi::vpl::kAtlas, 512);
+    view.settings.set(gi::kLightResolution, 256);
+    view.settings.set(gi::reference::kSamples, 5);
+    view.resolution_scale = 0.5;
+    return view;
 }
 
 TEST(RenderSettings, WhatThePanelChangesIsInTheSceneThatTheWindowWrites) {
-    const ViewModel model = changed_model();
-    const auto scene = gi::parse_scene(gi::write_scene(scene_to_save(model)), "saved.json");
+    const View view = changed_view();
+    const auto scene = gi::parse_scene(gi::write_scene(scene_to_save(view)), "saved.json");
     ASSERT_TRUE(scene) << scene.error().line();
     EXPECT_EQ(scene->render.engine, "reference");
     EXPECT_EQ(scene->render.scale, 0.5);
@@ -44,17 +44,17 @@ TEST(RenderSettings, WhatThePanelChangesIsInTheSceneThatTheWindowWrites) {
     ASSERT_TRUE(preset);
     gi::EngineSettings settings = preset->engine;
     apply(scene->render, settings);
-    EXPECT_EQ(settings, model.settings);
+    EXPECT_EQ(settings, view.settings);
 }
 
 TEST(RenderSettings, APresetAsItIsIsWrittenAsItsName) {
-    ViewModel model(10);
-    model.engine = "vpl";
-    ASSERT_TRUE(model.choose_preset("preview"));
+    View view(10);
+    view.engine = "vpl";
+    ASSERT_TRUE(view.choose_preset("preview"));
     gi::RenderSettings expected;
     expected.engine = "vpl";
     expected.preset = "preview";
-    EXPECT_EQ(scene_to_save(model).render, expected);
+    EXPECT_EQ(scene_to_save(view).render, expected);
 }
 
 TEST(RenderSettings, ValuesThatNoOptionHasAreRejectedAtTheirPlace) {

@@ -12,8 +12,8 @@
 #include "viewer/scans/file_browser.h"
 #include "viewer/scans/native_dialog.h"
 #include "viewer/scans/scan_set.h"
-#include "viewer/window/settings.h"
-#include "viewer/window/side_bar.h"
+#include "viewer/ui/side_bar.h"
+#include "viewer/window/settings/settings.h"
 
 namespace lucarne::viewer {
 namespace {

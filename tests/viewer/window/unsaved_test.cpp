@@ -35,9 +35,9 @@ gi::SceneCamera camera_at(double x) {
 class UnsavedWork : public testing::Test {
  protected:
     UnsavedWork() {
-        model_.pictures = folder_.path();
-        add_light(model_, gi::LightKind::spot);
-        model_.light_tools.saved.mark(model_.scene, model_.scene_version);
+        model_.view.pictures = folder_.path();
+        add_light(model_.lighting(), gi::LightKind::spot);
+        model_.scene_file.mark(model_.view);
     }
     std::vector<std::string> named(SaveTo to = SaveTo::own_files) const {
         std::vector<std::string> all;
@@ -47,8 +47,8 @@ class UnsavedWork : public testing::Test {
     }
     void change_everything() {
         ASSERT_TRUE(model_.measure.list.add(distance(2)));
-        model_.show.add_key(camera_at(1));
-        add_light(model_, gi::LightKind::point);
+        model_.publish.add_key(camera_at(1));
+        add_light(model_.lighting(), gi::LightKind::point);
     }
 
     const TemporaryFolder folder_;
@@ -57,8 +57,8 @@ class UnsavedWork : public testing::Test {
 
 TEST_F(UnsavedWork, IsNoneInAWindowThatWasOnlyLookedAround) {
     EXPECT_THAT(named(), ElementsAre());
-    model_.rig.orbit(0.1, 0.2);
-    model_.message = "moved";
+    model_.view.rig.orbit(0.1, 0.2);
+    model_.view.message = "moved";
     EXPECT_THAT(named(), ElementsAre());
 }
 
@@ -87,8 +87,8 @@ TEST_F(UnsavedWork, IsNoneOnceItIsSavedAndUntilTheNextChange) {
 TEST_F(UnsavedWork, IsNoneWhereEveryChangeWasTakenBack) {
     change_everything();
     model_.measure.undo();
-    model_.show.editor.undo();
-    undo_lights(model_);
+    model_.publish.editor.undo();
+    undo_lights(model_.lighting());
     EXPECT_THAT(named(), ElementsAre());
     model_.measure.redo();
     EXPECT_THAT(named(), ElementsAre("1 measurement -> measurements.json"));
@@ -99,7 +99,7 @@ TEST_F(UnsavedWork, IsAChangeOfWhatWasLoadedAndNotTheLoadingItself) {
     ASSERT_TRUE(save_unsaved(model_));
     ViewModel other(10);
     ASSERT_TRUE(other.measure.load(folder_ / "measurements.json"));
-    ASSERT_TRUE(other.show.load_path(folder_ / "flythrough.json"));
+    ASSERT_TRUE(other.publish.load_path(folder_ / "flythrough.json"));
     EXPECT_TRUE(unsaved(other).empty());
     other.measure.list.rename(0, "door");
     EXPECT_EQ(unsaved(other).size(), 1u);
@@ -150,8 +150,8 @@ TEST_F(UnsavedWork, WithoutAQuestionGoesBesideItsOwnFiles) {
 
 TEST_F(UnsavedWork, WithoutAQuestionGoesIntoNoFolderOfAnotherFile) {
     std::filesystem::create_directory(folder_ / "theirs");
-    ASSERT_TRUE(save_scene_as(model_, folder_ / "theirs/lit.json"));
-    add_light(model_, gi::LightKind::point);
+    ASSERT_TRUE(model_.scene_file.save_as(model_.view, folder_ / "theirs/lit.json"));
+    add_light(model_.lighting(), gi::LightKind::point);
     EXPECT_THAT(named(), ElementsAre("the scene: lights, look or clips were changed -> lit.json"))
         << "as it asks";
     ASSERT_TRUE(save_unsaved(model_, SaveTo::free_names));

@@ -21,32 +21,32 @@ void list_unsaved(const std::vector<Unsaved>& all) {
 }
 
 void list_running(const ViewModel& model) {
-    if (model.show.rendering.running)
-        ImGui::Text("%s is not finished, and would be given up.", model.show.rendering.file.c_str());
-    if (model.shell.scans && model.shell.scans->converting())
+    if (model.publish.rendering.running)
+        ImGui::Text("%s is not finished, and would be given up.", model.publish.rendering.file.c_str());
+    if (model.scans && model.scans->converting())
         ImGui::TextUnformatted(
             "A scan is being converted. What is finished of it is kept: the conversion goes on from there "
             "when the scan "
             "is opened again.");
 }
 
-void buttons(Shell& shell, bool any_unsaved) {
+void buttons(ClosingQuestion& question, bool any_unsaved) {
     if (ImGui::Button(any_unsaved ? "Save (Enter)" : "Close now (Enter)"))
-        (any_unsaved ? shell.save_to_close : shell.close_now) = true;
+        any_unsaved ? question.answers.push(SaveAndClose{}) : question.answers.push(DiscardAndClose{});
     ImGui::SameLine();
     if (any_unsaved) {
-        if (ImGui::Button("Discard (Ctrl+D)")) shell.close_now = true;
+        if (ImGui::Button("Discard (Ctrl+D)")) question.answers.push(DiscardAndClose{});
         ImGui::SameLine();
     }
-    if (ImGui::Button(any_unsaved ? "Cancel (Escape)" : "Stay (Escape)")) shell.ask_to_close = false;
+    if (ImGui::Button(any_unsaved ? "Cancel (Escape)" : "Stay (Escape)")) question.shown = false;
 }
 
 }  // namespace
 
 void draw_closing_question(ViewModel& model) {
     constexpr const char* kName = "Close Lucarne?";
-    Shell& shell = model.shell;
-    if (shell.ask_to_close && !ImGui::IsPopupOpen(kName)) ImGui::OpenPopup(kName);
+    ClosingQuestion& question = model.closing;
+    if (question.shown && !ImGui::IsPopupOpen(kName)) ImGui::OpenPopup(kName);
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     const ImGuiWindowFlags flags =
@@ -56,15 +56,15 @@ void draw_closing_question(ViewModel& model) {
     ImGui::PushTextWrapPos(std::min(40 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize()));
     if (!all.empty()) list_unsaved(all);
     list_running(model);
-    if (!shell.closing_problem.empty()) {
+    if (!question.problem.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.5f, 0.4f, 1));
-        ImGui::TextUnformatted(shell.closing_problem.c_str());
+        ImGui::TextUnformatted(question.problem.c_str());
         ImGui::PopStyleColor();
     }
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    buttons(shell, !all.empty());
-    if (!shell.ask_to_close) ImGui::CloseCurrentPopup();
+    buttons(question, !all.empty());
+    if (!question.shown) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 

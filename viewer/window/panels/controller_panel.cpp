@@ -41,7 +41,7 @@ void draw_axis(io::SixDofMapping& mapping, size_t axis) {
 
 void draw_controller_panel(ViewModel& model) {
     ControllerModel& controller = model.controller;
-    io::SixDofMapping& mapping = model.shell.settings.controller;
+    io::SixDofMapping& mapping = model.settings.controller;
     draw_status(controller);
     ImGui::Separator();
     int hold = controller.holds_object ? 1 : 0;

@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "viewer/window/actions.h"
+#include "viewer/window/actions/actions.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -27,17 +27,17 @@ void warning(const std::string& text, float width) {
 
 }  // namespace
 
-void draw_help(ViewModel& model) {
+void draw_help(bool& shown, std::span<const BoundAction> actions) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowBgAlpha(0.95f);
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(size.x, size.y - 4 * ImGui::GetFontSize()));
     const ImGuiWindowFlags flags =
         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
-    if (ImGui::Begin("Keys and mouse", &model.show_help, flags) &&
+    if (ImGui::Begin("Keys and mouse", &shown, flags) &&
         ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
         for (const Gesture& gesture : gestures()) row(gesture.gesture, gesture.what);
-        for (const Action& action : actions()) row(key_text(action.chord).c_str(), action.name);
+        for (const BoundAction& action : actions) row(key_text(action.chord).c_str(), action.name);
         ImGui::EndTable();
     }
     ImGui::End();
@@ -45,7 +45,7 @@ void draw_help(ViewModel& model) {
 
 void draw_message(const ViewModel& model, bool busy) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const auto left = static_cast<float>(model.side_bar().pixels(ImGui::GetFontSize(), size.x));
+    const auto left = static_cast<float>(model.view.side_bar.pixels(ImGui::GetFontSize(), size.x));
     ImGui::SetNextWindowPos(ImVec2((left + size.x) / 2, size.y - 8), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
     ImGui::SetNextWindowBgAlpha(0.6f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
@@ -54,12 +54,13 @@ void draw_message(const ViewModel& model, bool busy) {
     const Health& health = model.health;
     const std::array problems = {&health.device, &health.shaders, &health.nodes};
     const bool healthy = std::ranges::all_of(problems, [](const auto* problem) { return problem->empty(); });
-    if (model.message.empty() && !busy && healthy) return;
+    if (model.view.message.empty() && !busy && healthy) return;
     if (ImGui::Begin("##message", nullptr, flags)) {
         for (const std::string* problem : problems)
             if (!problem->empty()) warning(*problem, size.x - left);
-        if (!model.message.empty() || busy)
-            ImGui::TextUnformatted(model.message.empty() ? "making the picture" : model.message.c_str());
+        if (!model.view.message.empty() || busy)
+            ImGui::TextUnformatted(model.view.message.empty() ? "making the picture"
+                                                              : model.view.message.c_str());
     }
     ImGui::End();
 }

@@ -1,6 +1,5 @@
 #include <imgui.h>
 
-#include "viewer/window/actions.h"
 #include "viewer/window/panels/panels.h"
 
 namespace lucarne::viewer {
@@ -22,20 +21,19 @@ void in_menu(std::string_view path, const Inside& inside) {
 
 }  // namespace
 
-void draw_menu_bar(ViewModel& model) {
+void draw_menu_bar(ViewModel& model, std::span<const BoundAction> actions) {
     if (!ImGui::BeginMainMenuBar()) return;
-    for (const Action& action : actions())
+    for (const BoundAction& action : actions)
         in_menu(action.menu, [&] {
-            const bool checked = action.checked && action.checked(model);
-            const bool enabled = !action.enabled || action.enabled(model);
-            if (ImGui::MenuItem(action.name, key_text(action.chord).c_str(), checked, enabled))
-                action.run(model);
+            if (ImGui::MenuItem(action.name, key_text(action.chord).c_str(), action.checked(),
+                                action.enabled()))
+                action.run();
         });
     in_menu("File", [&] {
-        const auto& recent = model.shell.settings.recent;
+        const auto& recent = model.settings.recent;
         if (!ImGui::BeginMenu("Opened before", !recent.empty())) return;
         for (const std::string& path : recent)
-            if (ImGui::MenuItem(path.c_str())) model.shell.to_open = {path};
+            if (ImGui::MenuItem(path.c_str())) model.scan_commands.push(OpenFiles{{path}});
         ImGui::EndMenu();
     });
     ImGui::EndMainMenuBar();

@@ -18,28 +18,28 @@ struct SectionEntry {
 };
 /// In the order of `BarSection`.
 constexpr std::array<SectionEntry, kSections> kEntries = {{
-    {"Scans", draw_scans_panel, false},
-    {"Rendering", draw_rendering_panel, true},
-    {"Look", draw_look_panel, true},
-    {"Light", draw_light_panel, true},
-    {"Measure", draw_measure_panel, true},
-    {"Bookmarks", draw_bookmarks_panel, true},
-    {"Flythrough", draw_flythrough_panel, true},
-    {"Save a picture", draw_picture_panel, true},
-    {"Statistics", draw_statistics_panel, true},
+    {"Scans", [](ViewModel& model) { draw_scans_panel(*model.scans); }, false},
+    {"Rendering", [](ViewModel& model) { draw_rendering_panel(model.rendering()); }, true},
+    {"Look", [](ViewModel& model) { draw_look_panel(model.styling()); }, true},
+    {"Light", [](ViewModel& model) { draw_light_panel(model.lighting()); }, true},
+    {"Measure", [](ViewModel& model) { draw_measure_panel(model.measuring()); }, true},
+    {"Bookmarks", [](ViewModel& model) { draw_bookmarks_panel(model.bookmarking()); }, true},
+    {"Flythrough", [](ViewModel& model) { draw_flythrough_panel(model.publishing()); }, true},
+    {"Save a picture", [](ViewModel& model) { draw_picture_panel(model.publishing()); }, true},
+    {"Statistics", [](ViewModel& model) { draw_statistics_panel(model); }, true},
     {"6-DoF controller", draw_controller_panel, false},
 }};
 
 /// Returns whether a section is shown. With nothing open there is only the start page, and sections that need
 /// no scan if the user opened them.
 bool is_there(const ViewModel& model, BarSection section, bool has_view) {
+    if (section == BarSection::scans) return model.scans && (has_view || !model.scans->rows().empty());
     if (has_view) return true;
-    if (section == BarSection::scans) return model.shell.scans && !model.shell.scans->rows().empty();
-    return !kEntries[static_cast<size_t>(section)].needs_view && model.side_bar().is_open(section);
+    return !kEntries[static_cast<size_t>(section)].needs_view && model.view.side_bar.is_open(section);
 }
 
 void draw_section(ViewModel& model, BarSection section) {
-    SideBar& bar = model.side_bar();
+    SideBar& bar = model.view.side_bar;
     const SectionEntry& entry = kEntries[static_cast<size_t>(section)];
     bool& open = bar.open[static_cast<size_t>(section)];
     if (bar.sought == section) {
@@ -57,12 +57,8 @@ void draw_section(ViewModel& model, BarSection section) {
 
 }  // namespace
 
-bool fold(const char* label) {
-    return ImGui::TreeNodeEx(label, ImGuiTreeNodeFlags_NoTreePushOnOpen | ImGuiTreeNodeFlags_SpanAvailWidth);
-}
-
 void draw_side_bar(ViewModel& model, bool has_view) {
-    SideBar& bar = model.side_bar();
+    SideBar& bar = model.view.side_bar;
     bool any = false;
     for (size_t i = 0; i < kSections; ++i) any = any || is_there(model, static_cast<BarSection>(i), has_view);
     if (!bar.shown || !any) return;

@@ -7,13 +7,14 @@ namespace {
 
 constexpr size_t kMostShown = 8;  ///< recent files
 
-void recent_files(Shell& shell) {
-    if (shell.settings.recent.empty()) return;
+void recent_files(ViewModel& model) {
+    if (model.settings.recent.empty()) return;
     ImGui::Spacing();
     ImGui::TextDisabled("Opened before");
-    for (size_t i = 0; i < std::min(shell.settings.recent.size(), kMostShown); ++i) {
+    for (size_t i = 0; i < std::min(model.settings.recent.size(), kMostShown); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Selectable(shell.settings.recent[i].c_str())) shell.to_open = {shell.settings.recent[i]};
+        if (ImGui::Selectable(model.settings.recent[i].c_str()))
+            model.scan_commands.push(OpenFiles{{model.settings.recent[i]}});
         ImGui::PopID();
     }
 }
@@ -34,12 +35,12 @@ void draw_start_page(ViewModel& model) {
             "Drop scan files or folders here, or open them. They are shown at once and converted in the "
             "background; the cache is kept beside the scan, so the next time is faster.");
         ImGui::Spacing();
-        if (ImGui::Button("Open scans...")) model.shell.want_file = true;
+        if (ImGui::Button("Open scans...")) model.scan_commands.push(ChooseFiles{});
         ImGui::SameLine();
         ImGui::TextDisabled("Ctrl+O");
         ImGui::TextWrapped(
             "Lucarne's own caches (.luc), LAS, LAZ, COPC, E57, PLY, PCD, PTX, PTS, OBJ and text.");
-        recent_files(model.shell);
+        recent_files(model);
         ImGui::Spacing();
         ImGui::Separator();
         ImGui::BulletText("Left drag turns around what is under the cursor, right drag shifts,");

@@ -35,12 +35,12 @@ void passes_table(const FrameStats& stats) {
 
 }  // namespace
 
-void draw_statistics_panel(ViewModel& model) {
+void draw_statistics_panel(const ViewModel& model) {
     const FrameTimes& frames = model.health.frames;
     ImGui::Text("window: %.1f ms a frame, 95 %% within %.1f ms", frames.quantile(0.5) * 1e3,
                 frames.quantile(0.95) * 1e3);
-    if (model.picture) {
-        const Picture& picture = *model.picture;
+    if (model.view.picture) {
+        const Picture& picture = *model.view.picture;
         const FrameStats& stats = picture.stats;
         ImGui::Text("%.1f ms a picture, %u x %u%s", stats.seconds * 1e3, picture.size.width,
                     picture.size.height, picture.moving ? ", moving" : "");
@@ -52,15 +52,15 @@ void draw_statistics_panel(ViewModel& model) {
         ImGui::Text("%u averaged, exposure %+.1f stops", stats.accumulated, picture.exposure_ev);
         ImGui::Text("loaded %s", bytes_text(stats.bytes_loaded).c_str());
         ImGui::Text("memory %s of %s", bytes_text(stats.memory.host).c_str(),
-                    bytes_text(model.caps.memory).c_str());
+                    bytes_text(model.view.caps.memory).c_str());
         ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
-                    bytes_text(model.caps.device_memory).c_str());
+                    bytes_text(model.view.caps.device_memory).c_str());
         ImGui::Text("the program holds %s", bytes_text(stats.memory.resident).c_str());
         passes_table(stats);
     } else {
         ImGui::TextUnformatted("The first picture is on its way.");
     }
-    ImGui::TextDisabled("%s", model.device.renderer.c_str());
+    ImGui::TextDisabled("%s", model.view.device.renderer.c_str());
 }
 
 }  // namespace lucarne::viewer

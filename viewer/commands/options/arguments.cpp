@@ -1,0 +1,172 @@
+#include "viewer/commands/options/arguments.h"
+
+#include <filesystem>
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace lucarne::viewer {
+
+Argument& Argument::required(bool is_required) {
+    option_->required(is_required);
+    return *this;
+}
+
+Argument& Argument::type_name(const std::string& name) {
+    option_->type_name(name);
+    return *this;
+}
+
+Argument& Argument::description(const std::string& text) {
+    option_->description(text);
+    return *this;
+}
+
+Argument& Argument::show_default() {
+    option_->capture_default_str();
+    return *this;
+}
+
+Argument& Argument::show_default(const std::string& text) {
+    option_->default_str(text);
+    return *this;
+}
+
+template <class T>
+Argument& Argument::range(T low, T high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+template Argument& Argument::range(int, int);
+template Argument& Argument::range(uint32_t, uint32_t);
+template Argument& Argument::range(uint64_t, uint64_t);
+template Argument& Argument::range(double, double);
+
+Argument& Argument::positive() {
+    option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Argument& Argument::one_of(std::initializer_list<int> values) {
+    option_->check(CLI::IsMember(std::vector<int>(values)));
+    return *this;
+}
+
+Argument& Argument::one_of(std::initializer_list<const char*> values) {
+    option_->check(CLI::IsMember(std::vector<std::string>(values.begin(), values.end())));
+    return *this;
+}
+
+Argument& Argument::excludes(const Argument& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+
+Argument& Argument::values(int count) {
+    option_->expected(count);
+    return *this;
+}
+
+Argument& Argument::separator(char character) {
+    option_->delimiter(character);
+    return *this;
+}
+
+Argument& Argument::repeatable() {
+    option_->take_all()->allow_extra_args(false);
+    return *this;
+}
+
+template <class T>
+Argument Arguments::add(const std::string& names, T& value, const std::string& help) {
+    return Argument(app_->add_option(names, value, help));
+}
+template Argument Arguments::add(const std::string&, std::string&, const std::string&);
+template Argument Arguments::add(const std::string&, std::filesystem::path&, const std::string&);
+template Argument Arguments::add(const std::string&, uint32_t&, const std::string&);
+template Argument Arguments::add(const std::string&, uint64_t&, const std::string&);
+template Argument Arguments::add(const std::string&, double&, const std::string&);
+template Argument Arguments::add(const std::string&, std::optional<int>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::optional<uint32_t>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::optional<uint64_t>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::optional<double>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<std::vector<double>>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<uint16_t>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<int>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<double>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<std::string>&, const std::string&);
+template Argument Arguments::add(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
+
+Argument Arguments::flag(const std::string& names, bool& value, const std::string& help) {
+    return Argument(app_->add_flag(names, value, help));
+}
+
+Argument Arguments::flag(const std::string& names, std::function<void()> set, const std::string& help) {
+    return Argument(app_->add_flag_callback(names, std::move(set), help));
+}
+
+Argument Arguments::parsed(const std::string& names,
+                           std::function<std::optional<std::string>(const std::string& text)> set,
+                           const std::string& help) {
+    const auto take = [names, set = std::move(set)](const std::string& text) {
+        if (auto problem = set(text)) throw CLI::ValidationError(names, *problem);
+    };
+    return Argument(app_->add_option_function<std::string>(names, take, help));
+}
+
+Argument Arguments::add_choice(const std::string& names, const std::vector<std::string>& words,
+                               std::function<void(size_t)> set, const std::string& help) {
+    const auto take = [words, set = std::move(set)](const std::string& text) {
+        set(static_cast<size_t>(std::ranges::find(words, text) - words.begin()));
+    };
+    auto* option = app_->add_option_function<std::string>(names, take, help);
+    // The check's own description would repeat the words that are shown as the type.
+    option->check(CLI::IsMember(words).description(""));
+    option->type_name(fmt::format("{}", fmt::join(words, "|")));
+    return Argument(option);
+}
+
+Argument Arguments::find(const std::string& name) {
+    return Argument(app_->get_option(name));
+}
+
+bool Arguments::given(const std::string& name) const {
+    return app_->count(name) > 0;
+}
+
+void Arguments::footer(const std::string& text) {
+    app_->footer(text);
+}
+
+void Arguments::run(std::function<Result<void>()> action) {
+    *action_ = std::move(action);
+}
+
+CommandLine::CommandLine(const std::string& program, const std::string& description)
+    : app_(std::make_unique<CLI::App>(description)) {
+    app_->name(program);
+    app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Arguments CommandLine::add(const std::string& name, const std::string& help) {
+    return commands_.emplace_back(*app_->add_subcommand(name, help));
+}
+
+Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() != 0) return bad_arguments("arguments", error.what(), "see lucarne --help");
+        app_->exit(error);  // prints the help
+        return std::function<Result<void>()>();
+    }
+    for (const Arguments& command : commands_)
+        if (*command.app_) return *command.action_;
+    return std::function<Result<void>()>();
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,219 @@
+#include "viewer/commands/options/drawing_options.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gi/registry.h"
+#include "gi/scene/render_settings_file.h"
+#include "gi/surfels/colouring.h"
+#include "io/core/log.h"
+#include "octree/tree/bulk.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// Fills unset fields of `settings` from `otherwise`.
+void fill(gi::RenderSettings& settings, const gi::RenderSettings& otherwise) {
+    if (settings.engine.empty()) settings.engine = otherwise.engine;
+    if (settings.preset.empty()) settings.preset = otherwise.preset;
+    settings.options.fill_from(otherwise.options);
+    if (!settings.scale) settings.scale = otherwise.scale;
+}
+
+/// Returns a prefix such as "vpl, direct: " for the help of an option that not every engine has.
+std::string owners(const gi::OptionInfo& option) {
+    std::string names;
+    size_t owners = 0, takers = 0;
+    for (const auto& engine : gi::engines()) {
+        takers += !engine.info.options.empty();
+        if (std::ranges::find(engine.info.options, &option) == engine.info.options.end()) continue;
+        ++owners;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", engine.info.name);
+    }
+    return owners == takers ? "" : names + ": ";
+}
+
+/// Declares one argument --KEY for each option of each engine.
+void add_engine_options(Arguments& command, gi::EngineSettings& settings) {
+    for (const gi::OptionInfo* option : gi::engine_options()) {
+        const std::string name = option->flag_name(), help = owners(*option) + std::string(option->help);
+        if (option->kind == gi::OptionKind::flag) {
+            const bool usual = std::get<bool>(option->defaults[size_t(gi::Effort::interactive)]);
+            command.flag(
+                name, [&settings, option, usual] { settings.set(*option, !usual); }, help);
+            continue;
+        }
+        const auto take = [&settings, option](const std::string& text) -> std::optional<std::string> {
+            auto value = gi::parse_option(*option, text);
+            if (!value) return value.error().why;
+            settings.set(*option, *value);
+            return std::nullopt;
+        };
+        command.parsed(name, take, fmt::format("{} ({})", help, gi::range_text(*option)))
+            .type_name(std::string(option->kind == gi::OptionKind::choice   ? "NAME"
+                                   : option->kind == gi::OptionKind::colour ? "R,G,B"
+                                                                            : option->placeholder));
+    }
+}
+
+std::string engine_names() {
+    std::string names;
+    for (const auto& engine : gi::engines())
+        names += fmt::format("\n  {:<11}{}", engine.info.name, engine.info.description);
+    return names;
+}
+
+std::string preset_names() {
+    std::string names;
+    for (const auto& preset : presets())
+        names += fmt::format("\n  {:<12}{}", preset.name, preset.description);
+    return names;
+}
+
+bool all_have_normals(const octree::NodeSource& source) {
+    return std::ranges::all_of(source.roots(), [&](uint32_t root) {
+        const io::Schema& schema = source.part_of(root).header.schema;
+        return schema.find(io::names::normal) || schema.find(io::names::normal_oct);
+    });
+}
+
+/// Warns of an extent for which lights, cameras and the device's floats are not made: they suit scans from
+/// rooms up to countries.
+void warn_of_extent(const octree::SourceHeader& header) {
+    constexpr double kLeast = 0.01, kMost = 1e6;  // m
+    const glm::dvec3 extent = (header.max - header.min) * header.metres_per_unit;
+    const double widest = std::max({extent.x, extent.y, extent.z});
+    if (widest >= kLeast && widest <= kMost) return;
+    if (widest > 0)
+        log::warn(
+            "the points span {:.3g} m: pictures are right from 1 cm to 1000 km; convert with the right "
+            "--unit, or "
+            "remove outliers with lucarne delete",
+            widest);
+}
+
+}  // namespace
+
+void add_drawing_options(Arguments& command, DrawingOptions& options) {
+    command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
+        .type_name("FILE");
+    command.add("--engine", options.render.engine, "Method of lighting, see below")
+        .show_default(std::string(gi::default_engine().name))
+        .type_name("NAME");
+    command.add("--preset", options.render.preset, "Quality against speed, see below")
+        .show_default(std::string(kDefaultPreset))
+        .type_name("NAME");
+    command.add("--size", options.size, "Size of the picture in pixels").show_default().type_name("WxH");
+    add_engine_options(command, options.render.options);
+    command.add("--points", options.points, "Largest number of points of a cut: 200000, 2M").type_name("N");
+    command.add("--exposure", options.exposure, "Exposure in stops; by default the scene's, or automatic")
+        .range(-100.0, 100.0)
+        .type_name("EV");
+    command
+        .add("--memory", options.memory,
+             "Cap on host memory for the octree's directory and nodes on their way to the device (512M)")
+        .type_name("SIZE");
+    command
+        .add("--device-memory", options.device_memory,
+             "Cap on device memory for surfels, pictures and maps together (2G)")
+        .type_name("SIZE");
+    command.flag("--no-prefetch", options.no_prefetch,
+                 "Do not load nodes ahead of a moving camera (for measurements)");
+    add_look_options(command, options.look);
+    add_light_options(command, options.light);
+    command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
+}
+
+Result<void> take_render_settings(DrawingOptions& options) {
+    if (!options.scene.empty()) {
+        LUCARNE_ASSIGN(const gi::RenderSettings said, gi::load_render_settings(options.scene));
+        if (!said.engine.empty() && !gi::find_engine(said.engine))
+            return rejected(options.scene,
+                            fmt::format("/render/engine: there is no engine '{}'", said.engine));
+        if (!said.preset.empty() && !find_preset(said.preset))
+            return rejected(options.scene,
+                            fmt::format("/render/preset: there is no preset '{}'", said.preset));
+        fill(options.render, said);
+    }
+    gi::RenderSettings usual;
+    usual.engine = gi::default_engine().name;
+    usual.preset = kDefaultPreset;
+    fill(options.render, usual);
+    return {};
+}
+
+Result<Drawing> resolve(const DrawingOptions& options) {
+    Drawing drawing;
+    LUCARNE_ASSIGN(drawing.preset, find_preset(options.render.preset));
+    LUCARNE_ASSIGN(drawing.size, parse_size("--size", options.size));
+    if (!options.memory.empty()) {
+        LUCARNE_ASSIGN(drawing.caps.memory, parse_bytes("--memory", options.memory));
+    }
+    if (!options.device_memory.empty()) {
+        LUCARNE_ASSIGN(drawing.caps.device_memory, parse_bytes("--device-memory", options.device_memory));
+    }
+    drawing.caps.prefetch = !options.no_prefetch;
+    LUCARNE_TRY(gi::find_engine(options.render.engine));
+    apply(options.render, drawing.preset.engine);
+    if (!options.points.empty()) {
+        LUCARNE_ASSIGN(const uint64_t points, parse_count("--points", options.points));
+        if (points == 0)
+            return bad_arguments("--points", "a cut without points shows nothing", "allow 1 or more");
+        drawing.preset.budgets.cap(points);
+    }
+    return drawing;
+}
+
+Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
+    const auto [low, high] = octree::bulk_of(source);
+    LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
+    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit,
+                                        static_cast<double>(size.width) / size.height);
+    if (!options.scene.empty()) {
+        const auto cameras = std::move(scene.cameras);
+        LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
+        if (scene.cameras.empty()) scene.cameras = cameras;
+        if (scene.comparison && scene.comparison->engine.empty())
+            scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
+    }
+    if (options.exposure) scene.exposure_ev = options.exposure;
+    LUCARNE_TRY(apply(options.look, scene.look));
+    LUCARNE_TRY(apply(options.light, scene));
+    LUCARNE_TRY(gi::check_attribute(source, scene.look));
+    return scene;
+}
+
+Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name) {
+    std::string known;
+    for (const auto& camera : scene.cameras) {
+        if (name.empty() || camera.name == name) return camera;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", camera.name);
+    }
+    return bad_arguments("--camera", fmt::format("the scene has no camera '{}'", name),
+                         "choose one of: " + known);
+}
+
+std::string memory_text(const PipelineOptions& caps, const MemoryUse& used) {
+    return fmt::format("memory {} of {}, device {} of {}", bytes_text(used.host), bytes_text(caps.memory),
+                       bytes_text(used.device), bytes_text(caps.device_memory));
+}
+
+Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
+                                                std::shared_ptr<const octree::NodeSource> source,
+                                                const DrawingOptions& options, const Drawing& drawing,
+                                                gi::Scene scene) {
+    if (!all_have_normals(*source))
+        log::warn(
+            "the points have no normals: surfaces are lit as if they faced the camera; "
+            "convert with --normals estimate for correct light");
+    warn_of_extent(source->header());
+    LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));
+    LUCARNE_TRY(pipeline->set_engine(options.render.engine));
+    pipeline->set_settings(drawing.preset.engine);
+    pipeline->set_budgets(drawing.preset.budgets);
+    LUCARNE_TRY(pipeline->set_scene(std::move(scene)));
+    return pipeline;
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,187 @@
+#include "viewer/commands/options/look_options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "viewer/commands/find_name.h"
+
+namespace lucarne::viewer {
+namespace {
+
+/// Parses `count` finite numbers separated by `between`, for example "1,2.5,-3".
+Result<std::vector<double>> parse_numbers(std::string_view option, std::string_view text, char between,
+                                          size_t count) {
+    std::vector<double> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (bool more = true; more;) {
+        double number = 0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        more = next != end && *next == between;
+        at = more ? next + 1 : next;
+    }
+    if (at == end && numbers.size() == count) return numbers;
+    return bad_arguments(std::string(option),
+                         fmt::format("'{}' is not {} numbers separated by '{}'", text, count, between));
+}
+
+Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
+    const bool turned = std::ranges::count(text, ',') == 6;
+    LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', turned ? 7 : 6));
+    gi::ClipBox box{{n[0], n[1], n[2]},
+                    {n[3], n[4], n[5]},
+                    turned ? glm::radians(std::remainder(n[6], 360.0)) : 0,
+                    inverted};
+    if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
+        return bad_arguments(std::string(option),
+                             fmt::format("'{}' has its second corner below its first", text),
+                             "give x0,y0,z0,x1,y1,z1 with the smaller ones first");
+    return box;
+}
+
+/// Parses "scene", "r,g,b" or "r,g,b:r,g,b".
+Result<gi::Backdrop> parse_background(const std::string& text) {
+    gi::Backdrop backdrop;
+    if (text == "scene") return backdrop;
+    const size_t colon = text.find(':');
+    const auto colour = [](const std::string& part) -> Result<glm::dvec3> {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--background", part, ',', 3));
+        for (const double v : n)
+            if (v < 0 || v > 1) return bad_arguments("--background", fmt::format("{} is not from 0 to 1", v));
+        return glm::dvec3(n[0], n[1], n[2]);
+    };
+    backdrop.kind = gi::Backdrop::Kind::colour;
+    LUCARNE_ASSIGN(backdrop.top, colour(text.substr(0, colon)));
+    if (colon == std::string::npos) return backdrop;
+    backdrop.kind = gi::Backdrop::Kind::gradient;
+    LUCARNE_ASSIGN(backdrop.bottom, colour(text.substr(colon + 1)));
+    return backdrop;
+}
+
+Result<void> apply_colours(const LookOptions& options, gi::Look& look) {
+    if (options.colour.starts_with("attribute:")) {
+        look.colour = gi::ColourBy::attribute;
+        look.attribute = options.colour.substr(std::string_view("attribute:").size());
+    } else if (!options.colour.empty()) {
+        LUCARNE_ASSIGN(const size_t by, find_name("--colour", options.colour, gi::colour_names()));
+        look.colour = static_cast<gi::ColourBy>(by);
+        if (look.colour == gi::ColourBy::attribute)
+            return bad_arguments("--colour", "no attribute is named", "give attribute:NAME");
+    }
+    if (!options.map.empty()) {
+        LUCARNE_ASSIGN(const size_t map, find_name("--colour-map", options.map, gi::colour_map_names()));
+        look.map = static_cast<gi::ColourMap>(map);
+    }
+    look.reversed |= options.reversed;
+    if (!options.range.empty()) {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--range", options.range, ':', 2));
+        look.range = gi::ValueRange{n[0], n[1]};
+    }
+    for (const int number : options.hidden_classes) look.hidden_classes.set(static_cast<size_t>(number));
+    return {};
+}
+
+Result<void> apply_clip(const LookOptions& options, gi::Clip& clip) {
+    for (const auto& text : options.clip_boxes) {
+        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-box", text, false));
+        clip.boxes.push_back(box);
+    }
+    for (const auto& text : options.clip_outside) {
+        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-outside", text, true));
+        clip.boxes.push_back(box);
+    }
+    for (const auto& text : options.clip_planes) {
+        LUCARNE_ASSIGN(const auto n, parse_numbers("--clip-plane", text, ',', 6));
+        const gi::ClipPlane plane{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+        if (!(glm::length(plane.normal) > 0))
+            return bad_arguments("--clip-plane", "the normal points nowhere");
+        clip.planes.push_back(plane);
+    }
+    clip.casts |= options.clip_casts;
+    if (clip.boxes.size() + clip.planes.size() > gi::kMostClips)
+        return bad_arguments("--clip-box", fmt::format("more than {} boxes and planes", gi::kMostClips));
+    return {};
+}
+
+}  // namespace
+
+void add_look_options(Arguments& command, LookOptions& options) {
+    const auto names = [](std::span<const std::string_view> all) {
+        return fmt::format("{}", fmt::join(all, ", "));
+    };
+    command
+        .add("--colour,--color", options.colour,
+             "What the points' colours show: " + names(gi::colour_names()) + ":NAME")
+        .type_name("WHAT");
+    command.add("--colour-map,--color-map", options.map, names(gi::colour_map_names())).type_name("NAME");
+    command.flag("--reverse-map", options.reversed, "Reverse the colour map");
+    command
+        .add("--range", options.range, "Values at the colour map's ends; by default the range of most points")
+        .type_name("LOW:HIGH");
+    command.add("--shading", options.shading, "Shading of the engine unlit: " + names(gi::shading_names()))
+        .type_name("NAME");
+    command.add("--shading-strength", options.shading_strength, "Strength of the shading; 0: none, 1: usual")
+        .range(0.0, 10.0)
+        .type_name("X");
+    command.add("--point-size", options.point_size, "Scale of the points' size")
+        .range(0.05, 20.0)
+        .type_name("X");
+    command.add("--point-pixels", options.point_pixels, "Draw all points with this size, in pixels")
+        .range(0.0, 64.0)
+        .type_name("N");
+    command
+        .add("--background", options.background,
+             "Background: scene, one colour, or a gradient from top to bottom (sRGB, 0 to 1)")
+        .type_name("R,G,B[:R,G,B]");
+    command.add("--hide-class", options.hidden_classes, "Hide these classes")
+        .range(0, 255)
+        .separator(',')
+        .type_name("N,...");
+    command
+        .add(
+            "--clip-box", options.clip_boxes,
+            "Keep only points inside the box (or inside any of several); DEGREES turns it about the vertical")
+        .repeatable()
+        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
+    command.add("--clip-outside", options.clip_outside, "Keep only points outside the box")
+        .repeatable()
+        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
+    command.add("--clip-plane", options.clip_planes, "Keep only points on the side that the normal points to")
+        .repeatable()
+        .type_name("PX,PY,PZ,NX,NY,NZ");
+    command.flag("--clip-casts", options.clip_casts,
+                 "Clipped points are invisible, but still block and bounce light");
+    command.flag("--legend", options.legend, "Draw a legend of the colours over the picture (.png)");
+    command.flag("--axes", options.axes, "Draw the directions of x, y and z over the picture (.png)");
+    command.flag("--scale-bar", options.scale_bar,
+                 "Draw a scale bar for the distance of the camera's target over the picture (.png)");
+}
+
+Result<void> apply(const LookOptions& options, gi::Look& look) {
+    LUCARNE_TRY(apply_colours(options, look));
+    LUCARNE_TRY(apply_clip(options, look.clip));
+    if (!options.shading.empty()) {
+        LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
+        look.unlit.shading = static_cast<gi::Shading>(shading);
+    }
+    look.legend |= options.legend;
+    look.axes |= options.axes;
+    look.scale_bar |= options.scale_bar;
+    look.unlit.strength = options.shading_strength.value_or(look.unlit.strength);
+    look.point_size = options.point_size.value_or(look.point_size);
+    look.point_pixels = options.point_pixels.value_or(look.point_pixels);
+    if (!options.background.empty()) {
+        LUCARNE_ASSIGN(look.backdrop, parse_background(options.background));
+    }
+    return {};
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gi/scene/scene.h"
+#include "viewer/ui/command_queue.h"
+
+namespace lucarne::viewer {
+
+/// A part of a light that can be dragged in the picture.
+struct LightHandle {
+    enum class Part : uint8_t { position, target, sky } part = Part::position;
+    size_t light = 0;
+    bool operator==(const LightHandle&) const = default;
+};
+
+/// Read a sky picture.
+struct LoadSky {
+    std::string file;
+};
+
+/// What the window remembers for lights in addition to the scene.
+struct LightModel {
+    size_t selected = 0;  ///< index of the selected light
+    bool show_handles = true;
+    bool lumens = false;   ///< show strengths in lm and lx
+    double kelvin = 6500;  ///< the panel's colour temperature
+    std::optional<LightHandle> held;
+    std::vector<std::vector<gi::SceneLight>> undo;  ///< earlier states of the lights, the newest last
+    std::string sky_image;                          ///< path of the sky picture, as typed
+    CommandQueue<LoadSky> commands;
+    std::string reading_sky, sky_problem;  ///< the path being read; why the last picture is not shown
+};
+
+}  // namespace lucarne::viewer

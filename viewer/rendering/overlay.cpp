@@ -1,0 +1,71 @@
+// Draws a comparison's border and the progress of convergence over the picture.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/rendering/rendering.h"
+#include "viewer/ui/on_screen.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr float kGrip = 6;  // half the width that the mouse grabs, to be scaled()
+constexpr ImU32 kShare = IM_COL32(255, 226, 120, 255), kRing = IM_COL32(130, 130, 130, 255),
+                kGrasped = IM_COL32(255, 140, 40, 255), kPaper = IM_COL32(10, 10, 10, 150);
+
+}  // namespace
+
+bool take_comparison_border(const Rendering& model) {
+    if (!model.view.picture) return false;
+    auto& comparison = model.view.scene.comparison;
+    if (!comparison || comparison->show != gi::Comparison::Show::split) return model.holds_border = false;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float x = static_cast<float>(comparison->border) * io.DisplaySize.x;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const bool hovered = !io.WantCaptureMouse && std::abs(io.MousePos.x - x) < scaled(kGrip);
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) model.holds_border = false;
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) model.holds_border = true;
+    list.AddLine({x, 0}, {x, io.DisplaySize.y}, hovered || model.holds_border ? kGrasped : IM_COL32_WHITE,
+                 scaled(2));
+    const float font = ImGui::GetFontSize(), y = io.DisplaySize.y - 3.5f * font;
+    const std::string left = model.view.engine, right = comparison->engine;
+    const ImVec2 size = ImGui::CalcTextSize(left.c_str());
+    const float right_width = ImGui::CalcTextSize(right.c_str()).x;
+    const float gap = scaled(8), edge = scaled(14), above = scaled(3);
+    list.AddRectFilled({x - size.x - edge, y - above}, {x + right_width + edge, y + size.y + above}, kPaper,
+                       scaled(4));
+    list.AddText({x - size.x - gap, y}, IM_COL32_WHITE, left.c_str());
+    list.AddText({x + gap, y}, IM_COL32_WHITE, right.c_str());
+    list.AddLine({x, y - above}, {x, y + size.y + above}, IM_COL32_WHITE, scaled(2));
+    if (hovered || model.holds_border) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (!model.holds_border) return false;
+    const double border = std::clamp(static_cast<double>(io.MousePos.x / io.DisplaySize.x), 0.0, 1.0);
+    if (border != comparison->border) {
+        comparison->border = border;
+        model.view.shown_changed();
+    }
+    return true;
+}
+
+void draw_convergence(const View& view) {
+    if (!view.picture || view.picture->stats.accumulated >= kMostAccumulated) return;
+    const float share =
+        view.picture->moving ? 0 : static_cast<float>(view.picture->stats.accumulated) / kMostAccumulated;
+    const float font = ImGui::GetFontSize(), radius = 0.7f * font;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const ImVec2 centre(size.x - 7 * font, size.y - 1.2f * font);  // the line of messages is in the middle
+    constexpr float kTop = -std::numbers::pi_v<float> / 2;
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddCircleFilled(centre, radius + scaled(4), kPaper);
+    list.AddCircle(centre, radius, kRing, 32, scaled(3));
+    list.PathArcTo(centre, radius, kTop, kTop + share * 2 * std::numbers::pi_v<float>, 32);
+    list.PathStroke(kShare, 0, scaled(3));
+    if (!view.picture->moving)
+        list.AddText({centre.x + radius + scaled(7), centre.y - font / 2}, IM_COL32_WHITE,
+                     fmt::format("{} of {}", view.picture->stats.accumulated, kMostAccumulated).c_str());
+}
+
+}  // namespace lucarne::viewer

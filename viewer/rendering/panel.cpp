@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <imgui.h>
+
+#include "gi/post/false_colour.h"
+#include "gi/registry.h"
+#include "viewer/rendering/rendering.h"
+#include "viewer/ui/widgets.h"
+
+namespace lucarne::viewer {
+namespace {
+
+void engine_choice(const Rendering& model) {
+    if (!ImGui::BeginCombo("engine", model.view.engine.c_str())) return;
+    for (const auto& entry : gi::engines()) {
+        const std::string name(entry.info.name), description(entry.info.description);
+        if (ImGui::Selectable(name.c_str(), name == model.view.engine)) model.view.engine = name;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
+    }
+    ImGui::EndCombo();
+}
+
+void preset_choice(const Rendering& model) {
+    if (!ImGui::BeginCombo("preset", model.view.preset.c_str())) return;
+    for (const Preset& preset : presets()) {
+        const std::string name(preset.name), description(preset.description);
+        if (ImGui::Selectable(name.c_str(), name == model.view.preset))
+            if (const auto chosen = model.view.choose_preset(name); !chosen)
+                model.view.message = chosen.error().line();
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
+    }
+    ImGui::EndCombo();
+}
+
+/// Edits the range of false colours, cd/m^2.
+void luminance_range(const Rendering& model) {
+    const double ev = model.view.picture ? model.view.picture->exposure_ev : 0;
+    const gi::ValueRange shown = gi::luminance_range(model.view.scene.luminance, ev);
+    bool automatic = !model.view.scene.luminance;
+    if (ImGui::Checkbox("automatic range", &automatic)) {
+        model.view.scene.luminance = automatic ? std::nullopt : std::optional(shown);
+        model.view.shown_changed();
+    }
+    float ends[2] = {static_cast<float>(shown.low), static_cast<float>(shown.high)};
+    if (!automatic &&
+        ImGui::DragFloatRange2("cd/m2", &ends[0], &ends[1], ends[1] / 200, 1e-6f, 1e12f, "%.4g", "%.4g",
+                               ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
+        model.view.scene.luminance = gi::ValueRange{ends[0], std::max(ends[1], ends[0] * 1.01f)};
+        model.view.shown_changed();
+    }
+}
+
+void exposure(const Rendering& model) {
+    bool automatic = !model.view.scene.exposure_ev;
+    const float measured = model.view.picture ? static_cast<float>(model.view.picture->exposure_ev) : 0.0f;
+    if (ImGui::Checkbox("automatic exposure", &automatic)) {
+        model.view.scene.exposure_ev = automatic ? std::nullopt : std::optional<double>(measured);
+        model.view.shown_changed();
+    }
+    float stops = static_cast<float>(model.view.scene.exposure_ev.value_or(measured));
+    if (ImGui::SliderFloat("exposure", &stops, -12.0f, 12.0f, "%+.1f stops")) {
+        model.view.scene.exposure_ev = stops;
+        model.view.shown_changed();
+    }
+    const char* const curves[] = {"filmic", "Reinhard", "none", "false colours"};
+    int curve = static_cast<int>(model.view.scene.tone_map);
+    if (ImGui::Combo("tone map", &curve, curves, 4)) {
+        model.view.scene.tone_map = static_cast<gi::ToneMap>(curve);
+        model.view.shown_changed();
+    }
+    if (model.view.scene.tone_map == gi::ToneMap::false_colour) luminance_range(model);
+}
+
+void tell_cost(const char* text) {
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+/// Draws a slider over the powers of two within the option's range. Returns true if the user moved it.
+bool choose_power(const char* label, const gi::SliderRange& slider, int64_t& value) {
+    const int least = static_cast<int>(std::log2(slider.least)),
+              most = static_cast<int>(std::log2(slider.most));
+    int power = least;
+    while (power < most && (int64_t{1} << power) < value) ++power;
+    if (!ImGui::SliderInt(label, &power, least, most, std::to_string(int64_t{1} << power).c_str(),
+                          ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    value = int64_t{1} << power;
+    return true;
+}
+
+bool edit_integer(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto& whole = std::get<int64_t>(value);
+    if (option.slider.logarithmic) return choose_power(label, option.slider, whole);
+    int now = static_cast<int>(whole);
+    const bool unset = !option.unset.empty() && now < option.least;
+    if (!ImGui::SliderInt(label, &now, static_cast<int>(option.slider.least),
+                          static_cast<int>(option.slider.most),
+                          unset ? std::string(option.unset).c_str() : "%d", ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    whole = now;
+    return true;
+}
+
+bool edit_number(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto now = static_cast<float>(std::get<double>(value));
+    const auto least = static_cast<float>(option.slider.least), most = static_cast<float>(option.slider.most);
+    const ImGuiSliderFlags scale =
+        option.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+    if (!ImGui::SliderFloat(label, &now, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp | scale))
+        return false;
+    value = static_cast<double>(now);
+    return true;
+}
+
+bool edit_choice(const gi::OptionInfo& option, const char* label, gi::OptionValue& value) {
+    auto& chosen = std::get<int64_t>(value);
+    const std::string shown = gi::option_text(option, value);
+    if (!ImGui::BeginCombo(label, shown.c_str())) return false;
+    bool changed = false;
+    for (size_t i = 0; i < option.choices.size(); ++i) {
+        if (!ImGui::Selectable(std::string(option.choices[i]).c_str(), chosen == static_cast<int64_t>(i)))
+            continue;
+        chosen = static_cast<int64_t>(i);
+        changed = true;
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool edit_colour(const char* label, gi::OptionValue& value) {
+    auto& colour = std::get<glm::dvec3>(value);
+    float shown[3] = {static_cast<float>(colour.x), static_cast<float>(colour.y),
+                      static_cast<float>(colour.z)};
+    if (!ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_Float)) return false;
+    colour = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
+    return true;
+}
+
+/// Draws the option's control. Returns true if the user changed `value`.
+bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
+    const std::string label(option.label);
+    switch (option.kind) {
+        case gi::OptionKind::flag:
+            return ImGui::Checkbox(label.c_str(), &std::get<bool>(value));
+        case gi::OptionKind::integer:
+            return edit_integer(option, label.c_str(), value);
+        case gi::OptionKind::number:
+            return edit_number(option, label.c_str(), value);
+        case gi::OptionKind::choice:
+            return edit_choice(option, label.c_str(), value);
+        case gi::OptionKind::colour:
+            return edit_colour(label.c_str(), value);
+    }
+    return false;
+}
+
+/// Draws the engine's options with their costs, and the size of pictures.
+void effort(const Rendering& model) {
+    if (!fold("Effort")) return;
+    if (const auto engine = gi::find_engine(model.view.engine))
+        for (const gi::OptionInfo* option : (*engine)->info.options) {
+            if (!option->in_window()) continue;
+            gi::OptionValue value = model.view.settings.get(*option);
+            if (edit_option(*option, value)) model.view.settings.set(*option, value);
+            if (!option->cost.empty()) tell_cost(std::string(option->cost).c_str());
+        }
+    float scale = static_cast<float>(100 * model.view.resolution_scale);
+    if (ImGui::SliderFloat("resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
+                           ImGuiSliderFlags_AlwaysClamp))
+        model.view.resolution_scale =
+            std::clamp(static_cast<double>(scale) / 100, gi::kLeastPictureScale, 1.0);
+    tell_cost(
+        "of the window's width and height that pictures are made at, and scaled up from:\n"
+        "half takes a quarter of the pixels' time, and blurs");
+    ImGui::TextDisabled("picture scale %.2f while moving", model.view.scale);
+    tell_cost("while something moves, slow pictures get smaller; at rest they are made in full");
+}
+
+void albedo(const Rendering& model) {
+    if (!fold("Albedo")) return;
+    gi::Albedo& albedo = model.view.scene.albedo;
+    float scale = static_cast<float>(albedo.scale), flatten = static_cast<float>(albedo.flatten);
+    if (ImGui::SliderFloat("scale", &scale, 0, 3, "%.2f")) {
+        albedo.scale = std::clamp(static_cast<double>(scale), 0.0, 10.0);
+        model.view.scene_changed();
+    }
+    tell_cost("of what the points' colours reflect, which stays within 0 to .95; costs nothing");
+    ImGui::SliderFloat("flatten", &flatten, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    if (flatten != static_cast<float>(albedo.flatten)) {
+        albedo.flatten = flatten;
+        model.view.scene_changed();
+    }
+    tell_cost(
+        "share of the light that the scan was taken in to be divided out: luminance is evened out over\n"
+        "a 48th of the scan's length. All points are sent to the device again");
+}
+
+void comparison(const Rendering& model) {
+    if (!fold("Compare")) return;
+    auto& comparison = model.view.scene.comparison;
+    if (ImGui::BeginCombo("with", comparison ? comparison->engine.c_str() : "nothing")) {
+        if (ImGui::Selectable("nothing", !comparison)) compare_with(model.view, "");
+        for (const auto& entry : gi::engines()) {
+            const std::string name(entry.info.name);
+            if (ImGui::Selectable(name.c_str(), comparison && comparison->engine == name))
+                compare_with(model.view, name);
+        }
+        ImGui::EndCombo();
+    }
+    tell_cost("both engines light every picture: the times add up");
+    if (!comparison) return;
+    const char* const shows[] = {"side by side", "signed difference", "absolute difference"};
+    int show = static_cast<int>(comparison->show);
+    if (ImGui::Combo("as", &show, shows, 3)) {
+        comparison->show = static_cast<gi::Comparison::Show>(show);
+        model.view.shown_changed();
+    }
+    float range = static_cast<float>(comparison->range);
+    if (show != 0 && ImGui::SliderFloat("range", &range, 0.01f, 10, "%.3g", ImGuiSliderFlags_Logarithmic)) {
+        comparison->range = std::max(range, 1e-6f);
+        model.view.shown_changed();
+    }
+}
+
+}  // namespace
+
+void draw_rendering_panel(const Rendering& model) {
+    engine_choice(model);
+    preset_choice(model);
+    effort(model);
+    exposure(model);
+    albedo(model);
+    comparison(model);
+}
+
+}  // namespace lucarne::viewer

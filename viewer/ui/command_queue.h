@@ -1,0 +1,31 @@
+#pragma once
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lucarne::viewer {
+
+/// Commands of actions and panels that wait until the session carries them out, in their order. Each kind of
+/// command is a type, which holds what the command needs.
+template <class... Kinds>
+class CommandQueue {
+ public:
+    using Command = std::variant<Kinds...>;
+
+    void push(Command command) { waiting_.push_back(std::move(command)); }
+    /// Returns the waiting commands and forgets them.
+    std::vector<Command> take() { return std::exchange(waiting_, {}); }
+    bool empty() const { return waiting_.empty(); }
+
+ private:
+    std::vector<Command> waiting_;
+};
+
+/// Joins functions, one for each kind of command, for std::visit.
+template <class... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,47 @@
+#include "viewer/ui/scene_file.h"
+
+#include "io/files/free_name.h"
+
+namespace lucarne::viewer {
+
+gi::Scene scene_to_save(const View& view) {
+    gi::Scene scene = view.scene;
+    std::erase_if(scene.cameras, [](const gi::SceneCamera& camera) { return camera.name == "view"; });
+    gi::SceneCamera camera = view.rig.camera();
+    camera.name = "view";
+    if (const auto preset = find_preset(view.preset)) scene.render = settings_over(*preset, view.settings);
+    scene.render.engine = view.engine;
+    scene.render.scale.reset();
+    if (view.resolution_scale != 1) scene.render.scale = view.resolution_scale;
+    scene.cameras.insert(scene.cameras.begin(), camera);
+    return scene;
+}
+
+void SceneFile::mark(const View& view) {
+    saved_ = gi::write_scene(view.scene);
+    version_ = view.scene_version;
+}
+
+bool SceneFile::differs(const View& view) const {
+    return view.scene_version != version_ && gi::write_scene(view.scene) != saved_;
+}
+
+std::filesystem::path SceneFile::place(const View& view) const {
+    if (!path_.empty()) return path_;
+    return free_name(view.pictures, "scene", {".json"}).string() + ".json";
+}
+
+Result<void> SceneFile::save_as(const View& view, const std::filesystem::path& path) {
+    LUCARNE_TRY(gi::save_scene(scene_to_save(view), path, path == path_));
+    path_ = path;
+    mark(view);
+    return {};
+}
+
+void SceneFile::save(View& view) {
+    const auto path = place(view);
+    const auto saved = save_as(view, path);
+    view.message = saved ? "saved " + path.string() : saved.error().line();
+}
+
+}  // namespace lucarne::viewer

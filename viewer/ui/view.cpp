@@ -1,0 +1,18 @@
+#include "viewer/ui/view.h"
+
+#include "gi/registry.h"
+
+namespace lucarne::viewer {
+
+Result<void> View::choose_preset(std::string_view name) {
+    LUCARNE_ASSIGN(const Preset chosen, find_preset(name));
+    const gi::EngineSettings before = settings;
+    preset = chosen.name;
+    settings = chosen.engine;
+    budgets = chosen.budgets;
+    for (const gi::OptionInfo* option : gi::engine_options())
+        if (option->keeps) settings.set(*option, before.get(*option));
+    return {};
+}
+
+}  // namespace lucarne::viewer

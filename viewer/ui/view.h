@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "viewer/camera/camera.h"
+#include "viewer/camera/navigation.h"
+#include "viewer/frame/picture_worker.h"
+#include "viewer/frame/presets.h"
+#include "viewer/ui/side_bar.h"
+
+namespace lucarne::viewer {
+
+/// What all features of the window share: the scene, the camera, how pictures are made, and the newest
+/// picture. Actions and panels write it; the session turns it into requests.
+struct View {
+    explicit View(double its_scene_size) : scene_size(its_scene_size), navigation(its_scene_size) {}
+
+    double scene_size;                ///< diagonal, world units
+    std::array<glm::dvec3, 2> box{};  ///< bounding box of the open scans, world units
+    CameraRig rig;
+    gi::SceneCamera home;  ///< the starting view
+    Navigation navigation;
+
+    gi::Scene scene;
+    uint64_t scene_version = 1, shown_changes = 0;
+    std::string engine, preset;
+    gi::EngineSettings settings;
+    CutBudgets budgets;
+    double resolution_scale = 1;  ///< share of the window's width and height at which pictures are made
+    double frame_time = 0.1;      ///< s: target time of a picture while something moves
+    PipelineOptions caps;
+
+    SideBar side_bar;
+    std::string message;                   ///< result of the last action, or why there is no new picture
+    std::filesystem::path pictures = ".";  ///< the folder for saved pictures
+
+    // What the screen shows.
+    std::shared_ptr<const Picture> picture;
+    gi::DeviceInfo device;
+    double scale = 1;  ///< scale of the picture while something moves
+
+    /// Call after every change of `scene`.
+    void scene_changed() { ++scene_version; }
+    /// Call instead of scene_changed() after changes that neither move anything nor change light: exposure,
+    /// tone curve, the border of a comparison.
+    void shown_changed() {
+        ++scene_version;
+        ++shown_changes;
+    }
+    void go_to(const gi::SceneCamera& camera) {
+        rig = CameraRig(camera);
+        rig.set_clearance(scene_size);
+    }
+    /// Takes a preset's settings and budgets. Errors: no preset has this name.
+    Result<void> choose_preset(std::string_view name);
+};
+
+}  // namespace lucarne::viewer

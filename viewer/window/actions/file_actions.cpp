@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <array>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "viewer/scans/scan_set.h"
+#include "viewer/window/actions/actions.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using Entry = Action<ViewModel>;
+
+void open_file(ViewModel& model) {
+    model.scan_commands.push(ChooseFiles{});
+}
+void close_scans(ViewModel& model) {
+    const std::vector<ScanRow> rows = model.scans->rows();
+    for (const ScanRow& row : rows) model.scans->remove(row.id);
+}
+bool has_scans(const ViewModel& model) {
+    return model.scans && !model.scans->rows().empty();
+}
+void cancel(ViewModel& model) {
+    const std::vector<ScanRow> rows = model.scans->rows();
+    for (const ScanRow& row : rows)
+        if (row.busy()) model.scans->stop(row.id);
+}
+bool is_busy(const ViewModel& model) {
+    return has_scans(model) && std::ranges::any_of(model.scans->rows(), &ScanRow::busy);
+}
+void go_on(ViewModel& model) {
+    for (const ScanRow& row : model.scans->rows()) model.scans->go_on(row.id);
+}
+bool is_stopped(const ViewModel& model) {
+    return has_scans(model) && std::ranges::any_of(model.scans->rows(), [](const ScanRow& row) {
+               return row.state == ScanState::stopped;
+           });
+}
+void save_scene(ViewModel& model) {
+    model.commands.push(SaveScene{});
+}
+void save_picture(ViewModel& model) {
+    model.commands.push(SavePicture{});
+}
+bool can_save_picture(const ViewModel& model) {
+    return model.view.picture != nullptr;
+}
+void close(ViewModel& model) {
+    model.commands.push(Close{});
+}
+
+}  // namespace
+
+std::span<const Action<ViewModel>> file_actions() {
+    static constexpr std::array kActions = {
+        Entry{{GLFW_KEY_O, GLFW_MOD_CONTROL}, "File", "Open scans...", open_file},
+        Entry{{GLFW_KEY_W, GLFW_MOD_CONTROL}, "File", "Close all scans", close_scans, has_scans},
+        Entry{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
+        Entry{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Go on with conversions", go_on, is_stopped},
+        Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL}, "File", "Save scene", save_scene},
+        Entry{{GLFW_KEY_F12}, "File", "Save the picture as PNG", save_picture, can_save_picture},
+        Entry{{GLFW_KEY_Q, GLFW_MOD_CONTROL}, "File", "Quit", close},
+    };
+    return kActions;
+}
+
+}  // namespace lucarne::viewer

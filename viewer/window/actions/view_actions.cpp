@@ -1,0 +1,96 @@
+#include <array>
+#include <numbers>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "viewer/window/actions/actions.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using Entry = Action<ViewModel>;
+
+constexpr double kRight = std::numbers::pi / 2;  ///< a right angle, radians
+
+void go_home(ViewModel& model) {
+    model.view.go_to(model.view.home);
+}
+void fit(ViewModel& model) {
+    model.view.rig.fit(model.view.box);
+}
+bool has_picture(const ViewModel& model) {
+    return model.view.picture != nullptr;
+}
+
+/// Looks at all open scans from outside. Seen from above, north (y) is up.
+template <int kYaw, int kPitch>
+void look(ViewModel& model) {
+    model.view.rig.look_along(kYaw * kRight, kPitch * kRight);
+    model.view.rig.fit(model.view.box);
+}
+
+void toggle_projection(ViewModel& model) {
+    model.view.rig.set_orthographic(!model.view.rig.orthographic());
+}
+bool orthographic(const ViewModel& model) {
+    return model.view.rig.orthographic();
+}
+
+template <NavigationMode kMode>
+void navigate(ViewModel& model) {
+    model.view.navigation.set_mode(kMode);
+    if (!model.view.navigation.turns_scene())
+        model.view.rig.set_orthographic(false);  // flying and walking need perspective
+    switch (kMode) {
+        case NavigationMode::orbit:
+            model.view.message = "drags turn around the point under the cursor";
+            break;
+        case NavigationMode::turntable:
+            model.view.message = "drags turn around the point of the last double-click";
+            break;
+        case NavigationMode::fly:
+            model.view.message = "flying: W A S D, E and Q for up and down";
+            break;
+        case NavigationMode::walk:
+            model.view.message = "walking: W A S D, at eye height above the floor";
+            break;
+    }
+}
+template <NavigationMode kMode>
+bool navigates(const ViewModel& model) {
+    return model.view.navigation.mode() == kMode;
+}
+void toggle_gravity(ViewModel& model) {
+    model.view.navigation.set_gravity(!model.view.navigation.gravity());
+}
+bool gravity(const ViewModel& model) {
+    return model.view.navigation.gravity();
+}
+
+}  // namespace
+
+std::span<const Action<ViewModel>> view_actions() {
+    using enum NavigationMode;
+    static constexpr const char *kMenu = "View", *kSides = "View/From a side", *kModes = "View/Navigation";
+    static constexpr std::array kActions = {
+        Entry{{GLFW_KEY_HOME}, kMenu, "Back to the first view", go_home, has_picture},
+        Entry{{GLFW_KEY_0}, kMenu, "Fit all", fit, has_picture},
+        Entry{{GLFW_KEY_9}, kMenu, "Orthographic", toggle_projection, nullptr, orthographic},
+        Entry{{GLFW_KEY_1}, kSides, "Front", look<1, 0>, has_picture},
+        Entry{{GLFW_KEY_2}, kSides, "Back", look<-1, 0>, has_picture},
+        Entry{{GLFW_KEY_3}, kSides, "Left", look<0, 0>, has_picture},
+        Entry{{GLFW_KEY_4}, kSides, "Right", look<2, 0>, has_picture},
+        Entry{{GLFW_KEY_5}, kSides, "Top", look<1, -1>, has_picture},
+        Entry{{GLFW_KEY_6}, kSides, "Bottom", look<1, 1>, has_picture},
+        Entry{{GLFW_KEY_O}, kModes, "Orbit", navigate<orbit>, nullptr, navigates<orbit>},
+        Entry{{GLFW_KEY_T}, kModes, "Turntable", navigate<turntable>, nullptr, navigates<turntable>},
+        Entry{{GLFW_KEY_F}, kModes, "Fly", navigate<fly>, nullptr, navigates<fly>},
+        Entry{{GLFW_KEY_H}, kModes, "Walk", navigate<walk>, nullptr, navigates<walk>},
+        Entry{{GLFW_KEY_J}, kModes, "Gravity while walking", toggle_gravity, nullptr, gravity},
+    };
+    return kActions;
+}
+
+}  // namespace lucarne::viewer

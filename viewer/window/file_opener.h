@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+
+#include "viewer/scans/file_browser.h"
+#include "viewer/scans/native_dialog.h"
+#include "viewer/window/kept_settings.h"
+#include "viewer/window/view_model.h"
+#include "viewer/window/window.h"
+
+namespace lucarne::viewer {
+
+/// Lets the user choose files, opens them, and remembers them in the settings.
+class FileOpener {
+ public:
+    FileOpener(Window& window, ViewModel& model, KeptSettings& settings)
+        : window_(window), model_(model), settings_(settings) {}
+
+    /// Opens files that were dropped on the window or chosen in a dialog.
+    void take_files();
+    void draw() { draw_file_browser(browser_, model_.scan_commands); }
+
+ private:
+    void choose_files();
+    std::filesystem::path folder() const;
+
+    Window& window_;
+    ViewModel& model_;
+    KeptSettings& settings_;
+    NativeDialog dialog_;
+    FileBrowser browser_;
+};
+
+}  // namespace lucarne::viewer
