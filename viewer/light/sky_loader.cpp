@@ -13,23 +13,23 @@ SkyLoader::Sky read(const std::string& path) {
 }  // namespace
 
 void SkyLoader::load(std::string path) {
-    uint64_t wish = 0;
+    uint64_t request = 0;
     {
         const std::lock_guard lock(shared_->mutex);
         shared_->wanted = path;
-        wish = ++shared_->wish;
+        request = ++shared_->request;
         shared_->sky.reset();
     }
-    const auto newest = [shared = shared_, wish] {
+    const auto newest = [shared = shared_, request] {
         const std::lock_guard lock(shared->mutex);
-        return wish == shared->wish;
+        return request == shared->request;
     };
     jobs_.push(
         path, [newest, path] { return newest() ? read(path) : Sky(nullptr); },
-        [shared = shared_, wish, done = done_](Sky sky) {
+        [shared = shared_, request, done = done_](Sky sky) {
             {
                 const std::lock_guard lock(shared->mutex);
-                if (wish != shared->wish) return;
+                if (request != shared->request) return;
                 shared->sky = std::move(sky);
                 shared->wanted.clear();
             }

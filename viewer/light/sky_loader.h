@@ -31,7 +31,7 @@ class SkyLoader {
     struct Shared {
         std::mutex mutex;
         std::string wanted;  ///< path of the newest request; empty: it was taken
-        uint64_t wish = 0;   ///< number of the newest request
+        uint64_t request = 0;   ///< number of the newest request
         std::optional<Sky> sky;
     };
 

@@ -68,7 +68,7 @@ class VplEngine : public Engine {
     Basis basis_;           ///< what bounces_ were made from
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
-    Panes panes_;
+    Tiles tiles_;
     History history_;
     Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
@@ -125,7 +125,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
     redistribution_.best_candidate = s[kBestCandidate];
     redistribution_.footprint_variance = footprint_variance(frame.index);
-    LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_panes(frame, glossy(frame), panes_); }));
+    LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
     if (!held) {
         LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
             return sights_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index), bounces_[0].seeds);
@@ -145,7 +145,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
                         [&] { return trim_footprints(frame.gl.device, maps_, shrink, seeds); });
         if (done && (s[kOnlyBounce] < 0 || bounce == last))
             done = pass(frame, "VPL shading",
-                        [&] { return shade_panes(frame, materials_, seeds, maps_, panes_); });
+                        [&] { return shade_tiles(frame, materials_, seeds, maps_, tiles_); });
         if (done && !held && bounce < last)
             done = pass(frame, "VPL redistribution", [&] {
                 const auto salt = static_cast<uint32_t>(mix64(mix64(s[kSeed], frame.index), bounce));
@@ -159,7 +159,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const bool reuse = frame.moving && s[kReuse];
     if (reuse) LUCARNE_TRY(history_.begin(frame, scene_));
     return pass(frame, "VPL merge",
-                [&] { return merge_panes(frame, materials_, panes_, reuse ? &history_ : nullptr); });
+                [&] { return merge_tiles(frame, materials_, tiles_, reuse ? &history_ : nullptr); });
 }
 
 /// Adds emission, background and the first reflection of the lights.

@@ -5,9 +5,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/engines/vpl/shading/isolated.h"
 #include "gi/engines/vpl/shading/join.glsl"
 
-layout(std430, binding = kBindLonely) buffer Lonely {  // isolated pixels, which lack too many interleaved tiles
-    IsolatedHeader lonely;
-    uint lonely_pixels[];
+layout(std430, binding = kBindIsolated) buffer Isolated {  // isolated pixels, which lack too many interleaved tiles
+    IsolatedHeader isolated;
+    uint isolated_pixels[];
 };
 
 // Returns whether the surfaces of two pixels are alike: max(0, n.n')^32 exp(-plane distance / (sigma z)) is at least
@@ -44,10 +44,10 @@ void main() {
         if (!found) missing |= 1u << i;
     }
     joints[index] = uvec2(candidates, missing);
-    if (panes_lacking(n, missing) > 0) {
-        uint place = atomicAdd(lonely.count, 1u);
-        lonely_pixels[place] = index;
+    if (tiles_lacking(n, missing) > 0) {
+        uint place = atomicAdd(isolated.count, 1u);
+        isolated_pixels[place] = index;
         if (place % kIsolatedGroup == 0u)
-            atomicMax(lonely.groups[0], min(place / kIsolatedGroup + 1u, kMostIsolatedGroups));
+            atomicMax(isolated.groups[0], min(place / kIsolatedGroup + 1u, kMostIsolatedGroups));
     }
 }

@@ -1,4 +1,4 @@
-// Writes the indirect light of every pixel: the mean over its interleaved tiles (panes), so that every VPL counts
+// Writes the indirect light of every pixel: the mean over its interleaved tiles, so that every VPL counts
 // alike, times the reflectance of the receiver, plus its specular light.
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -8,8 +8,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gi/engines/vpl/shading/history.glsl"
 #endif
 
-layout(binding = kUnitDiffuse) uniform samplerBuffer diffuse_panes;
-layout(binding = kUnitSpecular) uniform samplerBuffer specular_panes;
+layout(binding = kUnitDiffuse) uniform samplerBuffer diffuse_tiles;
+layout(binding = kUnitSpecular) uniform samplerBuffer specular_tiles;
 layout(binding = kUnitOwnDiffuse) uniform samplerBuffer own_diffuse;
 layout(binding = kUnitOwnSpecular) uniform samplerBuffer own_specular;
 layout(std430, binding = kBindRadiance) writeonly buffer Radiance { vec4 radiance[]; };
@@ -23,8 +23,8 @@ void main() {
     if (texel.depth > 0.0) {
         int n = int(interleave);
         uvec2 joint = joints[index];
-        int lacking = panes_lacking(n, joint.y);
-        // The light that shade_lonely.comp added for isolated pixels; 0 for all others.
+        int lacking = tiles_lacking(n, joint.y);
+        // The light that shade_isolated.comp added for isolated pixels; 0 for all others.
         vec3 irradiance = texelFetch(own_diffuse, int(index)).xyz;
         vec3 specular = vec3(0.0);
 #ifdef LUCARNE_GLOSSY
@@ -34,18 +34,18 @@ void main() {
             ivec2 at = window_pixel(ivec2(pixel), n, i, int(joint.x >> 2 * i & 3u));
             if ((joint.y >> i & 1u) != 0u) continue;
             int other = at.y * int(camera.width) + at.x;
-            irradiance += texelFetch(diffuse_panes, other).xyz;
+            irradiance += texelFetch(diffuse_tiles, other).xyz;
 #ifdef LUCARNE_GLOSSY
-            specular += texelFetch(specular_panes, other).xyz;
+            specular += texelFetch(specular_tiles, other).xyz;
 #endif
         }
-        float panes = float(n * n - bitCount(joint.y) + lacking);
+        float tiles = float(n * n - bitCount(joint.y) + lacking);
         Receiver receiver = pixel_receiver(pixel, texel);
-        irradiance /= panes;
+        irradiance /= tiles;
 #ifdef LUCARNE_HISTORY
         irradiance = with_history(index, receiver.position, receiver.normal, texel.depth, irradiance);
 #endif
-        light = irradiance * receiver.reflectance.kd / kPi + specular / panes;
+        light = irradiance * receiver.reflectance.kd / kPi + specular / tiles;
     }
 #ifdef LUCARNE_HISTORY
     else

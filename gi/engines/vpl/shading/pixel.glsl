@@ -25,11 +25,11 @@ Receiver pixel_receiver(uvec2 pixel, GBufferTexel texel) {
     return receiver;
 }
 
-// Returns the estimate of the light of all VPLs by one pane.
-Gathered gather_pane(Receiver receiver, uint pane) {
-    uint panes = interleave * interleave;
-    Gathered gathered = gather(receiver, pane, panes, light_count);
-    gathered.irradiance *= float(panes);
-    gathered.specular *= float(panes);
+// Returns the estimate of the light of all VPLs by one tile.
+Gathered gather_tile(Receiver receiver, uint tile) {
+    uint tiles = interleave * interleave;
+    Gathered gathered = gather(receiver, tile, tiles, light_count);
+    gathered.irradiance *= float(tiles);
+    gathered.specular *= float(tiles);
     return gathered;
 }

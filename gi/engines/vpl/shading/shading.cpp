@@ -10,8 +10,8 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-Defines defines(const Panes& panes) {
-    return panes.glossy ? Defines{{"LUCARNE_GLOSSY", "1"}} : Defines{};
+Defines defines(const Tiles& tiles) {
+    return tiles.glossy ? Defines{{"LUCARNE_GLOSSY", "1"}} : Defines{};
 }
 
 void bind_pixels(const Frame& frame, const Program& program) {
@@ -22,7 +22,7 @@ void bind_pixels(const Frame& frame, const Program& program) {
 
 }  // namespace
 
-Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
+Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     LUCARNE_ASSIGN(const Program* join, frame.gl.device.program("gi/engines/vpl/shading/join.comp"));
     const size_t pixels = size_t{frame.gl.gbuffer.width} * frame.gl.gbuffer.height;
     const size_t bytes = pixels * 4 * sizeof(float), one = 4 * sizeof(float);
@@ -32,29 +32,29 @@ Result<void> join_panes(Frame& frame, bool glossy, Panes& target) {
     LUCARNE_TRY(frame.gl.device.reserve(target.specular, glossy ? bytes : one, "indirect specular light"));
     LUCARNE_TRY(
         frame.gl.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
-    LUCARNE_TRY(frame.gl.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "panes"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "tiles"));
     LUCARNE_TRY(
-        frame.gl.device.reserve(target.lonely, sizeof(IsolatedHeader) + pixels * sizeof(uint32_t), "panes"));
+        frame.gl.device.reserve(target.isolated, sizeof(IsolatedHeader) + pixels * sizeof(uint32_t), "tiles"));
     for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
         light->clear(0);
-    target.lonely.upload_all(std::vector<IsolatedHeader>{{{0, 1, 1}, 0}});
+    target.isolated.upload_all(std::vector<IsolatedHeader>{{{0, 1, 1}, 0}});
     target.joints.bind(kBindJoints);
-    target.lonely.bind(kBindLonely);
+    target.isolated.bind(kBindIsolated);
     bind_pixels(frame, *join);
     join->dispatch(frame.gl.gbuffer.width, frame.gl.gbuffer.height);
     return {};
 }
 
-Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         Panes& target) {
+Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
+                         Tiles& target) {
     LUCARNE_ASSIGN(const Program* shade,
                    frame.gl.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
-    LUCARNE_ASSIGN(const Program* shade_lonely,
-                   frame.gl.device.program("gi/engines/vpl/shading/shade_lonely.comp", defines(target)));
+    LUCARNE_ASSIGN(const Program* shade_isolated,
+                   frame.gl.device.program("gi/engines/vpl/shading/shade_isolated.comp", defines(target)));
     materials.bind(kBindMaterials);
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
-    for (const Program* program : {shade, shade_lonely}) {
+    for (const Program* program : {shade, shade_isolated}) {
         bind_pixels(frame, *program);
         set_layout(*program, maps.layout);
         program->set("light_count", maps.layout.maps);
@@ -66,23 +66,23 @@ Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& see
     shade->dispatch((frame.gl.gbuffer.width + n - 1) / n, (frame.gl.gbuffer.height + n - 1) / n, n * n);
     if (n == 1) return {};
     target.joints.bind(kBindJoints);
-    target.lonely.bind(kBindLonely);
+    target.isolated.bind(kBindIsolated);
     target.own_diffuse.bind(kBindDiffuse);
     target.own_specular.bind(kBindSpecular);
-    shade_lonely->dispatch_indirect(target.lonely, offsetof(IsolatedHeader, groups));
+    shade_isolated->dispatch_indirect(target.isolated, offsetof(IsolatedHeader, groups));
     return {};
 }
 
-Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history) {
-    Defines how = defines(panes);
+Result<void> merge_tiles(Frame& frame, const Buffer& materials, const Tiles& tiles, History* history) {
+    Defines how = defines(tiles);
     if (history) how.emplace_back("LUCARNE_HISTORY", "1");
     LUCARNE_ASSIGN(const Program* merge, frame.gl.device.program("gi/engines/vpl/shading/merge.comp", how));
     materials.bind(kBindMaterials);
-    panes.joints.bind(kBindJoints);
-    panes.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
-    panes.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
-    panes.own_diffuse.bind_texels(kUnitOwnDiffuse, TexelView::four_floats);
-    panes.own_specular.bind_texels(kUnitOwnSpecular, TexelView::four_floats);
+    tiles.joints.bind(kBindJoints);
+    tiles.diffuse.bind_texels(kUnitDiffuse, TexelView::four_floats);
+    tiles.specular.bind_texels(kUnitSpecular, TexelView::four_floats);
+    tiles.own_diffuse.bind_texels(kUnitOwnDiffuse, TexelView::four_floats);
+    tiles.own_specular.bind_texels(kUnitOwnSpecular, TexelView::four_floats);
     frame.gl.radiance.bind(kBindRadiance);
     bind_pixels(frame, *merge);
     if (history) history->bind(frame, *merge);

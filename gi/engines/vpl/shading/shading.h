@@ -7,27 +7,27 @@
 
 namespace lucarne::gi::vpl {
 
-/// The light of the VPLs of all bounces at every pixel. Each pixel belongs to an interleaved tile (pane) and
+/// The light of the VPLs of all bounces at every pixel. Each pixel belongs to an interleaved tile and
 /// has the light of the VPLs of that tile.
-struct Panes {
+struct Tiles {
     Buffer diffuse;   ///< vec4, irradiance
     Buffer specular;  ///< vec4, radiance by the receiver's lobe; one texel where nothing is glossy
-    Buffer own_diffuse, own_specular;  ///< the same for isolated pixels, from the panes they lack
-    Buffer joints, lonely;             ///< join.glsl, join.comp
+    Buffer own_diffuse, own_specular;  ///< the same for isolated pixels, from the tiles they lack
+    Buffer joints, isolated;             ///< join.glsl, join.comp
     bool glossy = false;
 };
 
 /// Decides from which pixels the light of each pixel is gathered, and clears the light. `glossy` says
 /// whether any material has a specular lobe. Errors: no device memory, a shader that fails.
-Result<void> join_panes(Frame& frame, bool glossy, Panes& target);
+Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target);
 
 /// Adds the light of these VPLs to every pixel. `materials` comes from upload_materials(). Errors: a shader
 /// that fails.
-Result<void> shade_panes(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         Panes& target);
+Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
+                         Tiles& target);
 
-/// Writes the gathered light of all panes to frame.gl.radiance, averaged with `history` unless it is null;
+/// Writes the gathered light of all tiles to frame.gl.radiance, averaged with `history` unless it is null;
 /// History::begin() must have been called for the frame. Errors: a shader that fails.
-Result<void> merge_panes(Frame& frame, const Buffer& materials, const Panes& panes, History* history);
+Result<void> merge_tiles(Frame& frame, const Buffer& materials, const Tiles& tiles, History* history);
 
 }  // namespace lucarne::gi::vpl

@@ -1,12 +1,12 @@
-// Shades isolated pixels, which have too few neighbours of their own surface, with the VPLs of the panes that they
+// Shades isolated pixels, which have too few neighbours of their own surface, with the VPLs of the tiles that they
 // lack.
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/shading/isolated.h"
 #include "gi/engines/vpl/shading/join.glsl"
 
-layout(std430, binding = kBindLonely) readonly buffer Lonely {
-    IsolatedHeader lonely;
-    uint lonely_pixels[];
+layout(std430, binding = kBindIsolated) readonly buffer Isolated {
+    IsolatedHeader isolated;
+    uint isolated_pixels[];
 };
 layout(std430, binding = kBindDiffuse) buffer OwnDiffuse { vec4 own_diffuse[]; };
 layout(std430, binding = kBindSpecular) buffer OwnSpecular { vec4 own_specular[]; };
@@ -18,12 +18,12 @@ void shade(uint index) {
     Receiver receiver = pixel_receiver(pixel, camera_texel(index));
     int n = int(interleave);
     uint missing = joints[index].y;
-    int lacking = panes_lacking(n, missing);
+    int lacking = tiles_lacking(n, missing);
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     do {
-        Gathered pane = gather_pane(receiver, window_pane(ivec2(pixel), n, findLSB(missing)));
-        sum.irradiance += pane.irradiance;
-        sum.specular += pane.specular;
+        Gathered tile = gather_tile(receiver, window_tile(ivec2(pixel), n, findLSB(missing)));
+        sum.irradiance += tile.irradiance;
+        sum.specular += tile.specular;
         missing &= missing - 1u;
         --lacking;
     } while (lacking > 0);
@@ -35,9 +35,9 @@ void shade(uint index) {
 
 void main() {
     uint number = gl_GlobalInvocationID.x;
-    if (number >= lonely.count) return;
+    if (number >= isolated.count) return;
     do {
-        shade(lonely_pixels[number]);
+        shade(isolated_pixels[number]);
         number += gl_NumWorkGroups.x * kIsolatedGroup;
-    } while (number < lonely.count);
+    } while (number < isolated.count);
 }
