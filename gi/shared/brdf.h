@@ -1,4 +1,4 @@
-// The reflectance model that all engines share, for C++ and GLSL.
+// The reflectance model that all engines share, for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_BRDF_H
 #define LUCARNE_GI_SHARED_BRDF_H
 
@@ -9,13 +9,13 @@
 namespace lucarne::gi {
 #endif
 
-const float kPi = 3.14159265f;
+LUCARNE_CONST float kPi = 3.14159265f;
 // Largest albedo of any channel. No scanned surface reflects more, and light in a closed white room would
 // never die out.
-const float kLargestAlbedo = 0.95f;
+LUCARNE_CONST float kLargestAlbedo = 0.95f;
 
 // The reflectance of a surface, made from its material and the scan's colour: kd + ks <= 1 in every channel.
-struct Reflectance {
+LUCARNE_STRUCT(Reflectance) {
     vec3 kd;
     float ks;
     float exponent;

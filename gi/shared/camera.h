@@ -1,14 +1,12 @@
-// A pinhole or orthographic camera (or a light's view, a pinhole) shared by C++ and GLSL (std140 and std430).
+// A pinhole or orthographic camera (or a light's view, a pinhole) for C++, GLSL (std140 and std430) and
+// OpenCL C.
 #ifndef LUCARNE_GI_SHARED_CAMERA_H
 #define LUCARNE_GI_SHARED_CAMERA_H
 
-#ifdef __cplusplus
-#include <cstdint>
+#include "gi/shared/language.h"
 
-#include <glm/vec4.hpp>
+#ifdef __cplusplus
 namespace lucarne::gi {
-using uint = uint32_t;
-using vec4 = glm::vec4;
 #endif
 
 // The ray through pixel (x, y), row 0 on top, has the direction
@@ -18,9 +16,9 @@ using vec4 = glm::vec4;
 // direction `forward`, and the ray through (x, y) starts at
 //   origin + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1);
 // There `right` and `up` carry half the width and half the height of the view, m.
-const uint kPerspective = 0u, kOrthographic = 1u;
+LUCARNE_CONST uint kPerspective = 0u, kOrthographic = 1u;
 
-struct CameraView {
+LUCARNE_STRUCT(CameraView) {
     vec4 origin;   // xyz: metres, relative to the local origin; w: near plane (m)
     vec4 forward;  // unit
     vec4 right;    // unit * tan(half horizontal field), or half the width

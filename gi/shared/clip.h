@@ -1,4 +1,4 @@
-// Clip shapes and the test of a point against them, for C++ and GLSL.
+// Clip shapes and the test of a point against them, for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_CLIP_H
 #define LUCARNE_GI_SHARED_CLIP_H
 
@@ -10,19 +10,19 @@ namespace lucarne::gi {
 
 // One clip shape, in metres relative to the local origin. The first shape of a list also holds the number of
 // shapes.
-struct ClipShape {
+LUCARNE_STRUCT(ClipShape) {
     vec4 axis[3];  // a box: |dot(axis.xyz, p) + axis.w| <= 1 for all three
     vec4 kind;     // x: one of the three kinds below; y: number of shapes (first shape only)
 };
-const float kClipInside = 0.0f;   // keeps the points inside any box of this kind
-const float kClipOutside = 1.0f;  // removes the points inside a box of this kind
-const float kClipPlane = 2.0f;    // keeps the points with dot(axis[0].xyz, p) + axis[0].w >= 0
+LUCARNE_CONST float kClipInside = 0.0f;   // keeps the points inside any box of this kind
+LUCARNE_CONST float kClipOutside = 1.0f;  // removes the points inside a box of this kind
+LUCARNE_CONST float kClipPlane = 2.0f;    // keeps the points with dot(axis[0].xyz, p) + axis[0].w >= 0
 
 // State of a point after some shapes have been tested. Shapes are folded in one by one, in any order.
-const uint kClipUntold = 0u;  // not removed, and no kClipInside box so far
-const uint kClipInNone = 1u;  // outside every kClipInside box so far
-const uint kClipInOne = 2u;   // inside one of them
-const uint kClipGone = 3u;    // removed
+LUCARNE_CONST uint kClipUntold = 0u;  // not removed, and no kClipInside box so far
+LUCARNE_CONST uint kClipInNone = 1u;  // outside every kClipInside box so far
+LUCARNE_CONST uint kClipInOne = 2u;   // inside one of them
+LUCARNE_CONST uint kClipGone = 3u;    // removed
 LUCARNE_FN bool clip_kept(uint known) {
     return known == kClipUntold || known == kClipInOne;
 }

@@ -1,4 +1,4 @@
-// Texture units of a cut, shared by C++ and GLSL. No shader uses them for anything else.
+// Texture units of a cut, for C++ and GLSL. No shader uses them for anything else.
 #ifndef LUCARNE_GI_SHARED_CUT_BINDINGS_H
 #define LUCARNE_GI_SHARED_CUT_BINDINGS_H
 
@@ -8,9 +8,9 @@
 namespace lucarne::gi {
 #endif
 
-const uint kUnitCutPool = 0u;    // PackedSurfel[]
-const uint kUnitCutItems = 1u;   // CutItem[], then ClipShape[]
-const uint kUnitCutBlocks = 2u;  // CutBlock[]
+LUCARNE_CONST uint kUnitCutPool = 0u;    // PackedSurfel[]
+LUCARNE_CONST uint kUnitCutItems = 1u;   // CutItem[], then ClipShape[]
+LUCARNE_CONST uint kUnitCutBlocks = 2u;  // CutBlock[]
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi

@@ -2,16 +2,13 @@
 #ifndef LUCARNE_GI_SHARED_FLAT_SURFEL_H
 #define LUCARNE_GI_SHARED_FLAT_SURFEL_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi {
-using uint = uint32_t;
-#endif
-#ifdef __OPENCL_VERSION__
-typedef struct FlatSurfel FlatSurfel;
 #endif
 
-struct FlatSurfel {
+LUCARNE_STRUCT(FlatSurfel) {
     float x, y, z;  // m, relative to the local origin
     float radius;   // m; 0: no surfel has this id, or it is not drawn
     float area;     // m^2, its share of the surface

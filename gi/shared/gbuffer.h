@@ -1,14 +1,15 @@
-// The G-buffer's texel, shared by C++ and GLSL (std430): one SSBO of width * height of them, row 0 on top.
+// The G-buffer's texel, for C++, GLSL (std430) and OpenCL C: one buffer of width * height of them, row 0 on
+// top.
 #ifndef LUCARNE_GI_SHARED_GBUFFER_H
 #define LUCARNE_GI_SHARED_GBUFFER_H
 
+#include "gi/shared/language.h"
+
 #ifdef __cplusplus
-#include <cstdint>
 namespace lucarne::gi {
-using uint = uint32_t;
 #endif
 
-struct GBufferTexel {
+LUCARNE_STRUCT(GBufferTexel) {
     float depth;    // along the camera's forward axis, m; 0: empty
     uint normal;    // octahedral 2 x 16 bit, turned toward the viewer (a surfel is an opaque sheet with two
                     // equal sides); surfels without a normal face the viewer
@@ -20,7 +21,7 @@ struct GBufferTexel {
 // noise of their planes would decide. So discs are ordered by the depth of their plane, pushed back by this
 // share of the radius times (distance from the centre / radius)^2. A disc may therefore show where it sticks
 // out of another surface by up to this share of its radius, and no further.
-const float kRimPush = 0.25f;
+LUCARNE_CONST float kRimPush = 0.25f;
 
 #ifdef __cplusplus
 static_assert(sizeof(GBufferTexel) == 16);

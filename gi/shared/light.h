@@ -1,4 +1,4 @@
-// Lights as devices store them (std430) and the light that they emit, for C++ and GLSL.
+// Lights as devices store them (std430) and the light that they emit, for C++, GLSL and OpenCL C.
 //
 // Lights are not surfaces: no camera sees them and they block no light. Their light counts where it is first
 // reflected (bounce 0). Emissive surfaces are surfels whose Material has an emission.
@@ -11,14 +11,14 @@
 namespace lucarne::gi {
 #endif
 
-const uint kSpotLight = 0u;         // from a point, within a cone
-const uint kPointLight = 1u;        // from a point, everywhere
-const uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
-const uint kRectangleLight = 3u;    // from one side of a rectangle, with the same radiance in all directions
-const uint kDiscLight = 4u;         // from one side of a disc, with the same radiance in all directions
+LUCARNE_CONST uint kSpotLight = 0u;         // from a point, within a cone
+LUCARNE_CONST uint kPointLight = 1u;        // from a point, everywhere
+LUCARNE_CONST uint kDirectionalLight = 2u;  // from infinitely far away, from a cap of the sky: the sun
+LUCARNE_CONST uint kRectangleLight = 3u;    // from one side of a rectangle, one radiance in all directions
+LUCARNE_CONST uint kDiscLight = 4u;         // from one side of a disc, one radiance in all directions
 // From one point of a rectangle or disc; the intensity falls as the cosine. Rectangles and discs are sampled
 // by such points.
-const uint kCosineLight = 5u;
+LUCARNE_CONST uint kCosineLight = 5u;
 
 // What each field holds, by kind. Fields that a kind does not name are unused.
 //   position   spot, point, cosine, rectangle, disc: the middle, m, relative to the local origin;
@@ -33,7 +33,7 @@ const uint kCosineLight = 5u;
 //              cosine: unit, perpendicular to the normal: the first axis of its four faces (light_face)
 // A spot's intensity falls from its full value at cos_inner to 0 at cos_outer (the cosine of half the full
 // angle) as the smoothstep of the cosine.
-struct Light {
+LUCARNE_STRUCT(Light) {
     vec4 position;
     vec4 direction;
     vec4 strength;
@@ -81,15 +81,17 @@ LUCARNE_FN uint light_face(Light light, vec3 offset) {
 // `to_light` to the unit direction to the light. Returns zero behind the surface and at the light itself.
 LUCARNE_FN vec3 light_irradiance(Light light, vec3 position, vec3 normal, LUCARNE_OUT(vec3) to_light) {
     if (light.kind == kDirectionalLight) {
-        to_light = vec3(-light.direction.x, -light.direction.y, -light.direction.z);
-        return vec3(light.strength.x, light.strength.y, light.strength.z) * max(dot(normal, to_light), 0.0f);
+        LUCARNE_VALUE(to_light) = vec3(-light.direction.x, -light.direction.y, -light.direction.z);
+        return vec3(light.strength.x, light.strength.y, light.strength.z) *
+               max(dot(normal, LUCARNE_VALUE(to_light)), 0.0f);
     }
     vec3 offset = vec3(light.position.x, light.position.y, light.position.z) - position;
     float distance2 = dot(offset, offset);
-    to_light = normal;
+    LUCARNE_VALUE(to_light) = normal;
     if (!(distance2 > 0.0f)) return vec3(0.0f);
-    to_light = offset * inversesqrt(distance2);
-    return light_intensity(light, -to_light) * (max(dot(normal, to_light), 0.0f) / distance2);
+    LUCARNE_VALUE(to_light) = offset * inversesqrt(distance2);
+    return light_intensity(light, -LUCARNE_VALUE(to_light)) *
+           (max(dot(normal, LUCARNE_VALUE(to_light)), 0.0f) / distance2);
 }
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// The relative luminance of linear Rec. 709 light (ITU-R BT.709-6, section 3.2), for C++ and GLSL.
+// The relative luminance of linear Rec. 709 light (ITU-R BT.709-6, section 3.2), for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_LUMINANCE_H
 #define LUCARNE_GI_SHARED_LUMINANCE_H
 

@@ -1,14 +1,11 @@
-// Materials as devices store them (std430), shared by C++ and GLSL.
+// Materials as devices store them (std430), for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_MATERIAL_H
 #define LUCARNE_GI_SHARED_MATERIAL_H
 
-#ifdef __cplusplus
-#include <cstdint>
+#include "gi/shared/language.h"
 
-#include <glm/vec4.hpp>
+#ifdef __cplusplus
 namespace lucarne::gi {
-using uint = uint32_t;
-using vec4 = glm::vec4;
 #endif
 
 // BRDF: kd/pi + ks (n+2)/(2 pi) cos^n(angle to the mirror direction), kd + ks <= 1 in every channel.
@@ -17,7 +14,7 @@ using vec4 = glm::vec4;
 // every index is valid.
 #define LUCARNE_DEVICE_MATERIALS 256
 
-struct Material {
+LUCARNE_STRUCT(Material) {
     vec4 diffuse;   // rgb scale of the scan's colour; w: ks, specular intensity
     vec4 emission;  // rgb radiance, W/(sr m^2); w: n, Phong exponent
 #ifdef __cplusplus

@@ -1,16 +1,12 @@
-// Surfels and cuts as devices store them: structs shared by C++ and GLSL (std430). surfel_code.h encodes and
-// decodes them.
+// Surfels and cuts as devices store them: structs for C++, GLSL (std430) and OpenCL C. surfel_code.h encodes
+// and decodes them.
 #ifndef LUCARNE_GI_SHARED_SURFEL_H
 #define LUCARNE_GI_SHARED_SURFEL_H
 
-#ifdef __cplusplus
-#include <cstdint>
+#include "gi/shared/language.h"
 
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
+#ifdef __cplusplus
 namespace lucarne::gi {
-using uint = uint32_t;
-using vec3 = glm::vec3;
 #endif
 
 // 16 bytes a surfel.
@@ -20,15 +16,15 @@ using vec3 = glm::vec3;
 //      254 without a normal: an outlier (kStrayArea)
 //   c: normal, octahedral, two signed 16-bit fractions
 //   d: albedo, sRGB-coded, 10 bits each | flags << 30 (bit 30: has a normal)
-struct PackedSurfel {
+LUCARNE_STRUCT(PackedSurfel) {
     uint a, b, c, d;
 };
-const uint kSurfelHasNormal = 0x40000000u;
+LUCARNE_CONST uint kSurfelHasNormal = 0x40000000u;
 
 // One node of a cut. A surfel's position is origin + size * fraction; metres, relative to the frame's local
 // origin.
-struct CutItem {
-    vec3 origin;
+LUCARNE_STRUCT(CutItem) {
+    LUCARNE_VEC3 origin;
     float size;
     uint clip;   // index of the first ClipShape, counted in items: shapes follow the items; 0: no clip test
     uint count;  // prefix in use
@@ -37,14 +33,14 @@ struct CutItem {
     int child[8];      // index of the item in each octant, or one of the two constants below
 };
 // In this octant the item's own floor holds: its child is not in the cut, or nothing more is known.
-const int kCoarseOctant = -1;
+LUCARNE_CONST int kCoarseOctant = -1;
 // The source has no child in this octant and the item is drawn whole: full resolution, so the floor is 0.
-const int kWholeOctant = -2;
+LUCARNE_CONST int kWholeOctant = -2;
 
 // Surfels are processed in blocks of up to kBlockSurfels; the surfels of a block belong to one item.
 // A surfel's id within a cut is block * kBlockSurfels + its place in the block. The id depends on the cut
 // alone, never on what else is resident, so ties broken by id are broken alike on every run.
-struct CutBlock {
+LUCARNE_STRUCT(CutBlock) {
     uint item;
     uint first;  // index of its first surfel in the pool
     uint count;
@@ -54,8 +50,8 @@ struct CutBlock {
 // surface when the levels of detail above it, and its own node up to it, are drawn. Along a block this area
 // falls from code `lod & 0xffff` to code `lod >> 16`; its inverse, the density, rises linearly. A code
 // stands for 2^(code / 512 - 64) m^2.
-const uint kBlockSurfels = 256u;
-const uint kNoSurfel = 0xffffffffu;
+LUCARNE_CONST uint kBlockSurfels = 256u;
+LUCARNE_CONST uint kNoSurfel = 0xffffffffu;
 
 #ifdef __cplusplus
 static_assert(sizeof(PackedSurfel) == 16 && sizeof(CutItem) == 64 && sizeof(CutBlock) == 16);

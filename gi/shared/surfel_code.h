@@ -1,4 +1,4 @@
-// Encodes and decodes the fields of a PackedSurfel, for C++ and GLSL.
+// Encodes and decodes the fields of a PackedSurfel, for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_SURFEL_CODE_H
 #define LUCARNE_GI_SHARED_SURFEL_CODE_H
 
@@ -43,7 +43,7 @@ LUCARNE_FN vec3 decode_albedo(uint code) {
 }
 
 // Returns the 16-bit fractions of the node's cube; a point lies in the middle of its step.
-const float kFractionSteps = 65536.0f;
+LUCARNE_CONST float kFractionSteps = 65536.0f;
 LUCARNE_FN vec3 surfel_fractions(uint a, uint b) {
     return (vec3(float(a & 0xffffu), float(a >> 16), float(b & 0xffffu)) + 0.5f) / kFractionSteps;
 }
@@ -53,13 +53,13 @@ LUCARNE_FN uint surfel_octant(uint a, uint b, uint depth) {
     uint bit = 15u - depth;
     return (a >> bit & 1u) | (a >> (bit + 16u) & 1u) << 1 | (b >> bit & 1u) << 2;
 }
-const uint kOctantLevels = 16u;
+LUCARNE_CONST uint kOctantLevels = 16u;
 
 // Area code of a surfel whose share of the surface is unknown.
-const uint kUnknownArea = 255u;
+LUCARNE_CONST uint kUnknownArea = 255u;
 // Area code of an outlier, valid only without a normal: a point known to hang in the air (a mixed pixel). It
 // is not drawn and has no share of any surface.
-const uint kStrayArea = 254u;
+LUCARNE_CONST uint kStrayArea = 254u;
 LUCARNE_FN bool surfel_is_stray(uint b, uint d) {
     return (b >> 16 & 255u) == kStrayArea && (d & kSurfelHasNormal) == 0u;
 }

@@ -1,4 +1,4 @@
-// Tone curves from exposed radiance to the screen, for C++ and GLSL.
+// Tone curves from exposed radiance to the screen, for C++, GLSL and OpenCL C.
 #ifndef LUCARNE_GI_SHARED_TONE_CURVE_H
 #define LUCARNE_GI_SHARED_TONE_CURVE_H
 
@@ -24,7 +24,8 @@ LUCARNE_FN vec3 reinhard_curve(vec3 x) {
 // NaN and negative values become black.
 LUCARNE_FN vec3 tone_curve(vec3 x, uint curve) {
     // Beyond 10^4 every curve is white; the bound keeps infinity out of the quotients.
-    for (int i = 0; i < 3; ++i) x[i] = x[i] > 0.0f ? min(x[i], 1e4f) : 0.0f;
+    x = vec3(x.x > 0.0f ? min(x.x, 1e4f) : 0.0f, x.y > 0.0f ? min(x.y, 1e4f) : 0.0f,
+             x.z > 0.0f ? min(x.z, 1e4f) : 0.0f);
     if (curve == 0u) x = filmic_curve(x);
     if (curve == 1u) x = reinhard_curve(x);
     return clamp(x, 0.0f, 1.0f);

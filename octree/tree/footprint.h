@@ -1,4 +1,4 @@
-// Defines the size of a surfel, for C++ and GLSL alike. It uses only what both languages share.
+// Defines the size of a surfel, for C++, GLSL and OpenCL C alike. It uses only what these languages share.
 //
 // In an additive octree the points of a node's ancestors lie among its own. So a surfel's share of the
 // surface follows from three things: its own share at full resolution (measured from its neighbours when the
@@ -12,8 +12,13 @@
 #include <cmath>
 namespace lucarne::octree {
 #define LUCARNE_SHARED_FN inline
+#define LUCARNE_SHARED_CONST const
+#elif defined(__OPENCL_C_VERSION__)
+#define LUCARNE_SHARED_FN static inline
+#define LUCARNE_SHARED_CONST __constant
 #else
 #define LUCARNE_SHARED_FN
+#define LUCARNE_SHARED_CONST const
 #endif
 
 // Coverage: disc area divided by surface share. In a random pattern, discs of equal size let e^-C of the rays
@@ -21,9 +26,9 @@ namespace lucarne::octree {
 // pattern needs still less; octree/normals/README.md has the measurements. So points with a share of their
 // own get kCoverageRaw, points thinned to an even level of detail kCoverageEven, and points whose own share
 // was not measured kCoverageUnknown.
-const float kCoverageRaw = 7.0f;
-const float kCoverageEven = 5.0f;
-const float kCoverageUnknown = 9.0f;
+LUCARNE_SHARED_CONST float kCoverageRaw = 7.0f;
+LUCARNE_SHARED_CONST float kCoverageEven = 5.0f;
+LUCARNE_SHARED_CONST float kCoverageUnknown = 9.0f;
 
 // Returns the surfel's share of the surface, in the unit of the arguments. `own` is its share at full
 // resolution (0 when unknown), `floor_area` the local floor at the prefix in use.
@@ -39,10 +44,9 @@ LUCARNE_SHARED_FN float surfel_radius(float own, float floor_area) {
     float rawness = own < floor_area ? own / floor_area : 1.0f;  // 0: thinned, 1: raw
     float coverage = own > 0.0f ? kCoverageEven + (kCoverageRaw - kCoverageEven) * rawness : kCoverageUnknown;
 #ifdef __cplusplus
-    return std::sqrt(coverage * area * 0.31830989f);
-#else
-    return sqrt(coverage * area * 0.31830989);
+    using std::sqrt;
 #endif
+    return sqrt(coverage * area * 0.31830989f);
 }
 
 #ifdef __cplusplus
@@ -64,4 +68,5 @@ inline float floor_at_prefix(const float (&floors)[4], float share) {
 }  // namespace lucarne::octree
 #endif
 #undef LUCARNE_SHARED_FN
+#undef LUCARNE_SHARED_CONST
 #endif

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "gi/device/gl/shader_source.h"
+#include "io/core/log.h"
 
 namespace lucarne::gi {
 namespace {
@@ -66,7 +67,7 @@ Result<std::unique_ptr<ClDevice>> ClDevice::open(Device& budget) {
     std::unique_ptr<ClDevice> device(new ClDevice(budget));
     device->id_ = id;
     cl_int problem = CL_SUCCESS;
-    device->context_ = clCreateContext(nullptr, 1, &id, nullptr, nullptr, &problem);
+    device->context_ = clCreateContext(nullptr, 1, &id, keep_message, device.get(), &problem);
     if (problem == CL_SUCCESS)
         device->queue_ = clCreateCommandQueueWithProperties(device->context_, id, nullptr, &problem);
     if (problem != CL_SUCCESS) return tl::make_unexpected(device->device_error("OpenCL", problem));
@@ -95,7 +96,50 @@ Error ClDevice::device_error(std::string_view what, int code) const {
             "see that its driver is up to date"};
 }
 
+void ClDevice::keep_message(const char* message, const void*, size_t, void* device) {
+    auto* self = static_cast<ClDevice*>(device);
+    const std::lock_guard lock(self->message_mutex_);
+    if (self->message_.empty()) self->message_ = message && *message ? message : "unknown error";
+}
+
+std::string ClDevice::take_message() {
+    const std::lock_guard lock(message_mutex_);
+    return std::exchange(message_, {});
+}
+
+Result<void> ClDevice::usable() const {
+    if (lost_) return tl::make_unexpected(*lost_);
+    return {};
+}
+
+Result<void> ClDevice::answered(std::string_view what, int code) {
+    if (calls_left_ && (*calls_left_ == 0 || --*calls_left_ == 0)) code = CL_DEVICE_NOT_AVAILABLE;
+    LUCARNE_TRY(check_loss(code));
+    if (code != CL_SUCCESS) return tl::make_unexpected(device_error(what, code));
+    return {};
+}
+
+Result<void> ClDevice::check_loss(int code) {
+    const std::string message = take_message();
+    if (code == CL_SUCCESS && message.empty()) return {};
+    const bool told = code == CL_DEVICE_NOT_AVAILABLE || code == CL_INVALID_DEVICE ||
+                      code == CL_INVALID_CONTEXT || code == CL_INVALID_COMMAND_QUEUE;
+    // Other codes and messages have harmless causes as well: CL_OUT_OF_RESOURCES may mean a kernel that needs
+    // too many registers. If the device is lost its queue fails, too.
+    if (!told && clFinish(queue_) == CL_SUCCESS) {
+        if (!message.empty()) log::warn("OpenCL: {}", message);
+        return {};
+    }
+    lost_ = Error{ErrorKind::failed, "OpenCL",
+                  fmt::format("the device {} was lost (error {}{}{})", info_.name, code,
+                              message.empty() ? "" : ": ", message),
+                  "see that its driver is up to date"};
+    budget_.report_loss(fmt::format("OpenCL: {}", lost_->why));
+    return usable();
+}
+
 Result<ClBuffer> ClDevice::buffer(size_t bytes, std::string_view what) {
+    LUCARNE_TRY(usable());
     bytes = std::max<size_t>(bytes, 16);
     if (bytes > info_.max_buffer_bytes)
         return failed(std::string(what),
@@ -107,6 +151,7 @@ Result<ClBuffer> ClDevice::buffer(size_t bytes, std::string_view what) {
     const cl_mem memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, bytes, nullptr, &problem);
     if (problem != CL_SUCCESS) {
         budget_.give_memory_back(bytes);
+        LUCARNE_TRY(check_loss(problem));
         return failed(std::string(what),
                       fmt::format("the OpenCL device has no {} MiB of memory left", bytes >> 20),
                       kMemoryTodo);
@@ -127,6 +172,7 @@ Result<void> ClDevice::reserve(ClBuffer& target, size_t bytes, std::string_view 
 
 Result<const ClKernel*> ClDevice::kernel(std::string_view path, std::string_view name, const Defines& defines,
                                          const std::vector<ShaderText>& texts) {
+    LUCARNE_TRY(usable());
     std::tuple<std::string, std::string, Defines> key(path, name, defines);
     if (const auto found = kernels_.find(key); found != kernels_.end()) return found->second.get();
     const std::string what = fmt::format("kernel {} of {}", name, path);
@@ -134,6 +180,7 @@ Result<const ClKernel*> ClDevice::kernel(std::string_view path, std::string_view
     const char* text = source.text.c_str();
     cl_int problem = CL_SUCCESS;
     const cl_program program = clCreateProgramWithSource(context_, 1, &text, nullptr, &problem);
+    LUCARNE_TRY(check_loss(problem));
     if (problem != CL_SUCCESS) return tl::make_unexpected(device_error(what, problem));
     problem = clBuildProgram(program, 1, &id_, kOptions, nullptr, nullptr);
     if (problem != CL_SUCCESS) {
@@ -142,11 +189,13 @@ Result<const ClKernel*> ClDevice::kernel(std::string_view path, std::string_view
         std::string log(bytes, '\0');
         clGetProgramBuildInfo(program, id_, CL_PROGRAM_BUILD_LOG, bytes, log.data(), nullptr);
         clReleaseProgram(program);
+        LUCARNE_TRY(check_loss(problem));
         return failed(what, first_error(log), "it is a fault of the program or of the driver");
     }
     const cl_kernel made = clCreateKernel(program, std::string(name).c_str(), &problem);
     if (problem != CL_SUCCESS) {
         clReleaseProgram(program);
+        LUCARNE_TRY(check_loss(problem));
         return failed(what, "there is no such function", "it is a fault of the program");
     }
     std::unique_ptr<ClKernel> kernel(new ClKernel(*this, program, made, what));
@@ -154,9 +203,8 @@ Result<const ClKernel*> ClDevice::kernel(std::string_view path, std::string_view
 }
 
 Result<void> ClDevice::finish() {
-    const cl_int problem = clFinish(queue_);
-    if (problem != CL_SUCCESS) return tl::make_unexpected(device_error("OpenCL", problem));
-    return {};
+    LUCARNE_TRY(usable());
+    return answered("OpenCL", clFinish(queue_));
 }
 
 ClBuffer& ClBuffer::operator=(ClBuffer&& other) noexcept {
@@ -176,20 +224,18 @@ Result<void> ClBuffer::upload(size_t offset, std::span<const std::byte> data) {
     if (offset > bytes_ || data.size() > bytes_ - offset)
         return failed("OpenCL", "an upload is larger than its buffer");
     if (data.empty()) return {};
-    const cl_int problem = clEnqueueWriteBuffer(device_->queue_, memory_, CL_TRUE, offset, data.size(),
-                                                data.data(), 0, nullptr, nullptr);
-    if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error("upload", problem));
-    return {};
+    LUCARNE_TRY(device_->usable());
+    return device_->answered("upload", clEnqueueWriteBuffer(device_->queue_, memory_, CL_TRUE, offset,
+                                                            data.size(), data.data(), 0, nullptr, nullptr));
 }
 
 Result<void> ClBuffer::download(size_t offset, std::span<std::byte> out) const {
     if (offset > bytes_ || out.size() > bytes_ - offset)
         return failed("OpenCL", "a download is larger than its buffer");
     if (out.empty()) return {};
-    const cl_int problem = clEnqueueReadBuffer(device_->queue_, memory_, CL_TRUE, offset, out.size(),
-                                               out.data(), 0, nullptr, nullptr);
-    if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error("download", problem));
-    return {};
+    LUCARNE_TRY(device_->usable());
+    return device_->answered("download", clEnqueueReadBuffer(device_->queue_, memory_, CL_TRUE, offset,
+                                                             out.size(), out.data(), 0, nullptr, nullptr));
 }
 
 ClKernel::~ClKernel() {
@@ -209,10 +255,9 @@ Result<void> ClKernel::set_bytes(uint32_t index, const void* value, size_t bytes
 Result<void> ClKernel::enqueue(size_t items, size_t group) const {
     if (items == 0) return {};
     if (group > 0) items = (items + group - 1) / group * group;
-    const cl_int problem = clEnqueueNDRangeKernel(device_->queue_, kernel_, 1, nullptr, &items,
-                                                  group ? &group : nullptr, 0, nullptr, nullptr);
-    if (problem != CL_SUCCESS) return tl::make_unexpected(device_->device_error(name_, problem));
-    return {};
+    LUCARNE_TRY(device_->usable());
+    return device_->answered(name_, clEnqueueNDRangeKernel(device_->queue_, kernel_, 1, nullptr, &items,
+                                                           group ? &group : nullptr, 0, nullptr, nullptr));
 }
 
 }  // namespace lucarne::gi

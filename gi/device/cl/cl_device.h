@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -91,6 +93,9 @@ struct ClDeviceInfo {
 
 /// One OpenCL device with one in-order queue. Use it from the OpenGL device's thread. Engines that need it
 /// open it in Engine::prepare, because starting OpenCL takes most of a second.
+///
+/// If its driver is reset or the device removed, all calls return errors from then on and Device::check()
+/// of the OpenGL device does so as well: both devices and everything made on them have to be replaced.
 class ClDevice {
  public:
     /// Opens the first GPU of any platform, else the first processor. The memory cap of `budget` holds for
@@ -112,18 +117,35 @@ class ClDevice {
                                    const std::vector<ShaderText>& texts = shader_texts());
     /// Waits until all queued work is done. Errors: the device failed.
     Result<void> finish();
+    /// For tests: the driver answers the `calls`th upload, download, run or finish() from now on as that of a
+    /// removed device does.
+    void lose_after(uint32_t calls) { calls_left_ = calls; }
 
  private:
     friend class ClBuffer;
     friend class ClKernel;
     explicit ClDevice(Device& budget) : budget_(budget) {}
+    /// The context's error callback; drivers call it on any thread.
+    static void keep_message(const char* message, const void*, size_t, void* device);
+    std::string take_message();
     Error device_error(std::string_view what, int code) const;
+    /// Errors: the device was lost earlier. Call it before the driver.
+    Result<void> usable() const;
+    /// Turns the driver's answer to an upload, download, run or wait into a result.
+    Result<void> answered(std::string_view what, int code);
+    /// Errors: the answer, or a message of the driver, comes from a lost device. Reports that to the OpenGL
+    /// device as well.
+    Result<void> check_loss(int code);
 
     Device& budget_;
     ClDeviceInfo info_;
     _cl_device_id* id_ = nullptr;
     _cl_context* context_ = nullptr;
     _cl_command_queue* queue_ = nullptr;
+    std::optional<Error> lost_;
+    std::optional<uint32_t> calls_left_;  ///< see lose_after()
+    std::mutex message_mutex_;
+    std::string message_;  ///< the driver's first since take_message()
     std::map<std::tuple<std::string, std::string, Defines>, std::unique_ptr<ClKernel>> kernels_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -26,6 +27,10 @@ bool ContextWatch::lost() {
             reason_ = "it was reset";
     }
     return true;
+}
+
+void ContextWatch::report_loss(std::string reason) {
+    if (reason_.empty()) reason_ = std::move(reason);
 }
 
 LossPlan::LossPlan(std::string_view numbers) {

@@ -14,6 +14,8 @@ class ContextWatch {
  public:
     /// Asks the driver. Once it has returned true it keeps returning true.
     bool lost();
+    /// lost() returns true from now on, for this reason. The first reason stays.
+    void report_loss(std::string reason);
     /// Why the context was lost, as far as the driver tells; empty while it works.
     const std::string& reason() const { return reason_; }
     /// For tests: lost() returns true from its `checks`th call on, whatever the driver says.

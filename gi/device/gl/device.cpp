@@ -138,6 +138,9 @@ Result<void> Device::check() {
     if (!state_->watch.lost()) return {};
     return failed("graphics device", state_->watch.reason(), "see that its driver is up to date");
 }
+void Device::report_loss(std::string reason) {
+    state_->watch.report_loss(std::move(reason));
+}
 void Device::lose_after(uint32_t checks) {
     state_->watch.lose_after(checks);
 }

@@ -160,10 +160,12 @@ class Device {
 
     void finish();  ///< waits until all work is done
 
-    /// Errors: the driver has lost or reset the context. Then everything made in it is gone, its last
-    /// results are undefined, and another device has to replace it. Also an error: a program was given a
-    /// uniform that its text does not declare, which is a bug of the caller.
+    /// Errors: the driver has lost or reset the context, or report_loss() was called. Then everything made
+    /// in it is gone, its last results are undefined, and another device has to replace it. Also an error: a
+    /// program was given a uniform that its text does not declare, which is a bug of the caller.
     Result<void> check();
+    /// Reports that a device that works with this one (OpenCL) was lost: both are replaced together.
+    void report_loss(std::string reason);
     /// For tests: check() fails from its `checks`th call on.
     void lose_after(uint32_t checks);
 

@@ -145,6 +145,59 @@ TEST_F(ClDeviceTest, MemoryCountsUnderTheCapOfBoth) {
     EXPECT_EQ(device->memory_used(), before);
 }
 
+constexpr const char* kNumber =
+    "kernel void number(global uint* words, uint from) { words[get_global_id(0)] = from + get_global_id(0); "
+    "}\n";
+
+struct OpenClLoss : ClDeviceTest {
+    /// Returns the last of 64 words that a kernel numbers from 7 on.
+    Result<uint32_t> last_word() {
+        LUCARNE_ASSIGN(ClBuffer words, opencl->buffer(256, "words"));
+        LUCARNE_ASSIGN(const ClKernel* kernel, opencl->kernel("test.cl", "number", {}, texts_with(kNumber)));
+        LUCARNE_TRY(kernel->run(64, 0, words, 7u));
+        std::vector<uint32_t> numbers(64);
+        LUCARNE_TRY(words.download(0, std::as_writable_bytes(std::span(numbers))));
+        return numbers.back();
+    }
+};
+
+TEST_F(OpenClLoss, StaysAndTheOpenGlDeviceReportsIt) {
+    lost_on_purpose = true;
+    ASSERT_EQ(last_word().value_or(0), 70u);
+    opencl->lose_after(4);
+    EXPECT_EQ(last_word().value_or(0), 70u) << "run and download";
+    EXPECT_TRUE(device->check());
+    const auto lost = last_word();
+    ASSERT_FALSE(lost);
+    EXPECT_THAT(lost.error().line(), HasSubstr("was lost"));
+    const auto reported = device->check();
+    ASSERT_FALSE(reported);
+    EXPECT_EQ(reported.error().what, "graphics device");
+    EXPECT_THAT(reported.error().why, HasSubstr("OpenCL: the device " + opencl->info().name + " was lost"));
+    EXPECT_FALSE(opencl->finish()) << "what is lost does not come back";
+    EXPECT_FALSE(opencl->buffer(16, "words"));
+    EXPECT_FALSE(opencl->kernel("test.cl", "number", {}, texts_with(kNumber)));
+    EXPECT_FALSE(device->check());
+
+    opencl.reset();
+    OnDevice::SetUp();
+    lost_on_purpose = false;
+    auto opened = ClDevice::open(*device);
+    ASSERT_TRUE(opened) << opened.error().line();
+    opencl = std::move(*opened);
+    EXPECT_EQ(last_word().value_or(0), 70u);
+}
+
+TEST_F(OpenClLoss, OtherErrorsAreNotTakenForOne) {
+    auto words = opencl->buffer(256, "words");
+    const auto kernel = opencl->kernel("test.cl", "number", {}, texts_with(kNumber));
+    ASSERT_TRUE(words && kernel);
+    EXPECT_FALSE((*kernel)->run(1, size_t{1} << 30, *words, 7u)) << "no device has groups of this size";
+    EXPECT_FALSE(opencl->kernel("test.cl", "none", {}, texts_with(kNumber)));
+    EXPECT_EQ(last_word().value_or(0), 70u);
+    EXPECT_TRUE(device->check());
+}
+
 /// OpenGL draws the same before and after OpenCL has started in the same process: both use LLVM on
 /// processors.
 using OpenClBesideOpenGl = OnDevice;

@@ -1,4 +1,5 @@
-// Checks every compute shader, with every combination of its switches, with Khronos' own compiler.
+// Checks every compute shader, with every combination of its switches, and every header that shaders share
+// with C++, with Khronos' own compiler.
 #include <algorithm>
 #include <fstream>
 #include <regex>
@@ -54,22 +55,53 @@ std::vector<std::pair<std::string, ShaderSource>> variants(std::string_view path
     return made;
 }
 
+/// Writes shaders to files and compiles them with glslangValidator.
+class Glslang {
+ public:
+    void add(const std::string& name, const ShaderSource& source) {
+        std::ofstream(folder_ / name) << source.text;
+        files_ += " " + name;
+        ++count_;
+    }
+    size_t count() const { return count_; }
+    void expect_success() const {
+        ASSERT_EQ(test::shell("glslangValidator --version").code, 0) << "install glslang-tools";
+        const auto checked = test::shell("cd '" + folder_.path().string() + "' && glslangValidator" + files_);
+        EXPECT_EQ(checked.code, 0) << checked.output;
+    }
+
+ private:
+    test::TemporaryFolder folder_;
+    std::string files_;
+    size_t count_ = 0;
+};
+
 TEST(Shaders, EveryVariantIsAcceptedByGlslang) {
-    ASSERT_EQ(test::shell("glslangValidator --version").code, 0) << "install glslang-tools";
-    const test::TemporaryFolder folder;
-    size_t count = 0;
-    std::string files;
+    Glslang glslang;
     for (const ShaderText& shader : shader_texts()) {
         if (!shader.path.ends_with(".comp")) continue;
-        for (const auto& [name, source] : variants(shader.path)) {
-            std::ofstream(folder / name) << source.text;
-            files += " " + name;
-            ++count;
-        }
+        for (const auto& [name, source] : variants(shader.path)) glslang.add(name, source);
     }
-    EXPECT_GT(count, 40u);
-    const auto checked = test::shell("cd '" + folder.path().string() + "' && glslangValidator" + files);
-    EXPECT_EQ(checked.code, 0) << checked.output;
+    EXPECT_GT(glslang.count(), 40u);
+    glslang.expect_success();
+}
+
+TEST(Shaders, EveryHeaderSharedWithCppCompilesAlone) {
+    Glslang glslang;
+    for (const ShaderText& header : shader_texts()) {
+        if (!header.path.ends_with(".h")) continue;
+        const std::string text =
+            "#include \"" + std::string(header.path) + "\"\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
+        std::vector<ShaderText> texts = shader_texts();
+        texts.push_back({"test.comp", text});
+        const auto source = shader_source("test.comp", {}, texts);
+        ASSERT_TRUE(source) << header.path << ": " << source.error().line();
+        std::string name(header.path);
+        std::replace(name.begin(), name.end(), '/', '-');
+        glslang.add(name + ".comp", *source);
+    }
+    EXPECT_GT(glslang.count(), 15u);
+    glslang.expect_success();
 }
 
 TEST(Shaders, NoneAsksForTheLengthOfARuntimeArray) {
