@@ -176,8 +176,8 @@ struct ScanInfo {
     FormatNotes notes;              ///< what export needs to write the same format again
     std::string coordinate_system;  ///< its name, as in the file; empty if the file has none
     uint32_t epsg = 0;              ///< its EPSG code; 0 if the file has none
-    /// The lowest and highest corner that the header of a LAS, LAZ or COPC file states, right or wrong. Not
-    /// set for caches.
+    /// The lowest and highest corner that the header of a LAS, LAZ, COPC or E57 file states, right or wrong.
+    /// Not set for caches.
     std::optional<std::array<glm::dvec3, 2>> stated_box;
     Losses losses;  ///< known before the first pass; for a cache, everything that its build left out
 };

@@ -18,6 +18,7 @@
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/build_listener.h"
 #include "octree/convert/nodes/in_order.h"
+#include "octree/convert/scans/early_count.h"
 #include "octree/convert/scans/scan_stage.h"
 
 namespace lucarne::octree {
@@ -96,13 +97,15 @@ Pass with_steps(const Pass& pass, Steps& steps, uint32_t stride) {
 }
 
 Result<ChunkStore> fill_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
-                               const MemoryPlan& memory, BuildListener* listener) {
+                               const MemoryPlan& memory, BuildListener* listener,
+                               std::optional<CountGrid> counted) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("points", false));
     ChunkStore store(std::move(file), inputs.schema(), facts.root);
     const ThreadLimit readers(memory.readers);
-    Steps steps(listener, "sorting into chunks", 2 * facts.points);
+    Steps steps(listener, "sorting into chunks", (counted ? 1 : 2) * facts.points);
     const Pass pass = pass_over_inputs(inputs, memory.batch_bytes);
-    LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory));
+    LUCARNE_TRY(store.fill(with_steps(pass, steps, inputs.schema().stride), facts.points, memory,
+                           std::move(counted)));
     return store;
 }
 Result<ChunkStore> kept_chunks(const Workspace& work, const Unifier& inputs, const ScanFacts& facts,
@@ -121,6 +124,17 @@ Result<SurfaceStore> kept_surface(const Workspace& work, const ChunkStore& store
                                   std::span<const std::byte> record) {
     LUCARNE_ASSIGN(ScratchFile file, work.scratch("normals", true));
     return SurfaceStore::restore(store, std::move(file), record);
+}
+
+/// Reads the inputs once, for bounds and counts. `counted` becomes the counts for the chunks, or stays empty
+/// if the headers do not state what is needed to make them.
+Result<ScanFacts> scan_and_count(const Unifier& inputs, const MemoryPlan& memory,
+                                 std::optional<CountGrid>& counted) {
+    const ThreadLimit readers(memory.readers);
+    EarlyCount early(inputs, memory.grid_bytes);
+    LUCARNE_ASSIGN(auto facts, scan_inputs(inputs, memory.batch_bytes, 0, &early));
+    counted = early.take(facts);
+    return facts;
 }
 
 /// Builds chunks in parallel and assembles them in order. At most `workers` are in memory. `keep`: a resumed
@@ -162,22 +176,23 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     BuildReport report;
     const std::string identity = options.resume == Resume::never ? "" : build_identity(options);
     LUCARNE_ASSIGN(auto work, Workspace::open(folder, options.output, identity, options.resume));
+    std::optional<CountGrid> counted;
     LUCARNE_ASSIGN(const auto facts, timed(report, "scan", [&] {
-                       return resumable(work, "scan", ScanFacts::restore, [&] {
-                           const ThreadLimit readers(memory.readers);
-                           return scan_inputs(inputs, memory.batch_bytes);
-                       });
+                       return resumable(work, "scan", ScanFacts::restore,
+                                        [&] { return scan_and_count(inputs, memory, counted); });
                    }));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
     for (const auto* input : options.inputs) warn_of_assumed_unit(input->info(), bare.metres_per_unit);
     if (options.listener) options.listener->scanned(bare);
-    LUCARNE_ASSIGN(ChunkStore store, timed(report, "chunk", [&] {
-                       return resumable(
-                           work, "chunk",
-                           [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
-                           [&] { return fill_chunks(work, inputs, facts, memory, options.listener); });
-                   }));
+    LUCARNE_ASSIGN(
+        ChunkStore store, timed(report, "chunk", [&] {
+            return resumable(
+                work, "chunk", [&](const auto& record) { return kept_chunks(work, inputs, facts, record); },
+                [&] {
+                    return fill_chunks(work, inputs, facts, memory, options.listener, std::move(counted));
+                });
+        }));
     std::optional<SurfaceStore> surface;
     if (normals) {
         Steps steps(options.listener, "normals", facts.points);

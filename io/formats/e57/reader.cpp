@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
@@ -109,6 +111,7 @@ class E57Source final : public PointSource {
         info_.notes.e57 = e57::notes_of(document);
         info_.notes.color_bits = info_.color_bits;
         info_.notes.intensity_limits = intensity_limits();
+        info_.stated_box = stated_box();
     }
 
     /// Returns limits that hold for the intensities of all scans.
@@ -120,6 +123,22 @@ class E57Source final : public PointSource {
             const auto [low, high] = *scan.intensity_limits;
             all = all ? IntensityLimits{std::min(all->low, low), std::max(all->high, high)}
                       : IntensityLimits{low, high};
+        }
+        return all;
+    }
+    /// Returns the box of the boxes that the scans state, in the file's frame. Empty if a scan states none or
+    /// is turned: the box of its turned box would be larger than that of its points.
+    std::optional<std::array<glm::dvec3, 2>> stated_box() const {
+        std::optional<std::array<glm::dvec3, 2>> all;
+        for (const e57::Scan& scan : e57_.document.scans) {
+            if (scan.records == 0) continue;
+            const e57::Pose pose = scan.pose.value_or(e57::Pose{});
+            if (!scan.bounds || pose.rotation != glm::dmat3(1.0)) return std::nullopt;
+            const glm::dvec3 low = scan.bounds->front() + pose.translation,
+                             high = scan.bounds->back() + pose.translation;
+            if (!glm::all(glm::lessThanEqual(low, high))) return std::nullopt;
+            all = all ? std::array{glm::min(all->front(), low), glm::max(all->back(), high)}
+                      : std::array{low, high};
         }
         return all;
     }

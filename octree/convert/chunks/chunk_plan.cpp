@@ -26,6 +26,14 @@ constexpr uint64_t kNormalChunks = 4;
 /// Memory per candidate while a node is sampled.
 constexpr uint64_t kWorkPerCandidate = 48;
 
+/// Returns how many levels below its cube a grid has that counts `points` points in `bytes` bytes.
+uint32_t grid_depth(const NodeKey& cube, uint64_t points, uint64_t bytes) {
+    const uint64_t cells = std::min(bytes / kBytesPerCell, std::max<uint64_t>(points / 16, 512));
+    uint32_t depth = 0;
+    while (depth < 8 && cube.level + depth < kMaxLevel && uint64_t{1} << (3 * (depth + 1)) <= cells) ++depth;
+    return depth;
+}
+
 }  // namespace
 
 Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
@@ -55,11 +63,30 @@ Result<MemoryPlan> MemoryPlan::create(uint64_t bytes, const Work& work) {
 }
 
 CountGrid::CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes) : cube_(cube) {
-    const uint64_t cells = std::min(bytes / kBytesPerCell, std::max<uint64_t>(points / 16, 512));
-    while (depth_ < 8 && cube.level + depth_ < kMaxLevel && uint64_t{1} << (3 * (depth_ + 1)) <= cells)
-        ++depth_;
-    mask_ = (size_t{1} << (3 * depth_)) - 1;
+    set_depth(grid_depth(cube, points, bytes));
     counts_.assign(mask_ + 1, 0);
+}
+
+void CountGrid::set_depth(uint32_t depth) {
+    depth_ = depth;
+    mask_ = (size_t{1} << (3 * depth)) - 1;
+}
+
+bool CountGrid::coarsen_for(uint64_t points, uint64_t bytes) {
+    const uint32_t depth = grid_depth(cube_, points, bytes);
+    if (depth > depth_) return false;
+    while (depth_ > depth) {
+        set_depth(depth_ - 1);
+        // Each cell is in front of those that it is the sum of, so that the sums can overwrite the counts.
+        for (size_t i = 0; i <= mask_; ++i) {
+            uint64_t sum = 0;
+            for (size_t octant = 0; octant < 8; ++octant) sum += counts_[8 * i + octant];
+            counts_[i] = sum;
+        }
+        counts_.resize(mask_ + 1);
+    }
+    counts_.shrink_to_fit();
+    return true;
 }
 
 void CountGrid::join(uint32_t depth, uint64_t index, const NodeKey& key, uint64_t limit,

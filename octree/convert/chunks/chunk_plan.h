@@ -54,6 +54,9 @@ class CountGrid {
     CountGrid(const NodeKey& cube, uint64_t points, uint64_t bytes);
 
     void count(const Place& place, uint64_t points = 1) { counts_[cell(place)] += points; }
+    /// Joins cells until the grid is as fine as one made for this number of points. Returns false if it is
+    /// too coarse for that.
+    bool coarsen_for(uint64_t points, uint64_t bytes);
     /// Returns chunks in Morton order, at most `most` of them (`most` is 64 or more). Each has at most
     /// `limit` points, as far as `most` and the grid allow.
     std::vector<Chunk> plan(uint64_t limit, size_t most);
@@ -64,6 +67,7 @@ class CountGrid {
     size_t cell(const Place& p) const {
         return static_cast<size_t>(p.code() >> (3 * (kMaxLevel - cube_.level - depth_))) & mask_;
     }
+    void set_depth(uint32_t depth);
     void join(uint32_t depth, uint64_t index, const NodeKey& key, uint64_t limit,
               std::vector<Chunk>& chunks) const;
 

@@ -105,8 +105,13 @@ Result<void> ChunkStore::check(const Chunk& chunk) const {
     return sum == chunk.sum ? Result<void>{} : failed("chunks", "have changed since they were written");
 }
 
-Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory) {
-    LUCARNE_ASSIGN(auto coarse, split(pass, {}, points, memory));
+Result<void> ChunkStore::fill(const Pass& pass, uint64_t points, const MemoryPlan& memory,
+                              std::optional<CountGrid> counted) {
+    if (!counted) {
+        LUCARNE_ASSIGN(counted, count(pass, {}, points, memory));
+    }
+    LUCARNE_ASSIGN(auto coarse, distribute(pass, std::move(*counted), points, memory));
+    counted.reset();
     return refine(std::move(coarse), memory);
 }
 
@@ -159,16 +164,22 @@ Result<void> ChunkStore::fill(const Pass& pass, std::span<const NodeKey> cubes, 
     return refine(std::move(chunks), memory);
 }
 
-/// Distributes the points of `cube` once: they become chunks at the end of the scratch file.
-Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cube, uint64_t points,
-                                             const MemoryPlan& memory) {
-    const uint32_t stride = schema_.stride;
-    const auto place = [&](const std::byte* record) { return root_.place(io::position_of(schema_, record)); };
+/// Counts the points of `cube` in a grid.
+Result<CountGrid> ChunkStore::count(const Pass& pass, const NodeKey& cube, uint64_t points,
+                                    const MemoryPlan& memory) const {
     CountGrid grid(cube, points, memory.grid_bytes);
     LUCARNE_TRY(pass([&](std::span<const std::byte> records) -> Result<void> {
-        for (size_t at = 0; at < records.size(); at += stride) grid.count(place(&records[at]));
+        for (size_t at = 0; at < records.size(); at += schema_.stride)
+            grid.count(root_.place(io::position_of(schema_, &records[at])));
         return {};
     }));
+    return grid;
+}
+
+/// Distributes the points that `grid` counted: they become chunks at the end of the scratch file.
+Result<std::vector<Chunk>> ChunkStore::distribute(const Pass& pass, CountGrid grid, uint64_t points,
+                                                  const MemoryPlan& memory) {
+    const uint32_t stride = schema_.stride;
     std::vector<Chunk> chunks =
         grid.plan(memory.chunk_points,
                   std::max<uint64_t>(64, memory.buffer_bytes / std::max<uint64_t>(kMinBuffer, stride)));
@@ -178,7 +189,8 @@ Result<std::vector<Chunk>> ChunkStore::split(const Pass& pass, const NodeKey& cu
     Dealer dealer(file_, chunks, end_, stride, memory.buffer_bytes);
     const auto deal = [&](std::span<const std::byte> records) -> Result<void> {
         for (size_t at = 0; at < records.size(); at += stride)
-            LUCARNE_TRY(dealer.deal(grid.chunk_of(place(&records[at])), &records[at]));
+            LUCARNE_TRY(dealer.deal(grid.chunk_of(root_.place(io::position_of(schema_, &records[at]))),
+                                    &records[at]));
         return {};
     };
     LUCARNE_TRY(pass(deal));
@@ -209,7 +221,9 @@ Result<void> ChunkStore::refine(std::vector<Chunk> coarse, const MemoryPlan& mem
             stack(chunk, memory.chunk_points);
             continue;
         }
-        LUCARNE_ASSIGN(auto finer, split(pass_over(chunk, memory), chunk.key, chunk.count, memory));
+        const Pass pass = pass_over(chunk, memory);
+        LUCARNE_ASSIGN(auto grid, count(pass, chunk.key, chunk.count, memory));
+        LUCARNE_ASSIGN(auto finer, distribute(pass, std::move(grid), chunk.count, memory));
         file_.discard(chunk.first * schema_.stride, chunk.count * schema_.stride);
         LUCARNE_TRY(refine(std::move(finer), memory));  // a level deeper each time, so at most 21 deep
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,10 @@ class ChunkStore {
     std::vector<std::byte> save() const;
 
     /// Sorts `points` points into chunks. Runs the pass twice: to count the points and to distribute them.
-    Result<void> fill(const Pass& pass, uint64_t points, const MemoryPlan& memory);
+    /// `counted` spares the first: the points' counts in a grid of the root cube made for `points` points and
+    /// the grid's share of the memory.
+    Result<void> fill(const Pass& pass, uint64_t points, const MemoryPlan& memory,
+                      std::optional<CountGrid> counted = {});
 
     /// Sorts points into the given chunks instead: disjoint cubes of kMaxLevel or above, in Morton order.
     /// Points outside all of them are left out. If `split`, chunks that are too large are split, and chunks
@@ -46,8 +50,10 @@ class ChunkStore {
 
  private:
     Result<void> check(const Chunk& chunk) const;
-    Result<std::vector<Chunk>> split(const Pass& pass, const NodeKey& cube, uint64_t points,
-                                     const MemoryPlan& memory);
+    Result<CountGrid> count(const Pass& pass, const NodeKey& cube, uint64_t points,
+                            const MemoryPlan& memory) const;
+    Result<std::vector<Chunk>> distribute(const Pass& pass, CountGrid grid, uint64_t points,
+                                          const MemoryPlan& memory);
     Result<void> refine(std::vector<Chunk> coarse, const MemoryPlan& memory);
     void stack(const Chunk& chunk, uint64_t limit);
     Pass pass_over(const Chunk& chunk, const MemoryPlan& memory);

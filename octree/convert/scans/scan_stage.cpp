@@ -9,6 +9,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "octree/convert/chunks/record_bytes.h"
+#include "octree/convert/scans/early_count.h"
 
 namespace lucarne::octree {
 namespace {
@@ -109,7 +110,7 @@ Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes) {
     };
 }
 
-Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first) {
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first, EarlyCount* early) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
@@ -124,6 +125,7 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
                     seen.max = glm::max(seen.max, p);
                 }
                 seen.points += records.size() / schema.stride;
+                if (early) early->add(schema, records, seen.min, seen.max);
                 return {};
             }));
         for (const auto& loss : left.losses)

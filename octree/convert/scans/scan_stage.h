@@ -23,8 +23,12 @@ Result<Cube> root_cube(const glm::dvec3& min, const glm::dvec3& max);
 /// Returns a pass over the points of all inputs, in the unified schema, input after input.
 Pass pass_over_inputs(const Unifier& inputs, uint64_t batch_bytes);
 
+class EarlyCount;
+
 /// Reads the inputs from `first` on and logs what each lost; the inputs before it only contribute their
 /// schemas. Errors: unreadable inputs, no points at all, coordinates too far apart for any cube.
-Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first = 0);
+/// `early` gets all points as well.
+Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_t first = 0,
+                              EarlyCount* early = nullptr);
 
 }  // namespace lucarne::octree

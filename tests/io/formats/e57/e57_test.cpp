@@ -435,6 +435,28 @@ TEST_F(E57, APoseWhoseQuaternionIsZeroOnlyMoves) {
     EXPECT_EQ(position(*r, 1), glm::dvec3(1, 2, 3));
 }
 
+TEST_F(E57, TheStatedBoxIsThatOfAllScansThatAreMovedAndNotTurned) {
+    const auto stating = [](double at, const std::string& pose) {
+        BuiltScan scan = one_point();
+        scan.more = pose + "<cartesianBounds>";
+        for (const char axis : {'x', 'y', 'z'})
+            scan.more +=
+                fmt::format("<{0}Minimum>{1}</{0}Minimum><{0}Maximum>{2}</{0}Maximum>", axis, at, at + 2);
+        scan.more += "</cartesianBounds>";
+        return scan;
+    };
+    const std::string moved = "<pose><translation><x>10</x></translation></pose>";
+    BuiltScan empty{kXyzFields, 0, {}};
+    using Box = std::array<glm::dvec3, 2>;
+    ASSERT_TRUE(read(BuiltFile{{stating(1, ""), empty, stating(-4, moved)}}));
+    EXPECT_EQ(source_->info().stated_box, (Box{glm::dvec3(1, -4, -4), glm::dvec3(8, 3, 3)}));
+    for (const BuiltScan& other :
+         {one_point(), stating(0, kQuarterTurn), stating(-INFINITY, ""), stating(NAN, "")}) {
+        ASSERT_TRUE(read(BuiltFile{{stating(1, ""), other}}));
+        EXPECT_FALSE(source_->info().stated_box) << other.more;
+    }
+}
+
 TEST_F(E57, SectionsThatOverlapAreRefused) {
     BuiltScan again = one_point();
     again.file_offset = std::to_string(e57::kHeaderBytes);
