@@ -30,8 +30,8 @@ class SkyLoader {
  private:
     struct Shared {
         std::mutex mutex;
-        std::string wanted;  ///< path of the newest request; empty: it was taken
-        uint64_t request = 0;   ///< number of the newest request
+        std::string wanted;    ///< path of the newest request; empty: it was taken
+        uint64_t request = 0;  ///< number of the newest request
         std::optional<Sky> sky;
     };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -97,9 +98,8 @@ void next_comparison(const Rendering& model) {
 }  // namespace
 
 void compare_with(View& view, const std::string& engine) {
-    const auto engines = gi::engines();
-    const bool known = std::ranges::any_of(engines, [&](const auto& e) { return e.info.name == engine; });
-    if (!known) {
+    assert(engine.empty() || gi::find_engine(engine));
+    if (engine.empty()) {
         view.scene.comparison.reset();
     } else {
         if (!view.scene.comparison) view.scene.comparison.emplace();

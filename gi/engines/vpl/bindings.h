@@ -25,16 +25,16 @@ const uint kBindLights = 9u;   // VplLight[]
 const uint kBindHistorySurfaces = 9u;
 const uint kBindAtlas = 10u;
 const uint kBindCoarse = 11u;
-const uint kBindQueues = 11u;  // shadow_maps/queue.h
+const uint kBindQueues = 11u;    // shadow_maps/queue.h
 const uint kBindIsolated = 11u;  // isolated pixels, join.comp
 const uint kBindFringe = 12u;
 const uint kBindFringeSources = 13u;
 const uint kBindDiffuse = 12u;   // irradiance from the VPLs, one a pixel
 const uint kBindSpecular = 13u;  // radiance by the receiver's lobe, one a pixel
 const uint kBindRadiance = 14u;
-const uint kBindPairs = 14u;   // pairs of surfel and map, shadow_maps/queue.glsl
-const uint kBindOdds = 14u;    // weight sums, redistribute.comp
-const uint kBindJoints = 15u;  // join.glsl
+const uint kBindPairs = 14u;       // pairs of surfel and map, shadow_maps/queue.glsl
+const uint kBindWeightSums = 14u;  // weight sums, redistribute.comp
+const uint kBindJoints = 15u;      // join.glsl
 
 // Texture units of buffers that are read as texels; units 0 to 2 belong to the cut.
 const uint kUnitLights = 3u;
@@ -47,7 +47,7 @@ const uint kUnitSpecular = 9u;
 const uint kUnitOwnDiffuse = 10u;
 const uint kUnitOwnSpecular = 11u;
 const uint kUnitSources = 12u;
-const uint kUnitOdds = 13u;
+const uint kUnitWeightSums = 13u;
 const uint kUnitHistory = 14u;
 const uint kUnitHistorySurfaces = 15u;
 

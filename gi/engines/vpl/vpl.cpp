@@ -10,7 +10,7 @@
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/redistribution/redistribution.h"
-#include "gi/engines/vpl/seeding/light_sights.h"
+#include "gi/engines/vpl/seeding/light_gbuffers.h"
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
 #include "gi/gl_frame.h"
@@ -62,7 +62,7 @@ class VplEngine : public Engine {
 
     Buffer materials_;
     Sky sky_;
-    LightSights sights_;
+    LightGBuffers light_gbuffers_;
     std::vector<Bounce> bounces_;
     ShadowMaps maps_;       ///< borrows the atlas of a bounce while it is drawn or read
     Basis basis_;           ///< what bounces_ were made from
@@ -128,7 +128,8 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
     if (!held) {
         LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
-            return sights_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index), bounces_[0].seeds);
+            return light_gbuffers_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index),
+                                        bounces_[0].seeds);
         }));
         LUCARNE_TRY(pass(frame, "ISM casters",
                          [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
@@ -166,20 +167,20 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
 Result<void> VplEngine::add_direct(Frame& frame) {
     frame.times.begin("direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
-    for (size_t i = 0; i < sights_.views().size(); ++i) {
-        LUCARNE_ASSIGN(const GBuffer* seen, sights_.look(frame, i));
-        LUCARNE_TRY(add_light(frame, materials_, sights_.views()[i], *seen));
+    for (size_t i = 0; i < light_gbuffers_.views().size(); ++i) {
+        LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame, i));
+        LUCARNE_TRY(add_light(frame, materials_, light_gbuffers_.views()[i], *seen));
     }
     frame.times.end();
     return {};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    sights_.begin(frame, sky_.directions);
+    light_gbuffers_.begin(frame, sky_.directions);
     frame.times.begin("light G-buffer");
-    if (!sights_.views().empty()) LUCARNE_TRY(sights_.look(frame, 0));
+    if (!light_gbuffers_.views().empty()) LUCARNE_TRY(light_gbuffers_.look(frame, 0));
     frame.times.end();
-    indirect_ = wants_indirect(frame.settings) && (!sights_.views().empty() || emits(frame));
+    indirect_ = wants_indirect(frame.settings) && (!light_gbuffers_.views().empty() || emits(frame));
     if (indirect_)
         LUCARNE_TRY(light_indirectly(frame));
     else

@@ -9,7 +9,7 @@ layout(local_size_x = 16) in;
 #include "gi/engines/vpl/redistribution/redistribution.glsl"
 
 layout(std430, binding = kBindLights) buffer Next { VplLight next[]; };
-layout(binding = kUnitOdds) uniform usamplerBuffer odds;
+layout(binding = kUnitWeightSums) uniform usamplerBuffer weight_sums;
 
 uniform uint light_count;
 
@@ -26,7 +26,7 @@ void main() {
     vec3 irradiance = vec3(0.0);
     float density = 0.0, own = 0.0;  // 1/m^2: of all races, of its own race
     for (uint i = 0u; i < light_count; ++i) {
-        float sum = uintBitsToFloat(texelFetch(odds, int(i)).x);
+        float sum = uintBitsToFloat(texelFetch(weight_sums, int(i)).x);
         vec3 offset = receiver.position - vpl_position(i).xyz;
         float geometry = point_geometry(vpl_normal(i).xyz, offset, receiver);
         if (!(sum > 0.0) || geometry <= 0.0) continue;

@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = kBindMaterials) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = kBindLights) writeonly buffer Next { VplLight next[]; };  // diffuse is still without the flux
-layout(std430, binding = kBindOdds) writeonly buffer Odds { float odds[]; };  // weight sum: sum(w) of a map, W
+layout(std430, binding = kBindWeightSums) writeonly buffer WeightSums { float weight_sums[]; };  // weight sum: sum(w) of a map, W
 layout(binding = kUnitSources) uniform usamplerBuffer source_texels;
 
 uniform uint seed, id_bits;
@@ -34,28 +34,28 @@ float random(uint a, uint b) {  // in (0, 1); a hash after Jarzynski and Olano 2
 }
 
 // What a texel of a shadow map shows from the VPL.
-struct Sight {
+struct MapRay {
     vec3 direction;     // in the VPL's frame, unit
     float distance_m;   // 0: the texel is empty
     float solid_angle;  // sr, times the cosine at the VPL
 };
-Sight look(uint map, uvec2 at) {
-    Sight sight = Sight(vec3(0.0, 0.0, 1.0), 0.0, 0.0);
+MapRay look(uint map, uvec2 at) {
+    MapRay ray = MapRay(vec3(0.0, 0.0, 1.0), 0.0, 0.0);
     vec2 uv = texel_centre(at);
     float norm2 = dot(uv, uv);
     uint texel = texelFetch(atlas_texels, int(texel_index(map, at))).x;
-    if (norm2 >= 1.0 || texel == kNothing) return sight;
+    if (norm2 >= 1.0 || texel == kNothing) return ray;
     float inverse = 1.0 / (1.0 + norm2);
-    sight.direction = map_ray(uv) * inverse;
-    sight.distance_m = map_distance(texel);
+    ray.direction = map_ray(uv) * inverse;
+    ray.distance_m = map_distance(texel);
     float side = 2.0 * inverse * 2.0 / float(map_side);
-    sight.solid_angle = side * side * sight.direction.z;
-    return sight;
+    ray.solid_angle = side * side * ray.direction.z;
+    return ray;
 }
 
 // Returns the radiant intensity, W/sr, toward the surface that a texel shows.
-vec3 intensity_at(uint map, mat3 frame, Sight sight) {
-    return raced_intensity(map, frame * sight.direction, sight.direction.z, sight.distance_m * sight.distance_m);
+vec3 intensity_at(uint map, mat3 frame, MapRay ray) {
+    return raced_intensity(map, frame * ray.direction, ray.direction.z, ray.distance_m * ray.distance_m);
 }
 
 Reflectance reflectance_of(uint item, PackedSurfel surfel) {
@@ -64,17 +64,17 @@ Reflectance reflectance_of(uint item, PackedSurfel surfel) {
 
 void write_light(uint map, uvec2 at, float inverse_probability) {
     mat3 frame = frame_about(vpl_normal(map).xyz);
-    Sight sight = look(map, at);
+    MapRay ray = look(map, at);
     uint id = texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u);
     uint item;
     PackedSurfel surfel;
     cut_surfel(id, item, surfel);
-    vec3 direction = frame * sight.direction;
+    vec3 direction = frame * ray.direction;
     vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : -direction;
     if (dot(normal, direction) > 0.0) normal = -normal;
     Reflectance r = reflectance_of(item, surfel);
     float radius = cut_surfel_radius(item, surfel);
-    vec3 flux = intensity_at(map, frame, sight) * sight.solid_angle * inverse_probability;
+    vec3 flux = intensity_at(map, frame, ray) * ray.solid_angle * inverse_probability;
     // The VPL stands in the middle of the surfel, which lies on the scanned surface. At the end of the texel's ray
     // the rim of the disc may stick out, even out of a sealed room.
     next[map] = VplLight(vec4(surfel_position(item, surfel), cut_surfel_area(item, surfel)), vec4(normal, radius),
@@ -89,8 +89,8 @@ void main() {
     uint place = 0u;
     for (uint i = lane; i < map_side * map_side; i += 64u) {
         uvec2 at = uvec2(i % map_side, i / map_side);
-        Sight sight = look(map, at);
-        float flux = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
+        MapRay ray = look(map, at);
+        float flux = luminance(intensity_at(map, frame, ray)) * ray.solid_angle;
         uint source = texelFetch(source_texels, int(texel_index(map, at))).x;
         uint item;
         PackedSurfel surfel;
@@ -123,13 +123,13 @@ void main() {
         all += shared_all[i];
         found += shared_found[i];
     }
-    odds[map] = sum;
+    weight_sums[map] = sum;
     next[map] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     if (!(sum > 0.0) || best >= 3e38) return;
     uvec2 at = uvec2(place % map_side, place / map_side);
     // 1 / probability of the winner. Texels that pull-push filled have no surfel; the other texels stand in for them.
-    Sight sight = look(map, at);
-    float luminous = luminance(intensity_at(map, frame, sight)) * sight.solid_angle;
+    MapRay ray = look(map, at);
+    float luminous = luminance(intensity_at(map, frame, ray)) * ray.solid_angle;
     uint item;
     PackedSurfel surfel;
     cut_surfel(texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u), item, surfel);

@@ -16,14 +16,14 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
                    device.program("gi/engines/vpl/redistribution/combine.comp", defines));
     const uint32_t count = maps.layout.maps;
     LUCARNE_TRY(device.reserve(to.lights, count * sizeof(VplLight), "virtual point lights"));
-    LUCARNE_TRY(device.reserve(scratch.odds, count * sizeof(float), "virtual point lights"));
+    LUCARNE_TRY(device.reserve(scratch.weight_sums, count * sizeof(float), "virtual point lights"));
     cut.bind();
     materials.bind(kBindMaterials);
     from.lights.bind_texels(kUnitLights, TexelView::four_words);
     maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
     maps.sources.bind_texels(kUnitSources, TexelView::one_word);
     to.lights.bind(kBindLights);
-    scratch.odds.bind(kBindOdds);
+    scratch.weight_sums.bind(kBindWeightSums);
     for (const Program* program : {race, combine}) {
         set_layout(*program, maps.layout);
         program->set("footprint_variance", scratch.footprint_variance);
@@ -33,7 +33,7 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
     race->set("id_bits", maps.id_bits);
     constexpr uint32_t kRaceGroup = 64;  // redistribute.comp
     race->dispatch(count * kRaceGroup);
-    scratch.odds.bind_texels(kUnitOdds, TexelView::one_word);
+    scratch.weight_sums.bind_texels(kUnitWeightSums, TexelView::one_word);
     combine->dispatch(count);
     settle_lights(to, count);
     return {};

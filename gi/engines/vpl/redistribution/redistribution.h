@@ -9,7 +9,7 @@ namespace lucarne::gi::vpl {
 
 /// Settings and scratch memory of redistribution.
 struct Redistribution {
-    Buffer odds;                      ///< weight sums of the maps, W
+    Buffer weight_sums;               ///< weight sums of the maps, W
     bool best_candidate = false;      ///< choose as the paper does: biased, for comparison
     float footprint_variance = 6.0f;  ///< lobes.h
 };

@@ -39,26 +39,26 @@ uint32_t importance_side(const CameraView& view) {
     return std::bit_ceil(std::max({view.width, view.height, 1u}));
 }
 
-void set_sight(const Program& program, const Sight& sight) {
-    program.set("importance_side", importance_side(sight.view));
-    set(program, "light_view", sight.view);
-    set(program, "light", sight.light);
-    program.set("face", sight.face);
+void set_light_view(const Program& program, const LightGBuffer& gbuffer) {
+    program.set("importance_side", importance_side(gbuffer.view));
+    set(program, "light_view", gbuffer.view);
+    set(program, "light", gbuffer.light);
+    program.set("face", gbuffer.face);
 }
 
 }  // namespace
 
-Result<double> map_importance(Device& device, const Sight& sight, Buffer& target) {
+Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, Buffer& target) {
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/engines/vpl/seeding/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/engines/vpl/seeding/importance_mip.comp"));
-    const uint32_t side = importance_side(sight.view);
+    const uint32_t side = importance_side(gbuffer.view);
     size_t texels = 0;
     for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
     LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
-    sight.seen.texels.bind(kBindGBuffer);
+    gbuffer.seen.texels.bind(kBindGBuffer);
     target.bind(kBindImportance);
-    set_sight(*importance, sight);
-    set_sight(*mip, sight);
+    set_light_view(*importance, gbuffer);
+    set_light_view(*mip, gbuffer);
     importance->dispatch(side, side);
     for (uint32_t level = 1; side >> level > 0; ++level) {
         mip->set("level", level);
@@ -71,19 +71,20 @@ Result<double> map_importance(Device& device, const Sight& sight, Buffer& target
     return sum.x > 0 ? sum.x : sum.y > 0 ? 1e-30 : 0.0;
 }
 
-Result<void> seed_view(Device& device, const Sight& sight, const Buffer& importance, const Buffer& materials,
-                       std::span<const glm::vec2> points, uint32_t first, Seeds& target) {
+Result<void> seed_view(Device& device, const LightGBuffer& gbuffer, const Buffer& importance,
+                       const Buffer& materials, std::span<const glm::vec2> points, uint32_t first,
+                       Seeds& target) {
     LUCARNE_ASSIGN(const Program* seed, device.program("gi/engines/vpl/seeding/seed.comp"));
     LUCARNE_TRY(device.reserve(target.points, points.size_bytes(), "Halton points"));
     target.points.upload(0, std::as_bytes(points));
-    sight.cut.bind();
-    sight.seen.texels.bind(kBindGBuffer);
-    sight.seen.ids.bind(kBindLightIds);
+    gbuffer.cut.bind();
+    gbuffer.seen.texels.bind(kBindGBuffer);
+    gbuffer.seen.ids.bind(kBindLightIds);
     materials.bind(kBindMaterials);
     importance.bind(kBindImportance);
     target.points.bind(kBindPoints);
     target.lights.bind(kBindLights);
-    set_sight(*seed, sight);
+    set_light_view(*seed, gbuffer);
     seed->set("first_light", first);
     seed->set("light_count", static_cast<uint32_t>(points.size()));
     seed->dispatch(static_cast<uint32_t>(points.size()));

@@ -19,7 +19,7 @@ struct Seeds {
 };
 
 /// A light view (gi/lighting/light_view.h) with its cut and its G-buffer.
-struct Sight {
+struct LightGBuffer {
     const Light& light;
     uint32_t face;
     CameraView view;
@@ -30,12 +30,13 @@ struct Sight {
 /// Computes the importance map of a light view (importance.glsl: vec2 (weight, lit), all mip levels) for the
 /// materials that are bound. Returns the sum of its weights: the flux, W, that leaves the lit surfaces, with
 /// lobes counted as importance.comp says. Errors: no device memory, a shader that fails.
-Result<double> map_importance(Device& device, const Sight& sight, Buffer& target);
+Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, Buffer& target);
 
 /// Places one VPL for each of `points`, in [0, 1)^2, by the importance map of a light view, starting at VPL
 /// `first` of the target. Errors as above.
-Result<void> seed_view(Device& device, const Sight& sight, const Buffer& importance, const Buffer& materials,
-                       std::span<const glm::vec2> points, uint32_t first, Seeds& target);
+Result<void> seed_view(Device& device, const LightGBuffer& gbuffer, const Buffer& importance,
+                       const Buffer& materials, std::span<const glm::vec2> points, uint32_t first,
+                       Seeds& target);
 
 /// Returns how many of `count` VPLs each light gets: in proportion to `weights`, at least one for a weight
 /// above 0 (while VPLs last). The sum is `count` unless all weights are 0.

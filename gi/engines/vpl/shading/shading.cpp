@@ -33,8 +33,8 @@ Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     LUCARNE_TRY(
         frame.gl.device.reserve(target.own_specular, glossy ? bytes : one, "indirect specular light"));
     LUCARNE_TRY(frame.gl.device.reserve(target.joints, pixels * 2 * sizeof(uint32_t), "tiles"));
-    LUCARNE_TRY(
-        frame.gl.device.reserve(target.isolated, sizeof(IsolatedHeader) + pixels * sizeof(uint32_t), "tiles"));
+    LUCARNE_TRY(frame.gl.device.reserve(target.isolated, sizeof(IsolatedHeader) + pixels * sizeof(uint32_t),
+                                        "tiles"));
     for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
         light->clear(0);
     target.isolated.upload_all(std::vector<IsolatedHeader>{{{0, 1, 1}, 0}});

@@ -13,7 +13,7 @@ struct Tiles {
     Buffer diffuse;   ///< vec4, irradiance
     Buffer specular;  ///< vec4, radiance by the receiver's lobe; one texel where nothing is glossy
     Buffer own_diffuse, own_specular;  ///< the same for isolated pixels, from the tiles they lack
-    Buffer joints, isolated;             ///< join.glsl, join.comp
+    Buffer joints, isolated;           ///< join.glsl, join.comp
     bool glossy = false;
 };
 

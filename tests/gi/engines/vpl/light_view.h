@@ -70,7 +70,7 @@ inline Result<std::vector<VplLight>> seed_on(Device& device, const SpotSight& li
     const SurfelCloud nothing(std::vector<Surfel>{});
     LUCARNE_ASSIGN(const auto loaded, load_cloud(device, nothing));
     Seeds seeds;
-    const Sight view{light.spot, 0, light.view, loaded->cut, gbuffer};
+    const LightGBuffer view{light.spot, 0, light.view, loaded->cut, gbuffer};
     Buffer importance;
     LUCARNE_ASSIGN(seeds.lights, device.buffer(points.size() * sizeof(VplLight), "lights"));
     material_buffer.bind(kBindMaterials);

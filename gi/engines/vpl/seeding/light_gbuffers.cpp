@@ -1,4 +1,4 @@
-#include "gi/engines/vpl/seeding/light_sights.h"
+#include "gi/engines/vpl/seeding/light_gbuffers.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,7 +21,7 @@ bool emits(const Frame& frame) {
     });
 }
 
-void LightSights::begin(const Frame& frame, const SkyDirections& sky) {
+void LightGBuffers::begin(const Frame& frame, const SkyDirections& sky) {
     views_ = light_views(frame, sky);
     size_t largest = 1;
     for (const LightView& v : views_) largest = std::max(largest, size_t{v.view.width} * v.view.height);
@@ -29,7 +29,7 @@ void LightSights::begin(const Frame& frame, const SkyDirections& sky) {
     held_.resize(std::min(views_.size(), std::max(kLeastHeld, fit)));
 }
 
-Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
+Result<const GBuffer*> LightGBuffers::look(Frame& frame, size_t index) {
     Held& held = held_[index % held_.size()];
     const LightView& view = views_[index];
     if (held.whole && held.view == view.view && held.cut == view.cut->fingerprint()) return &held.gbuffer;
@@ -50,18 +50,18 @@ Result<const GBuffer*> LightSights::look(Frame& frame, size_t index) {
     return &held.gbuffer;
 }
 
-Result<Sight> LightSights::sight(Frame& frame, size_t index) {
+Result<LightGBuffer> LightGBuffers::gbuffer(Frame& frame, size_t index) {
     LUCARNE_ASSIGN(const GBuffer* seen, look(frame, index));
     const LightView& view = views_[index];
-    return Sight{view.light, view.face, view.view, *view.cut, *seen};
+    return LightGBuffer{view.light, view.face, view.view, *view.cut, *seen};
 }
 
-Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,
-                               Seeds& target) {
+Result<void> LightGBuffers::seed(Frame& frame, const Buffer& materials, uint32_t count, uint64_t seed,
+                                 Seeds& target) {
     LUCARNE_TRY(frame.gl.device.reserve(target.lights, count * sizeof(VplLight), "virtual point lights"));
     std::vector<double> weights;
     for (size_t i = 0; i < views_.size(); ++i) {
-        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        LUCARNE_ASSIGN(const LightGBuffer from, gbuffer(frame, i));
         materials.bind(kBindMaterials);
         LUCARNE_ASSIGN(const double weight, map_importance(frame.gl.device, from, importance_));
         weights.push_back(weight);
@@ -77,7 +77,7 @@ Result<void> LightSights::seed(Frame& frame, const Buffer& materials, uint32_t c
     uint32_t first = shares.back();
     for (size_t i = 0; i < views_.size(); ++i) {
         if (shares[i] == 0) continue;
-        LUCARNE_ASSIGN(const Sight from, sight(frame, i));
+        LUCARNE_ASSIGN(const LightGBuffer from, gbuffer(frame, i));
         if (views_.size() > 1) {
             materials.bind(kBindMaterials);
             LUCARNE_TRY(map_importance(frame.gl.device, from, importance_));

@@ -13,10 +13,10 @@ namespace lucarne::gi::vpl {
 /// Returns whether any material has an emission.
 bool emits(const Frame& frame);
 
-/// Places VPLs on emissive surfels and on the G-buffers of the light views (a "sight" is a light view with
-/// its G-buffer). As many G-buffers are held as fit a fixed amount of memory; with more lights, the others
+/// Places VPLs on emissive surfels and on the G-buffers of the light views.
+/// As many G-buffers are held as fit a fixed amount of memory; with more lights, the others
 /// are drawn again whenever they are needed.
-class LightSights {
+class LightGBuffers {
  public:
     /// Starts a new frame: computes its light views, `sky` being that of its environment. Held G-buffers
     /// stay valid if the view and its cut are unchanged.
@@ -40,7 +40,7 @@ class LightSights {
         bool whole = false;
         GBuffer gbuffer;
     };
-    Result<Sight> sight(Frame& frame, size_t index);
+    Result<LightGBuffer> gbuffer(Frame& frame, size_t index);
 
     std::vector<LightView> views_;
     std::vector<Held> held_;
