@@ -22,8 +22,8 @@ void PointerInput::move(double x, double y) {
         push({x, y});
 }
 
-void PointerInput::set_button(size_t button, bool down, double seconds) {
-    if (button < kButtons) push({x_, y_, button, down, seconds});
+void PointerInput::set_button(size_t button, bool down, const Time& time) {
+    if (button < kButtons) push({x_, y_, button, down, time});
 }
 
 const PointerInput::State& PointerInput::next() {
@@ -35,8 +35,8 @@ const PointerInput::State& PointerInput::next() {
     if (event.button == kButtons) return state_;
     state_.down[event.button] = event.down;
     if (event.down) {
-        state_.soon = event.seconds - pressed_at_ < kDoubleClick;
-        pressed_at_ = event.seconds;
+        state_.soon = event.time.earliest - pressed_at_ < kDoubleClick;
+        pressed_at_ = event.time.latest;
     }
     return state_;
 }

@@ -16,13 +16,18 @@ class PointerInput {
     struct State {
         double x = 0, y = 0;  ///< units of the window, y downward
         std::array<bool, kButtons> down{};
-        /// Whether a press in this frame came soon enough after the last one to make a double-click.
+        /// Whether a press in this frame may have come soon enough after the last one to make a double-click.
         bool soon = false;
     };
 
+    /// When a button changed, seconds on any clock. A frame that takes long receives the event late, so only
+    /// an interval is known.
+    struct Time {
+        double earliest = 0, latest = 0;
+    };
+
     void move(double x, double y);
-    /// `seconds`: when the button changed, on any clock.
-    void set_button(size_t button, bool down, double seconds);
+    void set_button(size_t button, bool down, const Time& time);
 
     /// Whether events wait for the next frame.
     bool pending() const { return !events_.empty(); }
@@ -36,7 +41,7 @@ class PointerInput {
         double x = 0, y = 0;
         size_t button = kButtons;  ///< kButtons: a motion alone
         bool down = false;
-        double seconds = 0;
+        Time time;
     };
     void push(const Event& event);
 

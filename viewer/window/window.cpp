@@ -92,8 +92,8 @@ void Window::take_context() {
         static_cast<Window*>(glfwGetWindowUserPointer(window))->pointer_.move(x, y);
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
-        auto& pointer = static_cast<Window*>(glfwGetWindowUserPointer(window))->pointer_;
-        pointer.set_button(static_cast<size_t>(button), action == GLFW_PRESS, glfwGetTime());
+        auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+        self.pointer_.set_button(static_cast<size_t>(button), action == GLFW_PRESS, self.event_time());
     });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
@@ -203,10 +203,20 @@ bool Window::closing() const {
 }
 
 void Window::wait(double seconds) {
+    wait_began_ = glfwGetTime();
     if (pointer_.pending())
         glfwPollEvents();
     else
         glfwWaitEventsTimeout(std::max(seconds, 1e-4));
+    wait_ended_ = glfwGetTime();
+}
+
+/// Returns when an event happened that GLFW passes on now. GLFW does not tell the time of events. One that
+/// was there when wait() began came at any time since the last wait ended.
+PointerInput::Time Window::event_time() const {
+    constexpr double kAtOnce = 2e-3;  // s
+    const double now = glfwGetTime();
+    return {now - wait_began_ < kAtOnce ? wait_ended_ : now, now};
 }
 
 ImageSize Window::framebuffer() const {

@@ -104,6 +104,7 @@ class Window {
     double screen_scale() const;  ///< 1: about 96 dots an inch
     void fit_text();
     void take_pointer();
+    PointerInput::Time event_time() const;
     Result<void> create(ImageSize size, const std::string& title);
     Result<void> create_window(ImageSize size, const std::string& title);
     Result<void> create_hidden(Hidden which);
@@ -123,6 +124,7 @@ class Window {
     std::optional<Seen> seen_;  ///< nothing: not known
     bool software_ = false;     ///< the window is drawn by the processor
     PointerInput pointer_;
+    double wait_began_ = 0, wait_ended_ = 0;  ///< s on GLFW's clock
     std::vector<KeyChord> pressed_;
     std::vector<std::string> dropped_;
     gi::ContextWatch watch_;

@@ -8,9 +8,9 @@ namespace {
 TEST(PointerInput, ADragWithinOneFrameBeginsWhereItWasPressedAndEndsWhereItWasReleased) {
     PointerInput pointer;
     pointer.move(10, 20);
-    pointer.set_button(0, true, 1.0);
+    pointer.set_button(0, true, {1.0, 1.0});
     for (int i = 1; i <= 50; ++i) pointer.move(10 + i, 20);
-    pointer.set_button(0, false, 1.1);
+    pointer.set_button(0, false, {1.1, 1.1});
     pointer.move(500, 500);
 
     PointerInput::State frame = pointer.next();
@@ -35,8 +35,8 @@ TEST(PointerInput, ADragWithinOneFrameBeginsWhereItWasPressedAndEndsWhereItWasRe
 TEST(PointerInput, PressesAreADoubleClickByTheirOwnTimesAndNotByThoseOfFrames) {
     PointerInput pointer;
     for (const double at : {5.0, 5.2, 7.0}) {
-        pointer.set_button(0, true, at);
-        pointer.set_button(0, false, at + 0.05);
+        pointer.set_button(0, true, {at, at});
+        pointer.set_button(0, false, {at + 0.05, at + 0.05});
     }
     for (const bool soon : {false, true, false}) {
         const PointerInput::State press = pointer.next();
@@ -48,13 +48,23 @@ TEST(PointerInput, PressesAreADoubleClickByTheirOwnTimesAndNotByThoseOfFrames) {
     }
 }
 
+TEST(PointerInput, PressesThatFramesReceivedLateAreADoubleClickIfTheyMayHaveBeenOne) {
+    PointerInput pointer;
+    pointer.set_button(0, true, {5.0, 5.6});
+    pointer.set_button(0, true, {5.6, 6.2});
+    pointer.set_button(0, true, {6.6, 7.0});
+    EXPECT_FALSE(pointer.next().soon);
+    EXPECT_TRUE(pointer.next().soon);
+    EXPECT_FALSE(pointer.next().soon) << "at least .4 s later";
+}
+
 TEST(PointerInput, HoldsFewEventsHoweverManyComeAndEndsInTheirState) {
     PointerInput pointer;
     for (int i = 0; i < 100'000; ++i) {
         pointer.move(i, i);
-        pointer.set_button(static_cast<size_t>(i % 7), i % 2 == 0, i);
+        pointer.set_button(static_cast<size_t>(i % 7), i % 2 == 0, {double(i), double(i)});
     }
-    pointer.set_button(2, true, 1e6);
+    pointer.set_button(2, true, {1e6, 1e6});
     size_t frames = 0;
     PointerInput::State last;
     while (pointer.pending()) last = pointer.next(), ++frames;
