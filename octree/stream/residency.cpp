@@ -1,6 +1,7 @@
 #include "octree/stream/residency.h"
 
 #include <algorithm>
+#include <cassert>
 #include <condition_variable>
 #include <list>
 #include <mutex>
@@ -182,6 +183,7 @@ bool ResidencyBase::State::goes_before(uint32_t a, uint32_t b) const {
 /// Drops a loaded or replaced event that the caller has not polled and no longer needs.
 void ResidencyBase::State::forget_event(Entry& entry) {
     if (!entry.unpolled) return;
+    assert(entry.unpolled_bytes <= bytes_unpolled);
     bytes_unpolled -= entry.unpolled_bytes;
     events.erase(*entry.unpolled);
     entry.unpolled.reset();
@@ -189,6 +191,7 @@ void ResidencyBase::State::forget_event(Entry& entry) {
 
 void ResidencyBase::State::evict(uint32_t node) {
     Entry& entry = entries.at(node);
+    assert(entry.held && entry.held_bytes <= stats.bytes_held);
     Events told;  // made first, since it may throw
     if (entry.known) told.push_back({Kind::evicted, node, nullptr});
     forget_event(entry);
@@ -241,6 +244,7 @@ std::optional<uint32_t> ResidencyBase::State::next_load() {
     stats.transit_peak = std::max(stats.transit_peak, bytes_unpolled + bytes_polled);
     ++loads_in_flight;
     stats.bytes_peak = std::max(stats.bytes_peak, stats.bytes_held + bytes_in_flight);
+    assert(stats.bytes_peak <= options.memory && stats.transit_peak <= options.transit);
     return node;
 }
 
@@ -258,6 +262,8 @@ std::optional<uint32_t> ResidencyBase::State::take_next() {
 /// Applies the result of a load. Allocates nothing, so that it cannot fail.
 void ResidencyBase::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     Entry& entry = entries.at(node);
+    assert(entry.in_flight && loads_in_flight > 0);
+    assert(entry.bytes <= bytes_in_flight && entry.load_bytes <= bytes_unpolled);
     entry.in_flight = false;
     bytes_in_flight -= entry.bytes;
     bytes_unpolled -= entry.load_bytes;
@@ -287,6 +293,7 @@ void ResidencyBase::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     ++stats.nodes_held;
     if (entry.admitted) return;
     const auto later = [&](uint32_t other) { return goes_before(node, other); };
+    assert(evictable.size() < evictable.capacity());
     evictable.insert(std::ranges::partition_point(evictable, later), node);
 }
 
@@ -383,6 +390,7 @@ auto ResidencyBase::poll_any(size_t limit) -> std::vector<AnyEvent> {
             AnyEvent& event = state_->events.front();
             if (event.kind != Kind::evicted) {
                 State::Entry& entry = state_->entries.at(event.node);
+                assert(entry.unpolled == state_->events.begin());
                 entry.unpolled.reset();
                 entry.known = true;
                 state_->bytes_unpolled -= entry.unpolled_bytes;
