@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -30,8 +31,16 @@ struct Sums {
         : size(its_size),
           values(static_cast<size_t>(size.x) * static_cast<size_t>(size.y) * static_cast<size_t>(size.z)),
           counts(values.size()) {}
-    size_t at(int x, int y, int z) const { return static_cast<size_t>((z * size.y + y) * size.x + x); }
+    size_t at(int x, int y, int z) const {
+        assert(x >= 0 && y >= 0 && z >= 0 && x < size.x && y < size.y && z < size.z);
+        return static_cast<size_t>((z * size.y + y) * size.x + x);
+    }
 };
+
+/// Limits a place among cells to their range, and NaN, which damaged files hold, to 0.
+glm::dvec3 within(const glm::dvec3& place, const glm::ivec3& size) {
+    return glm::min(glm::max(glm::dvec3(0), place), glm::dvec3(size) - 1.0);
+}
 
 /// Applies a box filter of 2 kBlur + 1 cells along one axis.
 Sums blurred(const Sums& from, int axis) {
@@ -61,8 +70,7 @@ void add_node(const octree::NodeSource& source, uint32_t node, const octree::Nod
         const glm::vec3 colour = decode_albedo(surfels[i].d);
         const glm::dvec3 position =
             io::position_of(schema, data.records.data() + i * schema.stride) * part.scale;
-        const glm::dvec3 place =
-            glm::clamp((position - min) / cell, glm::dvec3(0), glm::dvec3(sums.size) - 1.0);
+        const glm::dvec3 place = within((position - min) / cell, sums.size);
         const size_t at =
             sums.at(static_cast<int>(place.x), static_cast<int>(place.y), static_cast<int>(place.z));
         sums.values[at] += luminance(glm::dvec3(colour));
@@ -114,8 +122,7 @@ BakedLight BakedLight::in_unit(double scale) const {
 
 /// Interpolates trilinearly between the middles of cells that have points.
 double BakedLight::mean_at(const glm::dvec3& position) const {
-    const glm::dvec3 place =
-        glm::clamp((position - min_) / cell_ - 0.5, glm::dvec3(0), glm::dvec3(size_) - 1.0);
+    const glm::dvec3 place = within((position - min_) / cell_ - 0.5, size_);
     const glm::ivec3 low = glm::ivec3(place);
     const glm::dvec3 share = place - glm::dvec3(low);
     double sum = 0, weights = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -93,6 +94,7 @@ std::optional<PointPlace> CutPoints::find(uint32_t id) const {
 }
 
 void DeviceCut::bind() const {
+    assert(pool_);  // set by make_cut()
     pool_->bind_texels(kUnitCutPool, TexelView::four_words);
     items_.bind_texels(kUnitCutItems, TexelView::four_words);
     blocks_buffer_.bind_texels(kUnitCutBlocks, TexelView::four_words);
@@ -125,6 +127,7 @@ Result<bool> SurfelPool::load(uint32_t node, std::span<const PackedSurfel> surfe
 }
 
 void SurfelPool::upload(const Resident& node, std::span<const PackedSurfel> surfels) {
+    assert(node.pages.size() == pages_for(surfels.size()));
     for (size_t page = 0; page < node.pages.size();) {
         size_t end = page + 1;
         while (end < node.pages.size() && node.pages[end] == node.pages[end - 1] + 1) ++end;
@@ -140,6 +143,7 @@ void SurfelPool::evict(uint32_t node) {
     if (found == resident_.end()) return;
     const std::vector<uint32_t>& pages = found->second.pages;
     free_.insert(free_.end(), pages.rbegin(), pages.rend());
+    assert(free_.size() <= capacity_ / kPageSurfels);
     resident_.erase(found);
 }
 
@@ -219,6 +223,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         clipped += item.count - drawn;
         items.push_back(item);
     }
+    assert(surfels <= capacity_);
     cut.clip_ = device_clip(clip, local_origin, unit);
     for (CutItem& item : items)
         if (item.clip) item.clip = static_cast<uint32_t>(items.size());
@@ -233,7 +238,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     cut.pool_ = &buffer_;
     cut.host_items_ = std::move(items);
     cut.clipped_ = static_cast<uint32_t>(clipped);
-    cut.surfels_ = static_cast<uint32_t>(surfels);  // at most the pool's capacity
+    cut.surfels_ = static_cast<uint32_t>(surfels);
     cut.blocks_ = static_cast<uint32_t>(blocks.size());
     cut.host_blocks_ = std::move(blocks);
     cut.points_ = cut_points;

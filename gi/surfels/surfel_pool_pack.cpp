@@ -1,5 +1,6 @@
 // Converts a node's records to surfels for the device.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <glm/vector_relational.hpp>
@@ -166,6 +167,7 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
                                        const octree::NodeData& data, const Scene& scene, uint32_t first_scan,
                                        const BakedLight* baked) {
     const size_t stride = header.schema.stride;
+    assert(data.records.size() % stride == 0);
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
     Packer packer(header, node, scene, first_scan, baked);
     packer.drop_empty_colours(data);

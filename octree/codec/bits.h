@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,6 +16,7 @@ class BitWriter {
     explicit BitWriter(std::vector<std::byte>& out) : out_(out) {}
     /// Appends the lower `bits` bits of `value`; its other bits must be 0. At most 64.
     void put(uint64_t value, uint32_t bits) {
+        assert(bits <= 64 && (bits == 64 || value >> bits == 0));
         held_ |= value << used_;
         if (used_ + bits < 64) {
             used_ += bits;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -66,6 +67,7 @@ void ColumnEncoder::encode(std::vector<uint64_t>& values, std::vector<std::byte>
     if (!values.empty() && *most > head.base) {
         for (auto& v : values) v -= head.base;
         head.step = common_step(values);
+        assert(head.step > 0);
         if (head.step > 1)
             for (auto& v : values) v /= head.step;
         head.width = static_cast<uint8_t>(std::bit_width(*most));
@@ -161,6 +163,7 @@ ColumnDecoder::ColumnDecoder() : context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
 
 bool ColumnDecoder::decode(const ColumnHead& head, std::span<const std::byte> body, size_t count,
                            std::vector<uint64_t>& values) {
+    assert(body.size() == head.body_bytes(count));
     values.resize(count);
     if (head.method == Method::constant) {
         std::fill(values.begin(), values.end(), head.base);

@@ -19,6 +19,7 @@ void with_type(uint32_t bytes, const Use& use) {
         case 4:
             return use(uint32_t{});
         default:
+            assert(bytes == 8);
             return use(uint64_t{});
     }
 }
@@ -29,6 +30,11 @@ constexpr T kTop = static_cast<T>(T{1} << (8 * sizeof(T) - 1));
 /// Returns the three bytes of normal_oct as one number.
 uint32_t normal_word(const std::byte* at) {
     return load<uint16_t>(at) | static_cast<uint32_t>(load<uint8_t>(at + 2)) << 16;
+}
+
+[[maybe_unused]] bool fits(const Column& column, uint32_t stride) {
+    const bool normal = column.kind == Kind::normal_low || column.kind == Kind::normal_high;
+    return column.offset + (normal ? 3 : column.bytes) <= stride && column.green + column.bytes <= stride;
 }
 
 /// Converts a stored number to an unsigned one of the same order, and back.
@@ -81,7 +87,7 @@ std::vector<Column> columns_of(const io::Schema& schema) {
 
 void gather(const Column& column, std::span<const std::byte> records, uint32_t stride,
             std::vector<uint64_t>& values) {
-    assert(column.offset + column.bytes <= stride);
+    assert(fits(column, stride) && records.size() % stride == 0);
     const size_t count = records.size() / stride;
     values.resize(count);
     if (count == 0) return;  // `records` may have no address to start from
@@ -108,7 +114,7 @@ void gather(const Column& column, std::span<const std::byte> records, uint32_t s
 
 void scatter(const Column& column, std::span<const uint64_t> values, std::span<std::byte> records,
              uint32_t stride) {
-    assert(column.offset + column.bytes <= stride);
+    assert(fits(column, stride));
     assert(records.size() == values.size() * stride);
     if (values.empty()) return;  // `records` may have no address to start from
     std::byte* at = records.data() + column.offset;

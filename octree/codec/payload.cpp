@@ -1,6 +1,7 @@
 #include "octree/codec/payload.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "octree/tree/prefix_order.h"
 
@@ -22,6 +23,7 @@ void copy_record(std::byte* to, const std::byte* from, size_t bytes) {
 
 void PayloadEncoder::encode(std::span<const std::byte> records, std::span<const uint8_t> passes,
                             std::vector<std::byte>& payload) {
+    assert(records.size() == passes.size() * stride_);
     bodies_.clear();
     values_.assign(passes.begin(), passes.end());
     encoder_.encode(values_, payload, bodies_);
@@ -33,6 +35,7 @@ void PayloadEncoder::encode(std::span<const std::byte> records, std::span<const 
 }
 
 bool PayloadDecoder::decode(std::span<const std::byte> payload, std::span<std::byte> records) {
+    assert(records.size() % stride_ == 0 && records.size() <= kMostRecordBytes);
     const size_t count = records.size() / stride_;
     std::vector<ColumnHead> heads;
     for (size_t i = 0; i <= columns_.size(); ++i) {
@@ -56,6 +59,7 @@ bool PayloadDecoder::decode(std::span<const std::byte> payload, std::span<std::b
     }
     order_.clear();
     append_prefix_order(passes_, 0, order_);
+    assert(order_.size() == count);
     curve_.resize(records.size());
     if (!decode_columns(payload.subspan(pass_bytes), std::span(heads).subspan(1))) return false;
     std::byte* to = records.data();

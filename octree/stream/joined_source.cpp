@@ -1,6 +1,7 @@
 #include "octree/stream/joined_source.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -82,6 +83,7 @@ class JoinedSource final : public NodeSource {
     }
 
     const Part& part_with(uint32_t node) const {
+        assert(node < nodes_.size());
         return *(std::ranges::upper_bound(parts_, node, {}, &Part::first_node) - 1);
     }
 

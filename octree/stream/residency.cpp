@@ -1,6 +1,7 @@
 #include "octree/stream/residency.h"
 
 #include <algorithm>
+#include <cassert>
 #include <condition_variable>
 #include <list>
 #include <mutex>
@@ -13,36 +14,37 @@
 #include "io/core/guarded.h"
 
 namespace lucarne::octree {
-namespace {
+struct ResidencyBase::State {
+    using Events = std::list<AnyEvent>;
 
-using Events = std::list<ResidencyEvent>;
+    struct Entry {
+        uint64_t bytes = 0;       ///< bytes of the cap that a load takes
+        uint64_t held_bytes = 0;  ///< bytes of the cap that the resident copy takes
+        uint64_t record_bytes = 0;
+        uint64_t load_bytes = 0;      ///< bytes reserved in transit for a load: its records and its payload
+        uint64_t unpolled_bytes = 0;  ///< bytes of the payload in `unpolled`
+        uint64_t last_wanted = 0;     ///< number of the last want() that named the node
+        float priority = 0;
+        uint32_t count = 0;
+        bool held = false, in_flight = false;
+        bool ahead = false;     ///< wanted by prefetching cuts only
+        bool fetched = false;   ///< prefetched, and not wanted by a frame since
+        bool admitted = false;  ///< wanted, and fits the cap together with all more important nodes
+        bool lost = false;      ///< it or an ancestor failed to load
+        bool stale = false;     ///< the source has a newer version than the one resident or being loaded
+        bool known = false;  ///< the caller has polled it as loaded, and no eviction has been reported since
+        std::optional<Events::iterator> unpolled;  ///< its loaded or replaced event until that is polled
+    };
 
-struct Entry {
-    uint64_t bytes = 0;         ///< bytes of the cap that a load takes
-    uint64_t held_bytes = 0;    ///< bytes of the cap that the resident copy takes
-    uint64_t record_bytes = 0;  ///< bytes of a load in transit
-    uint64_t unpolled_bytes = 0;
-    uint64_t last_wanted = 0;  ///< number of the last want() that named the node
-    float priority = 0;
-    uint32_t count = 0;
-    bool held = false, in_flight = false;
-    bool ahead = false;     ///< wanted by prefetching cuts only
-    bool fetched = false;   ///< prefetched, and not wanted by a frame since
-    bool admitted = false;  ///< wanted, and fits the cap together with all more important nodes
-    bool lost = false;      ///< it or an ancestor failed to load
-    bool stale = false;     ///< the source has a newer version than the one resident or being loaded
-    bool known = false;     ///< the caller has polled it as loaded, and no eviction has been reported since
-    std::optional<Events::iterator> unpolled;  ///< its loaded or replaced event until that is polled
-};
-
-}  // namespace
-
-struct Residency::State {
-    State(const NodeSource& its_source, ResidencyOptions its_options)
-        : source(its_source), options(std::move(its_options)), broken(its_source.nodes().size()) {}
+    State(const NodeSource& its_source, ResidencyOptions its_options, AnyPreparation its_preparation)
+        : source(its_source),
+          options(std::move(its_options)),
+          preparation(std::move(its_preparation)),
+          broken(its_source.nodes().size()) {}
 
     const NodeSource& source;
     const ResidencyOptions options;
+    const AnyPreparation preparation;
 
     mutable std::mutex mutex;
     std::condition_variable work, idle;
@@ -53,7 +55,8 @@ struct Residency::State {
     Events events;
     ResidencyStats stats;
     uint64_t wants = 0, bytes_in_flight = 0;
-    uint64_t bytes_unpolled = 0, bytes_polled = 0;  // of records: read or being read; of the last poll
+    uint64_t bytes_unpolled = 0;  ///< in transit: being read, being made or not polled
+    uint64_t bytes_polled = 0;    ///< of the last poll
     unsigned loads_in_flight = 0;
     std::optional<Error> error;
     bool stop = false;
@@ -70,15 +73,15 @@ struct Residency::State {
     void forget_event(Entry& entry);
     std::optional<uint32_t> next_load();
     std::optional<uint32_t> take_next();
-    Result<Events> load(uint32_t node, uint64_t record_bytes, uint32_t count) const;
+    Result<Events> load(uint32_t node, const Entry& wanted) const;
     void finish_load(uint32_t node, Result<Events>&& loaded);
     void loader();
     bool goes_before(uint32_t a, uint32_t b) const;
 };
 
 /// Marks the nodes of the cuts as wanted and appends those not yet named by this want() to `wanted`.
-void Residency::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
-                                   std::vector<uint32_t>& wanted) {
+void ResidencyBase::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
+                                       std::vector<uint32_t>& wanted) {
     const size_t nodes = source.nodes().size();
     for (const Cut* cut : cuts)
         for (const CutNode& wish : cut->nodes) {
@@ -97,7 +100,7 @@ void Residency::State::take_wishes(std::span<const Cut* const> cuts, bool ahead,
 }
 
 /// Moves the wanted nodes into the queue and raises each parent's priority to at least that of its children.
-void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
+void ResidencyBase::State::order_wishes(std::vector<uint32_t> wanted) {
     const auto nodes = source.nodes();
     std::ranges::sort(wanted, std::greater<>());  // children before parents
     for (const uint32_t node : wanted) {
@@ -106,6 +109,7 @@ void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
             const NodeInfo& info = nodes[node];
             entry.count = info.count;
             entry.record_bytes = source.record_bytes(node);
+            entry.load_bytes = entry.record_bytes + preparation.most_bytes(info);
             entry.bytes = options.cost ? options.cost(info) : entry.record_bytes;
         }
         if (const auto parent = entries.find(nodes[node].parent);
@@ -119,7 +123,7 @@ void Residency::State::order_wishes(std::vector<uint32_t> wanted) {
 
 /// Admits the most important wanted nodes of `queue` that fit together, and leaves those in the queue that
 /// must be loaded.
-void Residency::State::admit() {
+void ResidencyBase::State::admit() {
     const auto nodes = source.nodes();
     std::ranges::sort(queue, [&](uint32_t a, uint32_t b) {
         const Entry &ea = entries.at(a), &eb = entries.at(b);
@@ -140,7 +144,7 @@ void Residency::State::admit() {
         if (entry.lost) continue;
         const bool orphan = parent && !parent->admitted;
         const uint64_t bytes = std::max(entry.bytes, entry.held_bytes);
-        const bool too_large = bytes > options.memory || entry.record_bytes > options.transit;
+        const bool too_large = bytes > options.memory || entry.load_bytes > options.transit;
         // A node larger than the whole cap never blocks the others. The first other node that does not fit
         // ends the admission: a smaller one after it would take the place of a more important one.
         full |= !orphan && !too_large && bytes > options.memory - total;
@@ -158,7 +162,7 @@ void Residency::State::admit() {
 
 /// Drops entries that are neither wanted nor resident nor being loaded. Lists the nodes that may be evicted,
 /// the least recently wanted last.
-void Residency::State::forget_strangers() {
+void ResidencyBase::State::forget_strangers() {
     evictable.clear();
     std::erase_if(entries, [&](const auto& pair) {
         return !pair.second.held && !pair.second.in_flight && pair.second.last_wanted != wants;
@@ -169,7 +173,7 @@ void Residency::State::forget_strangers() {
     std::ranges::sort(evictable, [&](uint32_t a, uint32_t b) { return goes_before(b, a); });
 }
 
-bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
+bool ResidencyBase::State::goes_before(uint32_t a, uint32_t b) const {
     const Entry &ea = entries.at(a), &eb = entries.at(b);
     if (ea.last_wanted != eb.last_wanted) return ea.last_wanted < eb.last_wanted;
     if (ea.priority != eb.priority) return ea.priority < eb.priority;
@@ -177,17 +181,19 @@ bool Residency::State::goes_before(uint32_t a, uint32_t b) const {
 }
 
 /// Drops a loaded or replaced event that the caller has not polled and no longer needs.
-void Residency::State::forget_event(Entry& entry) {
+void ResidencyBase::State::forget_event(Entry& entry) {
     if (!entry.unpolled) return;
+    assert(entry.unpolled_bytes <= bytes_unpolled);
     bytes_unpolled -= entry.unpolled_bytes;
     events.erase(*entry.unpolled);
     entry.unpolled.reset();
 }
 
-void Residency::State::evict(uint32_t node) {
+void ResidencyBase::State::evict(uint32_t node) {
     Entry& entry = entries.at(node);
+    assert(entry.held && entry.held_bytes <= stats.bytes_held);
     Events told;  // made first, since it may throw
-    if (entry.known) told.push_back({ResidencyEvent::Kind::evicted, node, nullptr});
+    if (entry.known) told.push_back({Kind::evicted, node, nullptr});
     forget_event(entry);
     events.splice(events.end(), told);
     entry.known = false;
@@ -198,7 +204,7 @@ void Residency::State::evict(uint32_t node) {
     entry.held_bytes = 0;
 }
 
-bool Residency::State::make_room(uint64_t bytes) {
+bool ResidencyBase::State::make_room(uint64_t bytes) {
     while (stats.bytes_held + bytes_in_flight + bytes > options.memory) {
         if (evictable.empty()) return false;
         evict(evictable.back());
@@ -208,18 +214,18 @@ bool Residency::State::make_room(uint64_t bytes) {
 }
 
 /// Whether the next node of the queue must wait until the caller has polled others.
-bool Residency::State::transit_full() const {
-    return bytes_unpolled + bytes_polled + entries.at(queue.back()).record_bytes > options.transit;
+bool ResidencyBase::State::transit_full() const {
+    return bytes_unpolled + bytes_polled + entries.at(queue.back()).load_bytes > options.transit;
 }
 
 /// Whether nothing will happen before the caller's next call.
-bool Residency::State::nothing_moves() const {
+bool ResidencyBase::State::nothing_moves() const {
     return loads_in_flight == 0 && (queue.empty() || transit_full());
 }
 
 /// Takes the next node off the queue once there is room for it. Throws if there is no memory to report an
 /// eviction; then no node is taken.
-std::optional<uint32_t> Residency::State::next_load() {
+std::optional<uint32_t> ResidencyBase::State::next_load() {
     if (queue.empty() || transit_full()) return std::nullopt;
     const uint32_t node = queue.back();
     Entry& entry = entries.at(node);
@@ -234,16 +240,17 @@ std::optional<uint32_t> Residency::State::next_load() {
     entry.in_flight = true;
     entry.stale = false;
     bytes_in_flight += entry.bytes;
-    bytes_unpolled += entry.record_bytes;
+    bytes_unpolled += entry.load_bytes;
     stats.transit_peak = std::max(stats.transit_peak, bytes_unpolled + bytes_polled);
     ++loads_in_flight;
     stats.bytes_peak = std::max(stats.bytes_peak, stats.bytes_held + bytes_in_flight);
+    assert(stats.bytes_peak <= options.memory && stats.transit_peak <= options.transit);
     return node;
 }
 
 /// Calls next_load() and keeps what it throws as the error to report. In that case the queue is dropped; the
 /// next want() makes another.
-std::optional<uint32_t> Residency::State::take_next() {
+std::optional<uint32_t> ResidencyBase::State::take_next() {
     auto next = guarded("loading", [&]() -> Result<std::optional<uint32_t>> { return next_load(); });
     if (next) return *next;
     if (!error) error = std::move(next).error();
@@ -253,11 +260,13 @@ std::optional<uint32_t> Residency::State::take_next() {
 }
 
 /// Applies the result of a load. Allocates nothing, so that it cannot fail.
-void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
+void ResidencyBase::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     Entry& entry = entries.at(node);
+    assert(entry.in_flight && loads_in_flight > 0);
+    assert(entry.bytes <= bytes_in_flight && entry.load_bytes <= bytes_unpolled);
     entry.in_flight = false;
     bytes_in_flight -= entry.bytes;
-    bytes_unpolled -= entry.record_bytes;
+    bytes_unpolled -= entry.load_bytes;
     --loads_in_flight;
     if (!loaded) {
         if (entry.stale) return;  // the node changed during the load: the next want() requests it again
@@ -272,9 +281,9 @@ void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     entry.fetched = entry.ahead && entry.last_wanted == wants;
     stats.ahead_loads += entry.fetched;
     forget_event(entry);
-    entry.unpolled_bytes = entry.record_bytes;
+    entry.unpolled_bytes = loaded->front().payload->bytes;
     bytes_unpolled += entry.unpolled_bytes;
-    if (entry.known) loaded->front().kind = ResidencyEvent::Kind::replaced;
+    if (entry.known) loaded->front().kind = Kind::replaced;
     entry.unpolled = loaded->begin();
     events.splice(events.end(), *loaded);
     stats.bytes_held += entry.bytes - entry.held_bytes;
@@ -284,25 +293,27 @@ void Residency::State::finish_load(uint32_t node, Result<Events>&& loaded) {
     ++stats.nodes_held;
     if (entry.admitted) return;
     const auto later = [&](uint32_t other) { return goes_before(node, other); };
+    assert(evictable.size() < evictable.capacity());
     evictable.insert(std::ranges::partition_point(evictable, later), node);
 }
 
 /// Reads a node and makes its event. Runs on a loading thread, without the lock.
-Result<Events> Residency::State::load(uint32_t node, uint64_t record_bytes, uint32_t count) const {
+auto ResidencyBase::State::load(uint32_t node, const Entry& wanted) const -> Result<Events> {
     const std::string name = fmt::format("node {}", node);
     return guarded(name, [&]() -> Result<Events> {
         LUCARNE_ASSIGN(NodeData data, source.load(node));
-        if (data.count != count || data.records.size() != record_bytes)
+        if (data.count != wanted.count || data.records.size() != wanted.record_bytes)
             return rejected(name, "its contents differ from its directory entry");
-        if (options.prepare) data = options.prepare(node, std::move(data));
         Events made;
-        made.push_back(
-            {ResidencyEvent::Kind::loaded, node, std::make_shared<const NodeData>(std::move(data))});
+        made.push_back({Kind::loaded, node, preparation.make(node, std::move(data))});
+        if (const uint64_t bytes = made.front().payload->bytes; bytes > wanted.load_bytes)
+            return failed(name, fmt::format("it takes {} bytes once prepared, but {} were reserved for it",
+                                            bytes, wanted.load_bytes));
         return made;
     });
 }
 
-void Residency::State::loader() {
+void ResidencyBase::State::loader() {
     std::unique_lock lock(mutex);
     while (!stop) {
         const std::optional<uint32_t> node = take_next();
@@ -310,10 +321,9 @@ void Residency::State::loader() {
             work.wait(lock);
             continue;
         }
-        const uint64_t record_bytes = entries.at(*node).record_bytes;
-        const uint32_t count = entries.at(*node).count;
+        const Entry wanted = entries.at(*node);
         lock.unlock();
-        Result<Events> loaded = load(*node, record_bytes, count);
+        Result<Events> loaded = load(*node, wanted);
         lock.lock();
         finish_load(*node, std::move(loaded));
         work.notify_all();
@@ -321,8 +331,8 @@ void Residency::State::loader() {
     }
 }
 
-Residency::Residency(const NodeSource& source, ResidencyOptions options)
-    : state_(std::make_unique<State>(source, std::move(options))) {
+ResidencyBase::ResidencyBase(const NodeSource& source, ResidencyOptions options, AnyPreparation prepare)
+    : state_(std::make_unique<State>(source, std::move(options), std::move(prepare))) {
     const unsigned threads = std::clamp(state_->options.threads, 1u, 64u);
     for (unsigned i = 0; i < threads; ++i) {
         try {
@@ -334,7 +344,7 @@ Residency::Residency(const NodeSource& source, ResidencyOptions options)
     }
 }
 
-Residency::~Residency() {
+ResidencyBase::~ResidencyBase() {
     {
         const std::lock_guard lock(state_->mutex);
         state_->stop = true;
@@ -343,7 +353,7 @@ Residency::~Residency() {
     for (std::thread& thread : state_->threads) thread.join();
 }
 
-void Residency::want(std::span<const Cut* const> cuts, std::span<const Cut* const> ahead) {
+void ResidencyBase::want(std::span<const Cut* const> cuts, std::span<const Cut* const> ahead) {
     {
         const std::lock_guard lock(state_->mutex);
         ++state_->wants;
@@ -359,7 +369,7 @@ void Residency::want(std::span<const Cut* const> cuts, std::span<const Cut* cons
     state_->work.notify_all();
 }
 
-void Residency::renew(std::span<const uint32_t> nodes) {
+void ResidencyBase::renew(std::span<const uint32_t> nodes) {
     const std::lock_guard lock(state_->mutex);
     for (const uint32_t node : nodes) {
         if (node < state_->broken.size() && state_->broken[node]) {
@@ -371,15 +381,16 @@ void Residency::renew(std::span<const uint32_t> nodes) {
     }
 }
 
-std::vector<ResidencyEvent> Residency::poll(size_t limit) {
-    std::vector<ResidencyEvent> polled;
+auto ResidencyBase::poll_any(size_t limit) -> std::vector<AnyEvent> {
+    std::vector<AnyEvent> polled;
     {
         const std::lock_guard lock(state_->mutex);
         state_->bytes_polled = 0;
         while (!state_->events.empty() && polled.size() < limit) {
-            ResidencyEvent& event = state_->events.front();
-            if (event.kind != ResidencyEvent::Kind::evicted) {
-                Entry& entry = state_->entries.at(event.node);
+            AnyEvent& event = state_->events.front();
+            if (event.kind != Kind::evicted) {
+                State::Entry& entry = state_->entries.at(event.node);
+                assert(entry.unpolled == state_->events.begin());
                 entry.unpolled.reset();
                 entry.known = true;
                 state_->bytes_unpolled -= entry.unpolled_bytes;
@@ -393,19 +404,19 @@ std::vector<ResidencyEvent> Residency::poll(size_t limit) {
     return polled;
 }
 
-bool Residency::wait() {
+bool ResidencyBase::wait() {
     std::unique_lock lock(state_->mutex);
     state_->idle.wait(lock, [&] { return state_->nothing_moves(); });
     return state_->queue.empty();
 }
 
-bool Residency::resident(uint32_t node) const {
+bool ResidencyBase::resident(uint32_t node) const {
     const std::lock_guard lock(state_->mutex);
     const auto entry = state_->entries.find(node);
     return entry != state_->entries.end() && entry->second.held;
 }
 
-ResidencyStats Residency::stats() const {
+ResidencyStats ResidencyBase::stats() const {
     const std::lock_guard lock(state_->mutex);
     ResidencyStats stats = state_->stats;
     stats.pending = 0;
@@ -415,7 +426,7 @@ ResidencyStats Residency::stats() const {
     return stats;
 }
 
-Result<void> Residency::take_error() {
+Result<void> ResidencyBase::take_error() {
     const std::lock_guard lock(state_->mutex);
     if (!state_->error) return {};
     Error error = std::move(*state_->error);

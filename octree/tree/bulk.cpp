@@ -1,6 +1,8 @@
 #include "octree/tree/bulk.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -41,6 +43,7 @@ struct Parts {
 
 /// The coordinate on an axis below which `share` of the points lie.
 double quantile(std::vector<Weighted>& parts, int axis, bool high, double share) {
+    assert(!parts.empty());
     const auto place = [&](const Weighted& w) { return high ? w.high[axis] : w.low[axis]; };
     std::ranges::sort(parts, {}, place);
     double all = 0, below = 0;
@@ -86,14 +89,18 @@ Parts parts_of(const NodeSource& source) {
         const auto data = n < kMostLoaded ? source.load(coarse[n]) : Result<NodeData>(NodeData{});
         const uint32_t count = data ? std::min(data->count, kPointsOfANode) : 0;
         if (count == 0) add_cube(coarse[n]);
+        const Cube cube = source.cube(coarse[n]);
         if (nodes[coarse[n]].count > strays)
-            parts.coarsest = std::max(parts.coarsest, source.cube(coarse[n]).size / kNodeSteps);
+            parts.coarsest = std::max(parts.coarsest, cube.size / kNodeSteps);
         const SourcePart part = source.part_of(coarse[n]);
         const io::Schema& schema = part.header.schema;
         for (uint32_t k = 0; k < count; ++k) {
             const glm::dvec3 p =
                 io::position_of(schema, &data->records[size_t{k} * schema.stride]) * part.scale;
-            parts.all.push_back({p, p, static_cast<double>(nodes[coarse[n]].count) / count});
+            // Damaged files hold coordinates that are no numbers; they cannot be sorted.
+            const bool sound = std::isfinite(p.x + p.y + p.z);
+            parts.all.push_back({sound ? p : cube.min, sound ? p : cube.min + cube.size,
+                                 static_cast<double>(nodes[coarse[n]].count) / count});
         }
     }
     return parts;

@@ -2,13 +2,17 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 
 namespace lucarne::octree {
 
 void append_prefix_order(std::span<const uint8_t> passes, uint8_t from, std::vector<uint32_t>& order) {
     // A counting sort by pass; then each pass is appended in bit-reversed rank.
     std::array<uint32_t, kLastPass + 2> begin{};
-    for (const uint8_t pass : passes) ++begin[pass + 1u];
+    for (const uint8_t pass : passes) {
+        assert(pass <= kLastPass);
+        ++begin[pass + 1u];
+    }
     for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
     std::vector<uint32_t> sorted(passes.size());
     auto cursor = begin;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -34,6 +35,7 @@ inline void sort_by_code(std::vector<CodeIndex>& items, uint32_t bits) {
         for (const auto& item : items) other[begin[digit(item)]++] = item;
         items.swap(other);
     }
+    assert(std::ranges::is_sorted(items, {}, &CodeIndex::code));  // fails if the upper bits differed
 }
 
 }  // namespace lucarne::octree

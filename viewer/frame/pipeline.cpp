@@ -27,7 +27,7 @@
 namespace lucarne::viewer {
 namespace {
 
-using octree::ResidencyEvent;
+using Stream = octree::Residency<PackedNode>;
 
 // Time in which a frame without `wait` accepts arrived nodes, s: enough for about a hundred nodes, which the
 // loading threads have packed.
@@ -61,9 +61,8 @@ struct Pipeline::State {
     void look_ahead(const FrameRequest& request);
     Result<void> stream(const FrameRequest& request);
     Result<void> take_arrivals(bool wait);
-    Result<void> apply(std::span<const ResidencyEvent> events);
+    Result<void> apply(std::span<const Stream::Event> events);
     uint64_t pool_surfels() const;
-    uint64_t least_stride() const;
     Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
@@ -79,7 +78,7 @@ struct Pipeline::State {
     gi::PassTimes times;
 
     std::shared_ptr<SurfelPreparation> preparation;
-    std::unique_ptr<octree::Residency> residency;
+    std::unique_ptr<Stream> residency;
     bool repack = true;  // the surfels' part of scene or look (materials, colours) has changed
     gi::ShownValues values;
     std::optional<gi::BakedLight> baked;  ///< of the source, once it was needed
@@ -126,14 +125,6 @@ uint64_t Pipeline::State::pool_surfels() const {
     return std::min<uint64_t>(bytes / sizeof(gi::PackedSurfel), UINT32_MAX);
 }
 
-/// Returns the least size of a record among the parts, bytes.
-uint64_t Pipeline::State::least_stride() const {
-    uint64_t least = source->header().schema.stride;
-    for (const uint32_t root : source->roots())
-        least = std::min<uint64_t>(least, source->part_of(root).header.schema.stride);
-    return least;
-}
-
 void Pipeline::State::empty_pool() {
     residency.reset();
     if (!source) return;
@@ -163,23 +154,24 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
 }
 
 /// Starts the stream with nothing resident. What fits the stream's cap also fits the pool, because a node
-/// costs the same pages in both. A node on its way is held as records, and as packed surfels for at most all
-/// nodes that were polled.
+/// costs the same pages in both.
 void Pipeline::State::start_stream() {
     empty_pool();
     octree::ResidencyOptions how;
     how.memory = pool_bytes(pool.capacity());
-    const uint64_t stride = least_stride(), left = options.memory - source->directory_bytes();
-    how.transit = static_cast<uint64_t>(static_cast<double>(left) * static_cast<double>(stride) /
-                                        static_cast<double>(stride + sizeof(gi::PackedSurfel)));
+    how.transit = options.memory - source->directory_bytes();
     how.threads = options.load_threads;
     how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
     preparation = std::make_shared<SurfelPreparation>(source, scene);
-    how.prepare = [packing = preparation](uint32_t node, octree::NodeData&& data) {
-        return packing->pack(node, std::move(data));
+    octree::Preparation<PackedNode> pack;
+    pack.make = [packing = preparation](uint32_t node, octree::NodeData&& data) {
+        return packing->pack(node, data);
+    };
+    pack.most_bytes = [](const octree::NodeInfo& node) {
+        return uint64_t{node.count} * sizeof(gi::PackedSurfel);
     };
     repack = true;
-    residency = std::make_unique<octree::Residency>(*source, how);
+    residency = std::make_unique<Stream>(*source, how, std::move(pack));
     cuts_stale = true;
 }
 
@@ -228,13 +220,13 @@ void Pipeline::State::look_ahead(const FrameRequest& request) {
 }
 
 /// Applies the stream's events to the device.
-Result<void> Pipeline::State::apply(std::span<const ResidencyEvent> events) {
-    for (const ResidencyEvent& event : events) {
+Result<void> Pipeline::State::apply(std::span<const Stream::Event> events) {
+    for (const Stream::Event& event : events) {
         cuts_stale = true;
-        if (event.kind != ResidencyEvent::Kind::loaded) pool.evict(event.node);
-        if (event.kind == ResidencyEvent::Kind::evicted) continue;
+        if (event.kind != Stream::Kind::loaded) pool.evict(event.node);
+        if (event.kind == Stream::Kind::evicted) continue;
         bytes_loaded += source->nodes()[event.node].payload_bytes;
-        LUCARNE_ASSIGN(const bool fits, pool.load(event.node, prepared_surfels(*event.data)));
+        LUCARNE_ASSIGN(const bool fits, pool.load(event.node, *event.data));
         if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
     }
     return {};
@@ -375,14 +367,12 @@ FrameStats Pipeline::State::stats(double seconds) const {
     result.bytes_loaded = bytes_loaded;
     const octree::ResidencyStats streamed = residency->stats();
     result.nodes_pending = streamed.pending;
-    const double packed = static_cast<double>(sizeof(gi::PackedSurfel)) / static_cast<double>(least_stride());
     result.nodes_lost = streamed.lost;
     result.lost_node = lost_node;
     result.ahead_loads = streamed.ahead_loads;
     result.ahead_hits = streamed.ahead_hits;
     result.cut_share = chosen.share;
-    result.memory.host = source->directory_bytes() +
-                         static_cast<uint64_t>(static_cast<double>(streamed.transit_peak) * (1 + packed));
+    result.memory.host = source->directory_bytes() + streamed.transit_peak;
     result.memory.device = device.memory_used();
     result.memory.resident = resident_memory();
     result.accumulated = std::max(presentation.accumulated(), 1u);

@@ -1,6 +1,5 @@
 #include "viewer/frame/prepare.h"
 
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -46,7 +45,7 @@ void SurfelPreparation::set_scene(const gi::Scene& scene, const gi::BakedLight* 
     parts_ = std::move(parts);
 }
 
-octree::NodeData SurfelPreparation::pack(uint32_t node, octree::NodeData&& data) const {
+PackedNode SurfelPreparation::pack(uint32_t node, const octree::NodeData& data) const {
     std::shared_ptr<const std::vector<OfPart>> parts;
     {
         const std::lock_guard lock(mutex_);
@@ -54,17 +53,8 @@ octree::NodeData SurfelPreparation::pack(uint32_t node, octree::NodeData&& data)
     }
     const octree::SourcePart part = source_->part_of(node);
     const OfPart& own = (*parts)[part.index];
-    const auto surfels = gi::pack_surfels(part.header, source_->nodes()[node], data, own.scene,
-                                          part.first_scan, own.baked ? &*own.baked : nullptr);
-    const auto bytes = std::as_bytes(std::span(surfels));
-    data.records.assign(bytes.begin(), bytes.end());
-    return std::move(data);
-}
-
-std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data) {
-    // The vector's memory is suitably aligned, and pack() has written surfels into it.
-    return {reinterpret_cast<const gi::PackedSurfel*>(data.records.data()),
-            data.records.size() / sizeof(gi::PackedSurfel)};
+    return gi::pack_surfels(part.header, source_->nodes()[node], data, own.scene, part.first_scan,
+                            own.baked ? &*own.baked : nullptr);
 }
 
 }  // namespace lucarne::viewer

@@ -4,7 +4,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "gi/scene/scene.h"
@@ -13,6 +12,8 @@
 #include "octree/tree/source.h"
 
 namespace lucarne::viewer {
+
+using PackedNode = std::vector<gi::PackedSurfel>;
 
 /// Packs nodes into surfels on the loading threads, with the schema and unit of each part.
 class SurfelPreparation {
@@ -23,8 +24,8 @@ class SurfelPreparation {
     /// Sets the scene for further nodes. Thread-safe. `baked` is the light to divide out of the colours, as
     /// far as the scene's albedo requests it; null: none.
     void set_scene(const gi::Scene& scene, const gi::BakedLight* baked = nullptr);
-    /// Packs a node; for octree::ResidencyOptions::prepare. Thread-safe.
-    octree::NodeData pack(uint32_t node, octree::NodeData&& data) const;
+    /// Packs a loaded node. Thread-safe.
+    PackedNode pack(uint32_t node, const octree::NodeData& data) const;
 
  private:
     std::shared_ptr<const octree::NodeSource> source_;
@@ -35,8 +36,5 @@ class SurfelPreparation {
     };
     std::shared_ptr<const std::vector<OfPart>> parts_;
 };
-
-/// Returns the surfels of a packed node.
-std::span<const gi::PackedSurfel> prepared_surfels(const octree::NodeData& data);
 
 }  // namespace lucarne::viewer

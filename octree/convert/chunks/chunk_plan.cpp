@@ -1,6 +1,7 @@
 #include "octree/convert/chunks/chunk_plan.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <fmt/format.h>
 
@@ -128,6 +129,7 @@ std::vector<Chunk> CountGrid::plan(uint64_t limit, size_t most) {
         const size_t begin = static_cast<size_t>(key.code() << (3 * below)) & mask_;
         std::fill_n(chunk_of_cell_.begin() + static_cast<std::ptrdiff_t>(begin), size_t{1} << (3 * below), i);
     }
+    assert(first == all);
     counts_ = {};
     sums_ = {};
     return chunks;

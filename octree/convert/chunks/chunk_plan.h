@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -65,6 +66,7 @@ class CountGrid {
 
  private:
     size_t cell(const Place& p) const {
+        assert(p.key(cube_.level) == cube_);
         return static_cast<size_t>(p.code() >> (3 * (kMaxLevel - cube_.level - depth_))) & mask_;
     }
     void set_depth(uint32_t depth);

@@ -1,6 +1,7 @@
 #include "octree/convert/chunks/chunk_store.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <xxhash.h>
 
@@ -26,6 +27,7 @@ class Dealer {
  public:
     Dealer(ScratchFile& file, std::span<Chunk> chunks, uint64_t first, uint32_t stride, uint64_t bytes)
         : file_(file), stride_(stride) {
+        assert(!chunks.empty());
         const uint64_t each = std::clamp<uint64_t>(bytes / chunks.size(), kMinBuffer, kMaxBuffer);
         capacity_ = std::max<uint64_t>(1, each / stride) * stride;
         for (auto& chunk : chunks) {
@@ -244,6 +246,7 @@ Pass ChunkStore::pass_over(const Chunk& chunk, const MemoryPlan& memory) {
 }
 
 Result<std::vector<std::byte>> ChunkStore::load(size_t chunk, uint64_t first, uint64_t count) const {
+    assert(first + count <= chunks_[chunk].count);
     std::vector<std::byte> records(count * schema_.stride);
     LUCARNE_TRY(file_.read_at((chunks_[chunk].first + first) * schema_.stride, records));
     return records;

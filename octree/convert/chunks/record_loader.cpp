@@ -1,5 +1,7 @@
 #include "octree/convert/chunks/record_loader.h"
 
+#include <cassert>
+
 #include "octree/tree/attributes.h"
 
 namespace lucarne::octree {
@@ -26,6 +28,7 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
     LUCARNE_ASSIGN(auto input, chunks_.load(chunk, first, count));
     if (!surface_) return input;
     LUCARNE_ASSIGN(const auto found, surface_->load(chunk, first, count));
+    assert(area_ && found.size() == count);
     const uint32_t stride = chunks_.schema().stride;
     const bool in_place = stride == schema_.stride;
     std::vector<std::byte> records(count * schema_.stride);

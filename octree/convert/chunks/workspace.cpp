@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -29,8 +30,9 @@ constexpr const char* kBusy = "another conversion to this cache is running";
 constexpr size_t kNameBytes = 16, kHeadBytes = kNameBytes + 16;
 
 std::vector<std::byte> encode(const std::string& stage, std::span<const std::byte> bytes) {
+    assert(stage.size() <= kNameBytes);
     std::vector<std::byte> record(kHeadBytes + bytes.size());
-    std::memcpy(record.data(), stage.data(), std::min(stage.size(), kNameBytes));
+    std::memcpy(record.data(), stage.data(), stage.size());
     io::store(&record[kNameBytes], uint64_t{bytes.size()});
     std::copy(bytes.begin(), bytes.end(), record.begin() + kHeadBytes);
     const uint64_t sum = format::checksum(record);  // the checksum's own bytes are still zero

@@ -1,5 +1,7 @@
 #include "octree/convert/nodes/assembler.h"
 
+#include <cassert>
+
 namespace lucarne::octree {
 namespace {
 
@@ -94,6 +96,7 @@ Result<void> Assembler::join(size_t children) {
 }
 
 Result<void> Assembler::finish_root() {
+    assert(stack_.size() == 1 && stack_.back().node.key == NodeKey{});
     const Waiting root = stack_.back();
     LUCARNE_ASSIGN(const auto records, sample_of(root));
     sampler_.start(root.node.key);

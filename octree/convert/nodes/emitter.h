@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "octree/codec/payload.h"
@@ -26,11 +27,13 @@ class Emitter {
         if (entry.subtree_count == 0) return;  // its parent took every point
         entry.payload_offset = payload.size();
         sampler.kept(child, curve_, passes_);
+        assert(curve_.size() == entry.count && order_.size() == entry.count);
         collect(curve_, record);
         if (!compress(entry, payload)) {  // compression gains nothing: store the records raw
             collect(order_, record);
             payload.insert(payload.end(), records_.begin(), records_.end());
         }
+        assert(payload.size() - entry.payload_offset <= UINT32_MAX);
         entry.payload_bytes = static_cast<uint32_t>(payload.size() - entry.payload_offset);
         entry.checksum = format::checksum(std::span(payload).subspan(entry.payload_offset));
         entries.push_back(entry);

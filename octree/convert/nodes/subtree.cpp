@@ -1,6 +1,7 @@
 #include "octree/convert/nodes/subtree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "octree/tree/radix_sort.h"
@@ -92,6 +93,7 @@ Pending Builder::build_node(const NodeKey& key, size_t first, size_t last, std::
             children.back().node = build_node(child, begin, end, children.back().sample);
         }
         begin = end;
+        assert(octant < 7 || end == last);  // every point is in an octant
     }
     sampler_.start(key);
     for (const auto& child : children) {
@@ -124,6 +126,7 @@ Subtree Builder::build() {
 
 double surface_of(std::span<const float> areas, std::span<const uint64_t> codes, uint32_t level,
                   double root_size) {
+    assert(areas.size() == codes.size() && std::ranges::is_sorted(codes));
     double sum = 0;
     size_t known = 0;
     for (const float area : areas)

@@ -1,6 +1,7 @@
 #include "octree/convert/sampling/node_sampler.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "octree/normals/surface/area_floor.h"
 
@@ -19,6 +20,8 @@ void NodeSampler::add(const Place& place, float area) {
 }
 
 void NodeSampler::end_child(const Pending& child) {
+    assert(children_.empty() || children_.back().node.key < child.key);
+    assert(child.key == parent_ || child.key.parent() == parent_);
     children_.push_back({child, children_.empty() ? 0 : children_.back().end, sampler_.size(), 0});
 }
 
@@ -71,6 +74,7 @@ format::Entry NodeSampler::settle(size_t child, std::vector<uint32_t>& order) {
         if (sampler_.passes()[i] < first_own_pass_) inherited_.push_back(areas_[i]);
     for (const uint32_t i : order) own_.push_back(areas_[c.begin + i]);
     format::Entry entry;
+    assert(own_.size() == c.end - c.begin - c.taken && c.taken <= c.node.points);
     entry.key = c.node.key;
     entry.child_mask = c.node.child_mask;
     entry.count = static_cast<uint32_t>(order.size());

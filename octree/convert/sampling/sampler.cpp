@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,9 @@ void Sampler::start(const NodeKey& key) {
 
 void Sampler::add(const Place& place) {
     const auto local = [&](uint32_t v, uint32_t origin) { return static_cast<float>(v - origin) * scale_; };
+    // Rounding may move a point onto the cube's upper face.
+    assert(local(place.x, origin_.x) <= 1 && local(place.y, origin_.y) <= 1 &&
+           local(place.z, origin_.z) <= 1);
     points_.push_back(
         {local(place.x, origin_.x), local(place.y, origin_.y), local(place.z, origin_.z), kNone});
 }
@@ -87,6 +91,7 @@ void Sampler::take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uin
 }
 
 void Sampler::run(float radius, size_t most) {
+    assert(radius > 0 && (most > 0 || points_.empty()));
     const auto count = static_cast<uint32_t>(points_.size());
     passes_.assign(count, kLastPass);
     blocked_.assign(count, kFree);
@@ -113,6 +118,7 @@ void Sampler::run(float radius, size_t most) {
         std::inplace_merge(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(before),
                            waiting_.end());
     }
+    assert(std::ranges::is_sorted(waiting_));     // the result depends on the order alone
     if (thinning) blocked_.assign(count, kFree);  // the points that blocked them may have been removed
     for (uint8_t pass = 1; pass < kLastPass && !waiting_.empty(); ++pass) {
         radius *= kRadiusStep;

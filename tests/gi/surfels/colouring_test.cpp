@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/baked_light.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
 
@@ -203,6 +204,17 @@ TEST(Classes, NamesAreThoseOfTheSpecification) {
     EXPECT_EQ(class_name(40), "Reserved");
     EXPECT_EQ(class_name(200), "User class");
     for (const ClassLook& named : named_classes()) EXPECT_EQ(class_name(named.number), named.name);
+}
+
+TEST(BakedLight, CoordinatesThatAreNoNumbersReadAndWriteNothingOutsideTheCells) {
+    const double nan = std::nan("");
+    Points points;
+    for (const double z : {1.0, nan, 9.0}) points.add(z, 0, 0, 0, 0, glm::vec3(0), 0);
+    const auto baked = BakedLight::measured(points);
+    ASSERT_TRUE(baked);
+    const double factor = baked->factor(glm::dvec3(nan), 1);
+    EXPECT_GE(factor, 1.0 / 8);
+    EXPECT_LE(factor, 8);
 }
 
 }  // namespace

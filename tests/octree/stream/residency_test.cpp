@@ -1,6 +1,8 @@
 #include "octree/stream/residency.h"
 
 #include <map>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -24,7 +26,7 @@ Cut cut_of(const NodeSource& source, const std::vector<std::pair<uint32_t, float
     return cut;
 }
 
-void want(Residency& residency, const Cut& cut) {
+void want(ResidencyBase& residency, const Cut& cut) {
     const Cut* cuts[] = {&cut};
     residency.want(cuts);
 }
@@ -33,22 +35,22 @@ void want(Residency& residency, const Cut& cut) {
 class Replay {
  public:
     explicit Replay(uint64_t cap) : cap_(cap) {}
-    void play(const std::vector<ResidencyEvent>& events) {
-        for (const ResidencyEvent& event : events) {
+    void play(const std::vector<Residency<>::Event>& events) {
+        for (const auto& event : events) {
             switch (event.kind) {
-                case ResidencyEvent::Kind::loaded:
+                case ResidencyBase::Kind::loaded:
                     EXPECT_TRUE(held_.insert(event.node).second) << "node " << event.node << " loaded twice";
                     break;
-                case ResidencyEvent::Kind::replaced:
+                case ResidencyBase::Kind::replaced:
                     EXPECT_TRUE(held_.contains(event.node)) << "node " << event.node << " replaced unseen";
                     ++replaced_;
                     break;
-                case ResidencyEvent::Kind::evicted:
+                case ResidencyBase::Kind::evicted:
                     EXPECT_EQ(held_.erase(event.node), 1u) << "node " << event.node << " evicted unseen";
                     break;
             }
-            if (event.kind == ResidencyEvent::Kind::evicted) {
-                EXPECT_EQ(event.data, nullptr);
+            if (event.kind == ResidencyBase::Kind::evicted) {
+                EXPECT_FALSE(event.data);
             } else if (event.data) {
                 EXPECT_EQ(event.data->records.front(), static_cast<std::byte>(event.node))
                     << "another node's data";
@@ -240,11 +242,12 @@ TEST(Residency, DropsLoadsNotStartedThatNobodyWantsAnyMore) {
 TEST(Residency, WhateverALoadOrItsPreparationThrowsIsAnErrorOfItsNodeAlone) {
     PlaneSource source(2, kPoints, 10.0);  // a root and its four children
     source.throw_at(2);
-    Residency residency(source,
-                        {.memory = 100 * kNode, .threads = 2, .prepare = [](uint32_t node, NodeData&& data) {
-                             if (node == 3) throw node;  // not a std::exception
-                             return std::move(data);
-                         }});
+    const auto make = [](uint32_t node, NodeData&& data) {
+        if (node == 3) throw node;  // not a std::exception
+        return std::move(data);
+    };
+    const auto most_bytes = [](const NodeInfo&) { return uint64_t{0}; };
+    Residency<NodeData> residency(source, {.memory = 100 * kNode, .threads = 2}, {make, most_bytes});
     const Cut cut = full_cut(source);
     want(residency, cut);
     EXPECT_TRUE(residency.wait());
@@ -408,24 +411,86 @@ TEST(Residency, ACameraThatMovesOnEveryFrameReadsNoNodeTwice) {
     EXPECT_EQ(std::ranges::adjacent_find(order), order.end());
 }
 
-TEST(Residency, NodesArePreparedOnTheLoadingThreads) {
-    PlaneSource source(2, kPoints, 1.0);
+/// A payload that can only be moved and that has allocated more than it uses.
+struct Packed {
+    std::unique_ptr<uint32_t> node;
+    std::vector<uint16_t> values;
+};
+constexpr uint64_t kPacked = 500;  ///< bytes of a Packed
+
+uint64_t allocated_bytes(const Packed& payload) {
+    return sizeof(uint32_t) + octree::allocated_bytes(payload.values);
+}
+
+Packed pack(uint32_t node) {
+    Packed packed{std::make_unique<uint32_t>(node), {}};
+    packed.values.reserve((kPacked - sizeof(uint32_t)) / sizeof(uint16_t));
+    packed.values.push_back(7);
+    return packed;
+}
+
+TEST(Residency, APayloadThatOnlyMovesIsMadeOnALoadingThreadAndArrivesUncopied) {
+    const PlaneSource source(3, kPoints, 1.0);
     const auto here = std::this_thread::get_id();
-    ResidencyOptions options{.threads = 2};
-    options.prepare = [&](uint32_t node, NodeData&& data) {
+    std::mutex mutex;
+    std::map<uint32_t, const uint16_t*> made;
+    const auto make = [&](uint32_t node, const NodeData& data) {
         EXPECT_NE(std::this_thread::get_id(), here);
         EXPECT_EQ(data.records.size(), kNode);
-        return NodeData{data.count, std::vector<std::byte>(8, static_cast<std::byte>(node))};
+        Packed packed = pack(node);
+        const std::lock_guard lock(mutex);
+        made[node] = packed.values.data();
+        return packed;
     };
-    Residency residency(source, options);
-    const Cut cut = full_cut(source);
-    want(residency, cut);
+    Residency<Packed> residency(source, {.threads = 2}, {make, [](const NodeInfo&) { return kPacked; }});
+    want(residency, full_cut(source));
     ASSERT_TRUE(residency.wait());
-    for (const ResidencyEvent& event : residency.poll()) {
-        EXPECT_EQ(event.data->records.size(), 8u);
-        EXPECT_EQ(event.data->records[0], static_cast<std::byte>(event.node));
+    const auto events = residency.poll();
+    EXPECT_EQ(events.size(), source.nodes().size());
+    for (const auto& event : events) {
+        ASSERT_TRUE(event.data);
+        EXPECT_EQ(*event.data->node, event.node);
+        EXPECT_EQ(event.data->values.data(), made.at(event.node)) << "it was copied";
     }
-    EXPECT_EQ(residency.stats().bytes_loaded, 5 * kNode);
+    EXPECT_EQ(residency.stats().bytes_loaded, source.nodes().size() * kNode);
+}
+
+TEST(Residency, WhatAPayloadHasAllocatedCountsInTransit) {
+    const PlaneSource source(3, kPoints, 1.0);
+    // One node is being read while the payloads of four are waiting; a fifth one would not fit.
+    const uint64_t transit = kNode + kPacked + 4 * kPacked;
+    Residency<Packed> residency(
+        source, {.transit = transit, .threads = 3},
+        {[](uint32_t node, NodeData&&) { return pack(node); }, [](const NodeInfo&) { return kPacked; }});
+    want(residency, full_cut(source));
+    ASSERT_FALSE(residency.wait());
+    EXPECT_EQ(residency.stats().nodes_held, 5u);
+    EXPECT_EQ(residency.poll().size(), 5u);
+    size_t arrived = 5;
+    while (arrived < source.nodes().size()) {
+        residency.wait();
+        const size_t more = residency.poll().size();
+        EXPECT_LE(more, 5u);
+        arrived += more;
+    }
+    EXPECT_LE(residency.stats().transit_peak, transit);
+    EXPECT_TRUE(residency.take_error());
+}
+
+TEST(Residency, APayloadLargerThanAnnouncedIsAnErrorOfItsNode) {
+    const PlaneSource source(2, kPoints, 1.0);
+    const auto make = [](uint32_t node, NodeData&&) {
+        return std::vector<uint32_t>(node == 3 ? kNode : uint64_t{2});
+    };
+    Residency<std::vector<uint32_t>> residency(source, {.threads = 2},
+                                               {make, [](const NodeInfo&) { return uint64_t{8}; }});
+    want(residency, full_cut(source));
+    ASSERT_TRUE(residency.wait());
+    EXPECT_EQ(residency.stats().nodes_held, 4u);
+    const auto error = residency.take_error();
+    ASSERT_FALSE(error);
+    EXPECT_EQ(error.error().what, "node 3");
+    EXPECT_EQ(residency.poll().size(), 4u);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "octree/tree/bulk.h"
 
+#include <cmath>
+#include <functional>
+
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
@@ -62,6 +65,37 @@ TEST(Bulk, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
 TEST(Bulk, OfOnePointIsThatPoint) {
     const auto [low, high] = bulk_with_strays(1, 0);
     EXPECT_EQ(low, high);
+}
+
+/// One node of 64 points between 0 and 63; all of `damaged` have no coordinates.
+class Damaged : public NodeSource {
+ public:
+    explicit Damaged(const std::function<bool(uint32_t)>& damaged) : nodes_(1) {
+        header_.root = {glm::dvec3(0.0), 64};
+        header_.max = glm::dvec3(63);
+        header_.points = nodes_[0].count = data_.count = 64;
+        nodes_[0].subtree_count = 64;
+        data_.records.resize(size_t{64} * header_.schema.stride);
+        for (uint32_t i = 0; i < 64; ++i)
+            io::store(&data_.records[size_t{i} * header_.schema.stride],
+                      glm::dvec3(damaged(i) ? std::nan("") : 63.0 - i));
+    }
+    const SourceHeader& header() const override { return header_; }
+    std::span<const NodeInfo> nodes() const override { return nodes_; }
+    Result<NodeData> load(uint32_t) const override { return data_; }
+
+ private:
+    SourceHeader header_;
+    std::vector<NodeInfo> nodes_;
+    NodeData data_;
+};
+
+TEST(Bulk, CoordinatesThatAreNoNumbersStandForTheirCube) {
+    for (const uint32_t every : {1u, 2u, 5u}) {
+        const auto [low, high] = bulk_of(Damaged([every](uint32_t i) { return i % every == 0; }));
+        EXPECT_EQ(low, glm::dvec3(0.0)) << every;
+        EXPECT_EQ(high, glm::dvec3(63.0)) << every;
+    }
 }
 
 }  // namespace
