@@ -11,7 +11,7 @@
 #include "gi/shared/luminance.h"
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/surfel_pool.h"
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 
 namespace lucarne::gi {
 namespace {
@@ -82,7 +82,7 @@ void add_node(const octree::NodeSource& source, uint32_t node, const octree::Nod
 
 Result<BakedLight> BakedLight::measured(const octree::NodeSource& source) {
     BakedLight baked;
-    const auto [low, high] = octree::bulk_of(source);
+    const auto [low, high] = octree::robust_bounds(source);
     const glm::dvec3 sides = high - low;
     baked.min_ = low;
     baked.cell_ = std::max({sides.x, sides.y, sides.z, 1e-9}) / kCells;

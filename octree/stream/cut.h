@@ -53,8 +53,8 @@ Cut light_view_cut(const NodeSource& source, const View& light, uint64_t budget,
 /// Selects what may bounce or block light: everything, visible or not, refined toward `centre` (the camera's
 /// focus) in proportion to distance, as fine as `budget` allows. The cut is refined toward `lamps` too:
 /// surfels close to a lamp cast large shadows of their discs' rims, and a wall close to it receives most of
-/// its light. `extent` is the extent of the robust bounds (octree/tree/bulk.h) in world units where these are
-/// smaller than the scene; 0: the whole scene's.
+/// its light. `extent` is the extent of the robust bounds (octree/tree/robust_bounds.h) in world units where
+/// these are smaller than the scene; 0: the whole scene's.
 Cut light_cut(const NodeSource& source, const glm::dvec3& centre, uint64_t budget,
               std::span<const glm::dvec3> lamps = {}, double extent = 0);
 

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/log.h"
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/options/drawing_options.h"
 #include "viewer/commands/options/input_options.h"
@@ -36,7 +36,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
     LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
-    start.box = octree::bulk_of(source);
+    start.box = octree::robust_bounds(source);
     start.metres_per_unit = source.header().metres_per_unit;
     return start;
 }

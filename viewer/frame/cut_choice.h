@@ -29,7 +29,7 @@ struct CutPurpose {
     const std::vector<gi::SceneLight>& lights;
     uint32_t light_resolution;
     CutBudgets budgets;
-    double extent;  ///< extent of the scan without far outliers (octree/tree/bulk.h); world units
+    double extent;  ///< extent of the scan without far outliers (octree/tree/robust_bounds.h); world units
     const gi::Clip* clip = nullptr;  ///< the view cut leaves out fully clipped nodes; null: no clip
 };
 

@@ -18,7 +18,7 @@
 #include "io/core/process.h"
 #include "octree/stream/motion.h"
 #include "octree/stream/residency.h"
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 #include "viewer/frame/cut_choice.h"
 #include "viewer/frame/prepare.h"
 #include "viewer/frame/presentation.h"
@@ -73,7 +73,7 @@ struct Pipeline::State {
 
     gi::Device& device;
     std::shared_ptr<const octree::NodeSource> source;
-    std::array<glm::dvec3, 2> bulk;  ///< robust bounds of the source, without far outliers
+    std::array<glm::dvec3, 2> bounds;  ///< robust bounds of the source, without far outliers
     PipelineOptions options;
     gi::PassTimes times;
 
@@ -142,7 +142,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     source = std::move(from);
     lost_node.clear();
     baked.reset();
-    bulk = octree::bulk_of(*source);
+    bounds = octree::robust_bounds(*source);
     const uint64_t capacity = pool_surfels();
     if (capacity > pool.capacity()) {
         pool = {};
@@ -199,7 +199,7 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              scene.lights,
                              settings[gi::kLightResolution],
                              budgets,
-                             glm::distance(bulk[0], bulk[1]),
+                             glm::distance(bounds[0], bounds[1]),
                              &scene.look.clip};
     chosen = chooser.choose(
         purpose, {pool_bytes(pool.capacity()), [](const auto& node) { return pool_bytes(node.count); }});
@@ -392,7 +392,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::open(gi::Device& device,
     device.set_memory_cap(options.device_memory);
     LUCARNE_TRY(state.take_source(std::move(source)));
     state.fresh = false;  // there is no earlier picture that an incomplete one would replace
-    state.scene = gi::default_scene(state.bulk[0], state.bulk[1], state.source->header().metres_per_unit);
+    state.scene = gi::default_scene(state.bounds[0], state.bounds[1], state.source->header().metres_per_unit);
     const Preset preset = *find_preset(kDefaultPreset);
     state.settings = preset.engine;
     state.budgets = preset.budgets;

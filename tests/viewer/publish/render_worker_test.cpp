@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 #include "tests/viewer/program.h"
 #include "viewer/inputs/input.h"
 
@@ -25,7 +25,7 @@ class Rendering : public testing::Test {
         const auto source = open_input(cache_);
         ASSERT_TRUE(source) << source.error().line();
         order_.source = *source;
-        const auto [low, high] = octree::bulk_of(*order_.source);  // as in `render`
+        const auto [low, high] = octree::robust_bounds(*order_.source);  // as in `render`
         order_.scene = gi::default_scene(low, high, order_.source->header().metres_per_unit, 64.0 / 48);
         order_.engine = "direct";
         order_.settings = find_preset(kDefaultPreset)->engine;

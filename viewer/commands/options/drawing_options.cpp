@@ -8,7 +8,7 @@
 #include "gi/scene/render_settings_file.h"
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -166,7 +166,7 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 }
 
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
-    const auto [low, high] = octree::bulk_of(source);
+    const auto [low, high] = octree::robust_bounds(source);
     LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
     gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit,
                                         static_cast<double>(size.width) / size.height);

@@ -1,4 +1,4 @@
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 
 #include <cmath>
 #include <functional>
@@ -18,7 +18,7 @@ using lucarne::test::ComputedSource;
 using lucarne::test::TempFolder;
 
 /// A room of 8 x 8 x 3, with one of `every` points up to `far` away; 0: none.
-std::array<glm::dvec3, 2> bulk_with_strays(uint64_t points, uint64_t every, double far = 1000) {
+std::array<glm::dvec3, 2> bounds_with_outliers(uint64_t points, uint64_t every, double far = 1000) {
     const TempFolder folder;
     const ComputedSource source(io::Schema{}, points, [every, far](uint64_t index, std::byte* record) {
         Random random(7, index);
@@ -33,11 +33,11 @@ std::array<glm::dvec3, 2> bulk_with_strays(uint64_t points, uint64_t every, doub
     options.normals = NormalsMode::none;
     EXPECT_TRUE(build_cache(options));
     const auto cache = open_cache(options.output);
-    return bulk_of(**cache);
+    return robust_bounds(**cache);
 }
 
-TEST(Bulk, IsTheRoomWhereAFewPointsAreFarAway) {
-    const auto [low, high] = bulk_with_strays(200'000, 1000);
+TEST(RobustBounds, IsTheRoomWhereAFewPointsAreFarAway) {
+    const auto [low, high] = bounds_with_outliers(200'000, 1000);
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LE(low[axis], 0.1);
         EXPECT_GE(low[axis], -10);
@@ -46,24 +46,24 @@ TEST(Bulk, IsTheRoomWhereAFewPointsAreFarAway) {
     }
 }
 
-TEST(Bulk, IsEverythingWhereNothingStraysOrTooManyDo) {
-    const auto [low, high] = bulk_with_strays(100'000, 0);
+TEST(RobustBounds, IsEverythingWhereNothingStraysOrTooManyDo) {
+    const auto [low, high] = bounds_with_outliers(100'000, 0);
     EXPECT_NEAR(high.x - low.x, 8, .01);
     EXPECT_NEAR(high.z - low.z, 3, .01);
-    const auto scattered = bulk_with_strays(300'000, 3);
+    const auto scattered = bounds_with_outliers(300'000, 3);
     EXPECT_GT(scattered[1].x - scattered[0].x, 900);
 }
 
-TEST(Bulk, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
-    const auto [low, high] = bulk_with_strays(9'999, 0);
+TEST(RobustBounds, IsEverythingWhereItsPointsWouldFallIntoOnePlaceOfTheirNode) {
+    const auto [low, high] = bounds_with_outliers(9'999, 0);
     EXPECT_LT(high.x - low.x, 9);
     const auto far =
-        bulk_with_strays(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as the whole cloud
+        bounds_with_outliers(10'001, 10'000, 1e9);  // the room is one leaf, half as wide as the whole cloud
     EXPECT_GT(far[1].x - far[0].x, 1e6);
 }
 
-TEST(Bulk, OfOnePointIsThatPoint) {
-    const auto [low, high] = bulk_with_strays(1, 0);
+TEST(RobustBounds, OfOnePointIsThatPoint) {
+    const auto [low, high] = bounds_with_outliers(1, 0);
     EXPECT_EQ(low, high);
 }
 
@@ -90,9 +90,9 @@ class Damaged : public NodeSource {
     NodeData data_;
 };
 
-TEST(Bulk, CoordinatesThatAreNoNumbersStandForTheirCube) {
+TEST(RobustBounds, CoordinatesThatAreNoNumbersStandForTheirCube) {
     for (const uint32_t every : {1u, 2u, 5u}) {
-        const auto [low, high] = bulk_of(Damaged([every](uint32_t i) { return i % every == 0; }));
+        const auto [low, high] = robust_bounds(Damaged([every](uint32_t i) { return i % every == 0; }));
         EXPECT_EQ(low, glm::dvec3(0.0)) << every;
         EXPECT_EQ(high, glm::dvec3(63.0)) << every;
     }

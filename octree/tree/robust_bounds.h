@@ -13,6 +13,6 @@ namespace lucarne::octree {
 /// next village), the bounds of the others. The box comes from the directory and a sample of the coarse
 /// leaves, so it is as exact as nodes are small. It is the box of all points where a device could not tell
 /// the others apart. World units.
-std::array<glm::dvec3, 2> bulk_of(const NodeSource& source);
+std::array<glm::dvec3, 2> robust_bounds(const NodeSource& source);
 
 }  // namespace lucarne::octree

@@ -1,4 +1,4 @@
-#include "octree/tree/bulk.h"
+#include "octree/tree/robust_bounds.h"
 
 #include <algorithm>
 #include <cassert>
@@ -13,7 +13,7 @@ namespace lucarne::octree {
 namespace {
 
 /// Share of the points that may be outliers, at each end of each axis.
-constexpr double kStrays = .005;
+constexpr double kOutliers = .005;
 /// The robust bounds are used where their diagonal is below this share of the whole box's; otherwise no point
 /// is left out.
 constexpr double kMuchSmaller = .5;
@@ -71,7 +71,7 @@ Parts parts_of(const NodeSource& source) {
     const uint32_t level = deepest(nodes);
     std::vector<uint32_t> coarse;
     Parts parts;
-    const double strays = kStrays * static_cast<double>(source.header().points);
+    const double strays = kOutliers * static_cast<double>(source.header().points);
     const auto add_cube = [&](uint32_t i) {
         const Cube cube = source.cube(i);
         parts.all.push_back({cube.min, cube.min + cube.size, static_cast<double>(nodes[i].subtree_count)});
@@ -108,21 +108,21 @@ Parts parts_of(const NodeSource& source) {
 
 }  // namespace
 
-std::array<glm::dvec3, 2> bulk_of(const NodeSource& source) {
+std::array<glm::dvec3, 2> robust_bounds(const NodeSource& source) {
     const SourceHeader& header = source.header();
     const std::array<glm::dvec3, 2> whole = {header.min, header.max};
     if (source.nodes().empty()) return whole;
     auto parts = parts_of(source);
     glm::dvec3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = quantile(parts.all, axis, false, kStrays);
-        high[axis] = quantile(parts.all, axis, true, 1 - kStrays);
+        low[axis] = quantile(parts.all, axis, false, kOutliers);
+        high[axis] = quantile(parts.all, axis, true, 1 - kOutliers);
     }
     low = glm::max(low, header.min);
     high = glm::min(high, header.max);
-    const double all = glm::length(header.max - header.min), bulk = glm::length(high - low);
-    const bool seen = bulk >= kLeastSteps * parts.coarsest;
-    return seen && bulk < kMuchSmaller * all ? std::array{low, high} : whole;  // false also for NaN
+    const double all = glm::length(header.max - header.min), robust = glm::length(high - low);
+    const bool seen = robust >= kLeastSteps * parts.coarsest;
+    return seen && robust < kMuchSmaller * all ? std::array{low, high} : whole;  // false also for NaN
 }
 
 }  // namespace lucarne::octree
