@@ -165,7 +165,8 @@ Result<void> CacheFile::check_payloads() {
         const bool fits = payloads_[i].codec == format::kCodecRaw
                               ? bytes == records
                               : bytes < records && records <= codec::kMostRecordBytes;
-        if (!fits || !inside(payloads_[i].offset, bytes, block_.file_bytes))
+        if (!fits) return damaged(*file_, fmt::format("node {} states a wrong size of its points", i));
+        if (!inside(payloads_[i].offset, bytes, block_.file_bytes))
             return damaged(*file_, fmt::format("the points of node {} lie outside the file", i));
         if (bytes) ranges.emplace_back(payloads_[i].offset, payloads_[i].offset + bytes);
     }

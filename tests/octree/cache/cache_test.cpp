@@ -206,8 +206,9 @@ TEST_F(Cache, RejectsLyingDirectories) {
     expect_rejected(with_entry(0, [](Entry& e) { e.child_mask = 0; }), "not where they belong");
     expect_rejected(with_entry(0, [](Entry& e) { e.key.level = 1; }), "no root node");
     expect_rejected(with_entry(last, [](Entry& e) { e.codec = 2; }), "unknown codec 2");
-    expect_rejected(with_entry(last, [](Entry& e) { e.codec = format::kCodecRaw; }), "outside the file");
-    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes = e.count * 15; }), "outside the file");
+    expect_rejected(with_entry(last, [](Entry& e) { e.codec = format::kCodecRaw; }), "states a wrong size");
+    expect_rejected(with_entry(last, [](Entry& e) { e.payload_bytes = e.count * 15; }),
+                    "states a wrong size");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = UINT64_MAX; }), "outside the file");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset = 0; }), "outside the file");
     expect_rejected(with_entry(last, [](Entry& e) { e.payload_offset += 15; }), "overlap");
