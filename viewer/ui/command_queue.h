@@ -13,7 +13,10 @@ class CommandQueue {
  public:
     using Command = std::variant<Kinds...>;
 
-    void push(Command command) { waiting_.push_back(std::move(command)); }
+    template <class Kind>
+    void push(Kind command) {
+        waiting_.emplace_back(std::move(command));
+    }
     /// Returns the waiting commands and forgets them.
     std::vector<Command> take() { return std::exchange(waiting_, {}); }
     bool empty() const { return waiting_.empty(); }
