@@ -156,7 +156,7 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
     std::set<std::string> changed;
     const auto look = [&](const ViewModel& model, const gi::EngineSettings& before) {
         for (const gi::OptionInfo* option : gi::engine_options())
-            if (model.view.settings.get(*option) != before.get(*option))
+            if (model.view.method.settings.get(*option) != before.get(*option))
                 changed.insert(std::string(option->key));
     };
     // Click at all heights: a click on a control changes something, and another click below chooses from an
@@ -164,12 +164,13 @@ TEST(AddedEngineInTheWindow, HasAControlForEachOfItsOptions) {
     for (float y = 20; y < 500; y += 6) {
         Panel panel;
         ViewModel model(10);
-        model.view.engine = "paint";
+        model.view.method.engine = "paint";
         ASSERT_TRUE(model.view.choose_preset("interactive"));
-        const gi::EngineSettings before = model.view.settings;
+        const gi::EngineSettings before = model.view.method.settings;
         for (const ImVec2 at : {ImVec2(60, y), ImVec2(60, y + 40)}) {
             panel.click(model, at);
-            if (model.view.engine == "paint" && model.view.preset == "interactive") look(model, before);
+            if (model.view.method.engine == "paint" && model.view.preset == "interactive")
+                look(model, before);
         }
     }
     for (const char* key : {"tint", "paint_gain", "stripe_width", "pattern", "paint_sky"})

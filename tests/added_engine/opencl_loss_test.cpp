@@ -21,7 +21,7 @@ class LostOpenClDevice : public testing::Test {
         ASSERT_TRUE(worker) << worker.error().line();
         worker_ = std::move(*worker);
         const octree::SourceHeader& header = (*source)->header();
-        request_.engine = "opencl";
+        request_.method.engine = "opencl";
         request_.scene = gi::default_scene(header.min, header.max);
         request_.frame.camera = request_.scene.cameras.front();
         request_.frame.size = {96, 64};

@@ -51,11 +51,9 @@ Result<void> check_scene(const ViewOptions& options) {
 
 ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     ViewModel model(1.0);
-    model.view.engine = options.drawing.render.engine;
+    model.view.method = {options.drawing.render.engine, drawing.preset.engine, drawing.preset.budgets};
     model.view.resolution_scale = options.drawing.render.scale.value_or(1);
     model.view.preset = drawing.preset.name;
-    model.view.settings = drawing.preset.engine;
-    model.view.budgets = drawing.preset.budgets;
     model.view.frame_time = options.frame_time_ms * 1e-3;
     model.view.caps = drawing.caps;
     model.scene_file.set_path(options.drawing.scene);

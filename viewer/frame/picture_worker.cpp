@@ -17,7 +17,6 @@ constexpr int kPickRadius = 4;  ///< pixels
 /// again.
 struct Told {
     uint64_t request = 0;
-    std::string engine;
     uint64_t scene_version = UINT64_MAX, shader_version = 0;
 };
 
@@ -64,15 +63,12 @@ Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& 
     if (told.request == number) return {};
     if (told.shader_version != request.shader_version) {
         device.reload_shaders();
-        told.engine.clear();  // sets the engine again, which starts the average again
+        LUCARNE_TRY(pipeline.set_engine(request.method.engine));  // starts the average again
     }
     told.shader_version = request.shader_version;
     if (told.scene_version != request.scene_version) LUCARNE_TRY(pipeline.set_scene(request.scene));
     told.scene_version = request.scene_version;
-    if (told.engine != request.engine) LUCARNE_TRY(pipeline.set_engine(request.engine));
-    told.engine = request.engine;
-    pipeline.set_settings(request.settings);
-    pipeline.set_budgets(request.budgets);
+    LUCARNE_TRY(pipeline.set_method(request.method));
     told.request = number;
     return {};
 }

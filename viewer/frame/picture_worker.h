@@ -19,9 +19,7 @@ inline constexpr uint32_t kMostAccumulated = 256;  ///< pictures in an average
 /// A request for pictures.
 struct PictureRequest {
     FrameRequest frame;
-    std::string engine;
-    gi::EngineSettings settings;
-    CutBudgets budgets;
+    Method method;
     gi::Scene scene;
     uint64_t scene_version = 0;            ///< changes when the scene changes
     uint64_t shader_version = 0;           ///< changes when the shader files are to be read again
@@ -30,8 +28,7 @@ struct PictureRequest {
 
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
     auto content() const {
-        return std::tie(frame.camera, frame.size, engine, settings, budgets, scene_version, shader_version,
-                        moving);
+        return std::tie(frame.camera, frame.size, method, scene_version, shader_version, moving);
     }
 };
 

@@ -454,6 +454,14 @@ Result<void> Pipeline::set_engine(std::string_view name) {
     return {};
 }
 
+Result<void> Pipeline::set_method(const Method& method) {
+    if (!state_->engine || state_->engine->info().name != method.engine)
+        LUCARNE_TRY(set_engine(method.engine));
+    set_settings(method.settings);
+    set_budgets(method.budgets);
+    return {};
+}
+
 void Pipeline::set_settings(const gi::EngineSettings& settings) {
     state_->changed |= !(settings == state_->settings);
     state_->settings = settings;

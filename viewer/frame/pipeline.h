@@ -88,6 +88,8 @@ class Pipeline {
 
     /// Errors (arguments): unknown name.
     Result<void> set_engine(std::string_view name);
+    /// Sets the engine, unless it is the present one, and its settings and budgets. Errors: no such engine.
+    Result<void> set_method(const Method& method);
     void set_settings(const gi::EngineSettings& settings);
     void set_budgets(const CutBudgets& budgets);
     /// Sets lights, materials, exposure and look. Moving a light is cheap. Other materials or colours of

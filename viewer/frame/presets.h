@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "gi/engine.h"
@@ -20,6 +21,14 @@ struct CutBudgets {
     void cap(uint64_t points);
 
     bool operator==(const CutBudgets&) const = default;
+};
+
+/// How pictures are made: by which engine, with which options, from how many points.
+struct Method {
+    std::string engine;
+    gi::EngineSettings settings;
+    CutBudgets budgets;
+    bool operator==(const Method&) const = default;
 };
 
 /// Settings that the user selects by one name. Published figures always name their preset.

@@ -85,7 +85,7 @@ bool take_light_handles(const Lighting& model) {
     if (!model.view.picture) return false;
     LightModel& tools = model.lights;
     if (!tools.show_handles || !model.view.side_bar.shown ||
-        gi::engine_is(model.view.engine, &gi::EngineInfo::unlit)) {
+        gi::engine_is(model.view.method.engine, &gi::EngineInfo::unlit)) {
         tools.held.reset();
         return false;
     }

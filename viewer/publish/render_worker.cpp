@@ -105,9 +105,7 @@ Result<std::string> RenderWorker::State::flight(Pipeline& pipeline, const Render
 Result<std::string> RenderWorker::State::draw(const RenderOrder& order, const WorkerDevice& device) {
     LUCARNE_ASSIGN(const auto gl, device.make());
     LUCARNE_ASSIGN(const auto pipeline, Pipeline::open(*gl, order.source, order.caps));
-    LUCARNE_TRY(pipeline->set_engine(order.engine));
-    pipeline->set_settings(order.settings);
-    pipeline->set_budgets(order.budgets);
+    LUCARNE_TRY(pipeline->set_method(order.method));
     LUCARNE_TRY(pipeline->set_scene(order.scene));
     if (const auto* what = std::get_if<StillOrder>(&order.what)) return still(*pipeline, order, *what);
     return flight(*pipeline, order, std::get<FlightOrder>(order.what));

@@ -32,9 +32,7 @@ struct FlightOrder {
 struct RenderOrder {
     std::shared_ptr<const octree::NodeSource> source;
     gi::Scene scene;
-    std::string engine;
-    gi::EngineSettings settings;
-    CutBudgets budgets;
+    Method method;
     PipelineOptions caps;  ///< in addition to the memory of the window's pipeline
     ImageSize size;
     std::variant<StillOrder, FlightOrder> what;

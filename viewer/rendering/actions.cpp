@@ -20,10 +20,10 @@ constexpr uint32_t kMostBounces = 8;
 
 void next_engine(const Rendering& model) {
     const auto engines = gi::engines();
-    const auto now =
-        std::ranges::find(engines, model.view.engine, [](const auto& entry) { return entry.info.name; });
+    const auto now = std::ranges::find(engines, model.view.method.engine,
+                                       [](const auto& entry) { return entry.info.name; });
     const auto next = now == engines.end() || now + 1 == engines.end() ? engines.begin() : now + 1;
-    model.view.engine = next->info.name;
+    model.view.method.engine = next->info.name;
     model.view.message = fmt::format("engine {}: {}", next->info.name, next->info.description);
 }
 
@@ -37,8 +37,8 @@ void next_preset(const Rendering& model) {
 
 void change_bounces(const Rendering& model, int by) {
     const auto bounces = static_cast<uint32_t>(
-        std::clamp<int64_t>(int64_t{model.view.settings[gi::kBounces]} + by, 0, kMostBounces));
-    model.view.settings.set(gi::kBounces, bounces);
+        std::clamp<int64_t>(int64_t{model.view.method.settings[gi::kBounces]} + by, 0, kMostBounces));
+    model.view.method.settings.set(gi::kBounces, bounces);
     model.view.message = fmt::format("{} indirect bounce{}", bounces, bounces == 1 ? "" : "s");
 }
 void more_bounces(const Rendering& model) {
@@ -84,7 +84,7 @@ bool compares(const Rendering& model) {
 void toggle_comparison(const Rendering& model) {
     // Compare with direct light alone, to show what indirect light adds.
     const auto& direct = gi::engine_with(&gi::EngineInfo::direct_only);
-    const auto& other = model.view.engine == direct.name ? gi::default_engine() : direct;
+    const auto& other = model.view.method.engine == direct.name ? gi::default_engine() : direct;
     compare_with(model.view, compares(model) ? "" : std::string(other.name));
 }
 void next_comparison(const Rendering& model) {

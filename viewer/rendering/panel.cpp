@@ -13,10 +13,11 @@ namespace lucarne::viewer {
 namespace {
 
 void engine_choice(const Rendering& model) {
-    if (!ImGui::BeginCombo("engine", model.view.engine.c_str())) return;
+    if (!ImGui::BeginCombo("engine", model.view.method.engine.c_str())) return;
     for (const auto& entry : gi::engines()) {
         const std::string name(entry.info.name), description(entry.info.description);
-        if (ImGui::Selectable(name.c_str(), name == model.view.engine)) model.view.engine = name;
+        if (ImGui::Selectable(name.c_str(), name == model.view.method.engine))
+            model.view.method.engine = name;
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
     }
     ImGui::EndCombo();
@@ -159,11 +160,11 @@ bool edit_option(const gi::OptionInfo& option, gi::OptionValue& value) {
 /// Draws the engine's options with their costs, and the size of pictures.
 void effort(const Rendering& model) {
     if (!fold("Effort")) return;
-    if (const auto engine = gi::find_engine(model.view.engine))
+    if (const auto engine = gi::find_engine(model.view.method.engine))
         for (const gi::OptionInfo* option : (*engine)->info.options) {
             if (!option->in_window()) continue;
-            gi::OptionValue value = model.view.settings.get(*option);
-            if (edit_option(*option, value)) model.view.settings.set(*option, value);
+            gi::OptionValue value = model.view.method.settings.get(*option);
+            if (edit_option(*option, value)) model.view.method.settings.set(*option, value);
             if (!option->cost.empty()) tell_cost(std::string(option->cost).c_str());
         }
     float scale = static_cast<float>(100 * model.view.resolution_scale);

@@ -9,16 +9,16 @@
 namespace lucarne::viewer {
 
 bool is_lit(const Styling& model) {
-    return !gi::engine_is(model.view.engine, &gi::EngineInfo::unlit);
+    return !gi::engine_is(model.view.method.engine, &gi::EngineInfo::unlit);
 }
 
 void switch_light(const Styling& model) {
     std::string& lit = model.look.lit_engine;
     if (is_lit(model)) {
-        lit = model.view.engine;
-        model.view.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
+        lit = model.view.method.engine;
+        model.view.method.engine = gi::engine_with(&gi::EngineInfo::unlit).name;
     } else {
-        model.view.engine = lit.empty() ? gi::default_engine().name : lit;
+        model.view.method.engine = lit.empty() ? gi::default_engine().name : lit;
     }
 }
 

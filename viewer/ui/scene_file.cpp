@@ -9,8 +9,9 @@ gi::Scene scene_to_save(const View& view) {
     std::erase_if(scene.cameras, [](const gi::SceneCamera& camera) { return camera.name == "view"; });
     gi::SceneCamera camera = view.rig.camera();
     camera.name = "view";
-    if (const auto preset = find_preset(view.preset)) scene.render = settings_over(*preset, view.settings);
-    scene.render.engine = view.engine;
+    if (const auto preset = find_preset(view.preset))
+        scene.render = settings_over(*preset, view.method.settings);
+    scene.render.engine = view.method.engine;
     scene.render.scale.reset();
     if (view.resolution_scale != 1) scene.render.scale = view.resolution_scale;
     scene.cameras.insert(scene.cameras.begin(), camera);

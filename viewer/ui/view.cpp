@@ -6,12 +6,12 @@ namespace lucarne::viewer {
 
 Result<void> View::choose_preset(std::string_view name) {
     LUCARNE_ASSIGN(const Preset chosen, find_preset(name));
-    const gi::EngineSettings before = settings;
+    const gi::EngineSettings before = method.settings;
     preset = chosen.name;
-    settings = chosen.engine;
-    budgets = chosen.budgets;
+    method.settings = chosen.engine;
+    method.budgets = chosen.budgets;
     for (const gi::OptionInfo* option : gi::engine_options())
-        if (option->keeps) settings.set(*option, before.get(*option));
+        if (option->keeps) method.settings.set(*option, before.get(*option));
     return {};
 }
 

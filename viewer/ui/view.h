@@ -27,9 +27,8 @@ struct View {
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;
-    std::string engine, preset;
-    gi::EngineSettings settings;
-    CutBudgets budgets;
+    Method method;
+    std::string preset;
     double resolution_scale = 1;  ///< share of the window's width and height at which pictures are made
     double frame_time = 0.1;      ///< s: target time of a picture while something moves
     PipelineOptions caps;

@@ -238,9 +238,7 @@ void ViewSession::send_request() {
     scene_seen_ = moves;
     PictureRequest request;
     request.moving = seconds_at_rest() < kRest;
-    request.engine = model_.view.engine;
-    request.settings = model_.view.settings;
-    request.budgets = model_.view.budgets;
+    request.method = model_.view.method;
     request.frame.camera = model_.view.rig.camera();
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
     request.frame.accumulate = !request.moving;
@@ -248,13 +246,14 @@ void ViewSession::send_request() {
     request.frame.moving = request.moving;
     if (request.moving) {
         request.frame.size = quality_.size(request.frame.size);
-        quality_.reduce(request.settings, request.budgets);
-        request.budgets = budget_.budgets(request.budgets);
+        quality_.reduce(request.method.settings, request.method.budgets);
+        request.method.budgets = budget_.budgets(request.method.budgets);
     }
     request.scene_version = model_.view.scene_version;
     request.shader_version = model_.health.shader_version;
     if (sent_number_ != 0 && request.content() == sent_.content()) return;
-    if (request.engine != sent_.engine || !(request.settings == sent_.settings)) budget_.forget();
+    if (request.method.engine != sent_.method.engine || !(request.method.settings == sent_.method.settings))
+        budget_.forget();
     request.scene = model_.view.scene;
     sent_ = request;
     sent_number_ = worker_.request(std::move(request));

@@ -26,7 +26,7 @@ class Worker : public testing::Test {
         auto worker = PictureWorker::start(device(), *source, {}, [this] { published_.release(); });
         ASSERT_TRUE(worker) << worker.error().line();
         worker_ = std::move(*worker);
-        request_.engine = "direct";
+        request_.method.engine = "direct";
         request_.scene = gi::default_scene(header_.min, header_.max);
         request_.frame.camera = request_.scene.cameras.front();
         request_.frame.size = {96, 64};
@@ -136,10 +136,10 @@ TEST_F(Worker, APictureAtRestHoldsNothingOfTheOneBeforeTheMotion) {
 }
 
 TEST_F(Worker, AnErrorIsShownAndTheNextRequestIsMadeAllTheSame) {
-    request_.engine = "magic";
+    request_.method.engine = "magic";
     EXPECT_EQ(whole(worker_->request(request_)), nullptr);
     EXPECT_FALSE(worker_->error());
-    request_.engine = "direct";
+    request_.method.engine = "direct";
     EXPECT_TRUE(whole(worker_->request(request_)));
     EXPECT_TRUE(worker_->error());
 }

@@ -36,7 +36,7 @@ class Pick : public testing::Test {
                                                  scan_->source, {}, [&] { published.release(); });
         if (!worker) return nullptr;
         PictureRequest request;
-        request.engine = "direct";
+        request.method.engine = "direct";
         const auto& header = scan_->source->header();
         request.scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
         request.scene.look = how;

@@ -27,9 +27,9 @@ class Rendering : public testing::Test {
         order_.source = *source;
         const auto [low, high] = octree::robust_bounds(*order_.source);  // as in `render`
         order_.scene = gi::default_scene(low, high, order_.source->header().metres_per_unit, 64.0 / 48);
-        order_.engine = "direct";
-        order_.settings = find_preset(kDefaultPreset)->engine;
-        order_.budgets = find_preset(kDefaultPreset)->budgets;
+        order_.method.engine = "direct";
+        order_.method.settings = find_preset(kDefaultPreset)->engine;
+        order_.method.budgets = find_preset(kDefaultPreset)->budgets;
         order_.size = {64, 48};
     }
     StillOrder still(const std::string& name) const {

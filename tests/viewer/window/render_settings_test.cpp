@@ -21,15 +21,15 @@ using testing::HasSubstr;
 
 View changed_view() {
     View view(10);
-    view.engine = "reference";
+    view.method.engine = "reference";
     EXPECT_TRUE(view.choose_preset("high"));
-    view.settings.set(gi::kBounces, 3);
-    view.settings.set(gi::kOnlyBounce, 2);
-    view.settings.set(gi::vpl::kVpls, 64);
-    view.settings.set(gi::vpl::kInterleave, 2);
-    view.settings.set(gi::vpl::kAtlas, 512);
-    view.settings.set(gi::kLightResolution, 256);
-    view.settings.set(gi::reference::kSamples, 5);
+    view.method.settings.set(gi::kBounces, 3);
+    view.method.settings.set(gi::kOnlyBounce, 2);
+    view.method.settings.set(gi::vpl::kVpls, 64);
+    view.method.settings.set(gi::vpl::kInterleave, 2);
+    view.method.settings.set(gi::vpl::kAtlas, 512);
+    view.method.settings.set(gi::kLightResolution, 256);
+    view.method.settings.set(gi::reference::kSamples, 5);
     view.resolution_scale = 0.5;
     return view;
 }
@@ -44,12 +44,12 @@ TEST(RenderSettings, WhatThePanelChangesIsInTheSceneThatTheWindowWrites) {
     ASSERT_TRUE(preset);
     gi::EngineSettings settings = preset->engine;
     apply(scene->render, settings);
-    EXPECT_EQ(settings, view.settings);
+    EXPECT_EQ(settings, view.method.settings);
 }
 
 TEST(RenderSettings, APresetAsItIsIsWrittenAsItsName) {
     View view(10);
-    view.engine = "vpl";
+    view.method.engine = "vpl";
     ASSERT_TRUE(view.choose_preset("preview"));
     gi::RenderSettings expected;
     expected.engine = "vpl";

@@ -209,9 +209,7 @@ Result<std::unique_ptr<Pipeline>> open_pipeline(gi::Device& device,
             "convert with --normals estimate for correct light");
     warn_of_extent(source->header());
     LUCARNE_ASSIGN(auto pipeline, Pipeline::open(device, std::move(source), drawing.caps));
-    LUCARNE_TRY(pipeline->set_engine(options.render.engine));
-    pipeline->set_settings(drawing.preset.engine);
-    pipeline->set_budgets(drawing.preset.budgets);
+    LUCARNE_TRY(pipeline->set_method({options.render.engine, drawing.preset.engine, drawing.preset.budgets}));
     LUCARNE_TRY(pipeline->set_scene(std::move(scene)));
     return pipeline;
 }
