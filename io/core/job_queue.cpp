@@ -13,6 +13,11 @@ JobQueue::~JobQueue() {
     thread_.join();
 }
 
+void JobQueue::finish() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return jobs_.empty() && !running_; });
+}
+
 void JobQueue::push_job(Job job) {
     {
         const std::lock_guard lock(mutex_);
@@ -34,8 +39,14 @@ void JobQueue::work() {
             if (stop_) return;
             job = std::move(jobs_.front());
             jobs_.pop_front();
+            running_ = true;
         }
         warn_of(guarded("a background job", job));  // `work` is guarded already; only `done` can throw here
+        {
+            const std::lock_guard lock(mutex_);
+            running_ = false;
+        }
+        changed_.notify_all();
     }
 }
 

@@ -18,6 +18,8 @@ class JobQueue {
     JobQueue() : thread_([this] { work(); }) {}
     /// Waits for the running job. Jobs that have not begun are dropped.
     ~JobQueue();
+    /// Waits until all jobs are done.
+    void finish();
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
@@ -44,7 +46,7 @@ class JobQueue {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Job> jobs_;
-    bool stop_ = false;
+    bool stop_ = false, running_ = false;
     std::thread thread_;
 };
 

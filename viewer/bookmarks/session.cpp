@@ -8,6 +8,7 @@ namespace lucarne::viewer {
 
 void BookmarkSession::follow(const Bookmarking& model, const std::filesystem::path& folder) {
     BookmarkModel& bookmarks = model.bookmarks;
+    carry_out(bookmarks);  // first, since the commands are about the bookmarks of `folder_`
     if (folder != folder_) {
         for (const Bookmark& bookmark : bookmarks.all) free_texture_(bookmark.texture);
         bookmarks.all.clear();
@@ -25,7 +26,6 @@ void BookmarkSession::follow(const Bookmarking& model, const std::filesystem::pa
     for (Bookmark& bookmark : bookmarks.all)
         if (!bookmark.texture && bookmark.thumbnail.width)
             bookmark.texture = make_texture_(bookmark.thumbnail);
-    carry_out(bookmarks);
 }
 
 void BookmarkSession::take_loaded(const Bookmarking& model) {
@@ -36,7 +36,9 @@ void BookmarkSession::take_loaded(const Bookmarking& model) {
     }
     if (!loaded || loaded->folder != folder_) return;
     if (!loaded->problem.empty()) log::warn("{}", model.view.message = loaded->problem);
-    auto& all = model.bookmarks.all;  // the user may have set some meanwhile
+    auto& all = model.bookmarks.all;
+    // The file has only those that the user has set meanwhile, if there are any.
+    if (!all.empty()) model.bookmarks.commands.push(SaveBookmarks{});
     all.insert(all.begin(), std::make_move_iterator(loaded->bookmarks.begin()),
                std::make_move_iterator(loaded->bookmarks.end()));
 }

@@ -18,6 +18,11 @@ class BookmarkSession {
                     std::function<void(unsigned)> free_texture)
         : make_texture_(std::move(make_texture)), free_texture_(std::move(free_texture)) {}
 
+    /// Waits until all changes are saved.
+    ~BookmarkSession() { jobs_.finish(); }
+    BookmarkSession(const BookmarkSession&) = delete;
+    BookmarkSession& operator=(const BookmarkSession&) = delete;
+
     /// Call once a frame. `folder`: that of the open scan's bookmarks (bookmark_folder()); empty: no scan.
     void follow(const Bookmarking& model, const std::filesystem::path& folder);
     /// Forgets textures that were lost with the window.

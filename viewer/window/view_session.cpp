@@ -218,6 +218,7 @@ void ViewSession::take_input() {
 void ViewSession::draw_panels() {
     draw_overlay(model_.styling());
     draw_convergence(model_.view);
+    follow_bookmarks();  // after the keys, so that a bookmark set in the last frame is saved
     draw_menu_bar(model_, actions_);
     if (scans_.rows().empty()) draw_start_page(model_);
     files_.draw();
@@ -329,7 +330,6 @@ Result<void> ViewSession::show_until_closed() {
         if (model_.view.picture) window_.show(*model_.view.picture);
         files_.take_files();
         follow_scans();
-        follow_bookmarks();
         light_.follow_sky(model_.lighting());
         take_input();
         if (publish_.follow(model_.publishing(), scans_.source())) moved_ = Clock::now();

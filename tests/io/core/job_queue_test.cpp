@@ -1,9 +1,12 @@
 // Background jobs that throw: the requester is told, and the thread continues.
 #include "io/core/job_queue.h"
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <new>
 #include <stdexcept>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -45,6 +48,20 @@ TEST(JobQueue, AFailureThatNobodyWaitsForIsSaidOnTheTerminal) {
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_THAT(said, HasSubstr("the settings: there is not enough memory"));
     EXPECT_THAT(said, HasSubstr("a background job: there is not enough memory"));
+}
+
+TEST(JobQueue, FinishWaitsForAllJobs) {
+    std::atomic<int> done{0};
+    JobQueue jobs;
+    jobs.finish();
+    for (int i = 0; i < 20; ++i)
+        jobs.push("a job", [&]() -> Result<void> {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            ++done;
+            return {};
+        });
+    jobs.finish();
+    EXPECT_EQ(done, 20);
 }
 
 }  // namespace
