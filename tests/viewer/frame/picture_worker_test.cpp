@@ -4,18 +4,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <semaphore>
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
-#include "tests/viewer/program.h"
+#include "tests/viewer/frame/on_worker.h"
 #include "viewer/inputs/input.h"
 
 namespace lucarne::viewer {
 namespace {
 
-class Worker : public testing::Test {
+class Worker : public test::OnWorker {
  protected:
     void SetUp() override {
         cache_ = test::make_cornell(folder_);
@@ -23,13 +22,8 @@ class Worker : public testing::Test {
         ASSERT_TRUE(source) << source.error().line();
         source_ = *source;
         header_ = (*source)->header();
-        auto worker = PictureWorker::start(device(), *source, {}, [this] { published_.release(); });
-        ASSERT_TRUE(worker) << worker.error().line();
-        worker_ = std::move(*worker);
         request_.method.engine = "direct";
-        request_.scene = gi::default_scene(header_.min, header_.max);
-        request_.frame.camera = request_.scene.cameras.front();
-        request_.frame.size = {96, 64};
+        start(device(), *source);
     }
     /// Returns a device whose context is lost after this number of pictures.
     static WorkerDevice device(std::optional<uint32_t> lost_after = {}) {
@@ -40,31 +34,9 @@ class Worker : public testing::Test {
                 },
                 [] {}};
     }
-    /// Waits until the worker reports a lost device.
-    std::optional<Error> loss() {
-        for (;;) {
-            if (auto lost = worker_->lost_device()) return lost;
-            if (!worker_->error()) return std::nullopt;
-            published_.acquire();
-        }
-    }
-    /// Returns the first picture of a request that has all its nodes.
-    std::shared_ptr<const Picture> whole(uint64_t number) {
-        for (;;) {
-            published_.acquire();
-            if (!worker_->error()) return nullptr;
-            const auto picture = worker_->latest();
-            if (picture && picture->request == number && picture->stats.nodes_pending == 0) return picture;
-        }
-    }
-
-    test::TemporaryFolder folder_;
     std::string cache_;
     std::shared_ptr<const octree::NodeSource> source_;
     octree::SourceHeader header_;
-    std::counting_semaphore<> published_{0};
-    std::unique_ptr<PictureWorker> worker_;
-    PictureRequest request_;
 };
 
 TEST_F(Worker, MakesThePictureOfTheNewestRequest) {

@@ -10,10 +10,10 @@
 #include "gi/device/exchange/exchange.h"
 #include "gi/registry.h"
 #include "gi/surfels/flat_surfels.h"
+#include "tests/gi/device/cl/on_opencl.h"
 #include "tests/gi/engines/lit_scene.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
-#include "tests/gi/on_device.h"
 
 namespace lucarne::gi {
 namespace {
@@ -39,21 +39,7 @@ std::vector<ShaderText> texts_with(const char* text) {
     return texts;
 }
 
-class ClDeviceTest : public OnDevice {
- protected:
-    void SetUp() override {
-        OnDevice::SetUp();
-        if (!device) return;
-        auto opened = ClDevice::open(*device);
-        ASSERT_TRUE(opened) << opened.error().line();
-        opencl = std::move(*opened);
-    }
-    void TearDown() override {
-        opencl.reset();
-        OnDevice::TearDown();
-    }
-    std::unique_ptr<ClDevice> opencl;
-};
+using ClDeviceTest = OnOpenCl;
 
 TEST_F(ClDeviceTest, SaysWhatItIs) {
     EXPECT_FALSE(opencl->info().name.empty());

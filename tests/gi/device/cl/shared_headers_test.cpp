@@ -20,7 +20,7 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/shared/tone_curve.h"
 #include "octree/tree/footprint.h"
-#include "tests/gi/on_device.h"
+#include "tests/gi/device/cl/on_opencl.h"
 
 namespace lucarne::gi {
 namespace {
@@ -33,19 +33,8 @@ std::vector<std::string> shared_headers() {
     return headers;
 }
 
-class SharedHeadersInOpenCl : public OnDevice {
+class SharedHeadersInOpenCl : public OnOpenCl {
  protected:
-    void SetUp() override {
-        OnDevice::SetUp();
-        if (!device) return;
-        auto opened = ClDevice::open(*device);
-        ASSERT_TRUE(opened) << opened.error().line();
-        opencl = std::move(*opened);
-    }
-    void TearDown() override {
-        opencl.reset();
-        OnDevice::TearDown();
-    }
     /// Compiles a text that includes these headers and returns its kernel `test`.
     Result<const ClKernel*> compile(const std::vector<std::string>& headers, const std::string& text) {
         std::string source;
@@ -56,7 +45,6 @@ class SharedHeadersInOpenCl : public OnDevice {
         texts.push_back({name, source});
         return opencl->kernel(name, "test", {}, texts);
     }
-    std::unique_ptr<ClDevice> opencl;
 
  private:
     int compiled_ = 0;
