@@ -47,10 +47,10 @@ void move_key(const Publishing& model) {
 /// Selects the key frame `kBy` places further; wraps around at the ends.
 template <int kBy>
 void select_key(const Publishing& model) {
-    PublishModel& show = model.publish;
-    const size_t count = show.editor.path().keys.size();
-    show.playing = false;
-    show.go_to_key((show.editor.selected().value_or(0) + count + kBy) % count);
+    PublishModel& publish = model.publish;
+    const size_t count = publish.editor.path().keys.size();
+    publish.playing = false;
+    publish.go_to_key((publish.editor.selected().value_or(0) + count + kBy) % count);
 }
 
 }  // namespace

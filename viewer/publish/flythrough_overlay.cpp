@@ -25,15 +25,15 @@ ImU32 shade(ImU32 colour, bool hidden) {
 }  // namespace
 
 void draw_flythrough(const Publishing& model) {
-    const PublishModel& show = model.publish;
+    const PublishModel& publish = model.publish;
     // Not drawn while it plays, because the path would run through the eye.
-    if (!show.draw_path || show.playing || show.editor.empty() || !model.view.picture) return;
+    if (!publish.draw_path || publish.playing || publish.editor.empty() || !model.view.picture) return;
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     Overlay overlay;
     OverlayLayout layout(*model.view.picture, {display.x, display.y}, overlay);
-    const auto places = places_along(show.editor.path(), kMostPlaces);
+    const auto places = places_along(publish.editor.path(), kMostPlaces);
     for (size_t i = 1; i < places.size(); ++i) layout.line(places[i - 1], places[i], 0, kPieces);
-    const auto& keys = show.editor.path().keys;
+    const auto& keys = publish.editor.path().keys;
     for (size_t i = 0; i < std::min(keys.size(), kMostPlaces); ++i) {
         layout.mark(keys[i].camera.position, i);
         layout.label(keys[i].camera.position, std::to_string(i + 1), i);
@@ -41,7 +41,7 @@ void draw_flythrough(const Publishing& model) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const OverlayLine& line : overlay.lines)
         list.AddLine(at(line.from), at(line.to), shade(kPath, line.hidden), 2);
-    const auto colour = [&](size_t key) { return show.editor.selected() == key ? kSelected : kPath; };
+    const auto colour = [&](size_t key) { return publish.editor.selected() == key ? kSelected : kPath; };
     for (const OverlayMark& mark : overlay.marks)
         list.AddCircleFilled(at(mark.at), 5, shade(colour(mark.measurement), mark.hidden), 4);  // a diamond
     for (const OverlayLabel& label : overlay.labels)

@@ -22,9 +22,9 @@ bool button(const char* label, bool enabled) {
     return pressed;
 }
 
-void key_list(PublishModel& show) {
+void key_list(PublishModel& publish) {
     if (!ImGui::BeginListBox("##keys", ImVec2(-1, ImGui::GetTextLineHeightWithSpacing() * 6))) return;
-    const auto& keys = show.editor.path().keys;
+    const auto& keys = publish.editor.path().keys;
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(keys.size()));
     while (clipper.Step())
@@ -36,96 +36,97 @@ void key_list(PublishModel& show) {
                             key.camera.vertical_fov * kDegrees, key.camera.position.x, key.camera.position.y,
                             key.camera.position.z);
             ImGui::PushID(row);
-            if (ImGui::Selectable(text.c_str(), show.editor.selected() == i)) show.go_to_key(i);
+            if (ImGui::Selectable(text.c_str(), publish.editor.selected() == i)) publish.go_to_key(i);
             ImGui::PopID();
         }
     ImGui::EndListBox();
 }
 
 void key_buttons(const Publishing& model) {
-    PublishModel& show = model.publish;
-    const bool one = show.editor.selected().has_value();
-    if (button("Add", model.view.picture != nullptr)) show.add_key(model.view.rig.camera());
+    PublishModel& publish = model.publish;
+    const bool one = publish.editor.selected().has_value();
+    if (button("Add", model.view.picture != nullptr)) publish.add_key(model.view.rig.camera());
     ImGui::SameLine();
-    if (button("Replace", one)) show.take(show.editor.replace(model.view.rig.camera()));
+    if (button("Replace", one)) publish.take(publish.editor.replace(model.view.rig.camera()));
     ImGui::SameLine();
-    if (button("Delete", one)) show.take(show.editor.remove());
+    if (button("Delete", one)) publish.take(publish.editor.remove());
     ImGui::SameLine();
-    if (button("Undo", show.editor.can_undo())) show.editor.undo();
-    if (button("Earlier", one)) show.take(show.editor.move(-1));
+    if (button("Undo", publish.editor.can_undo())) publish.editor.undo();
+    if (button("Earlier", one)) publish.take(publish.editor.move(-1));
     ImGui::SameLine();
-    if (button("Later", one)) show.take(show.editor.move(1));
+    if (button("Later", one)) publish.take(publish.editor.move(1));
     ImGui::SameLine();
-    ImGui::Checkbox("draw the path", &show.draw_path);
+    ImGui::Checkbox("draw the path", &publish.draw_path);
 }
 
 /// A number field whose value is passed to `take` once the user leaves the field, so that a half-typed number
 /// is no error. ImGui reports "changed" in every frame in which the text differs from `value`; the last such
 /// number counts, unless the user restored the old one.
 template <class Take>
-void number_field(PublishModel& show, const char* label, double value, const Take& take) {
+void number_field(PublishModel& publish, const char* label, double value, const Take& take) {
     if (ImGui::InputDouble(label, &value, 0, 0, "%.6g"))
-        show.typed = value;
+        publish.typed = value;
     else if (ImGui::IsItemActive() || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-        show.typed.reset();
-    if (!ImGui::IsItemDeactivatedAfterEdit() || !show.typed) return;
-    take(*show.typed);
-    show.typed.reset();
+        publish.typed.reset();
+    if (!ImGui::IsItemDeactivatedAfterEdit() || !publish.typed) return;
+    take(*publish.typed);
+    publish.typed.reset();
 }
 
-void key_fields(PublishModel& show) {
-    const auto selected = show.editor.selected();
+void key_fields(PublishModel& publish) {
+    const auto selected = publish.editor.selected();
     if (!selected) return;
-    const KeyFrame key = show.editor.path().keys[*selected];
+    const KeyFrame key = publish.editor.path().keys[*selected];
     ImGui::PushID(static_cast<int>(*selected));
-    number_field(show, "time, s", key.time, [&](double time) { show.take(show.editor.set_time(time)); });
-    number_field(show, "degrees of view", key.camera.vertical_fov * kDegrees,
-                 [&](double fov) { show.take(show.editor.set_fov(fov / kDegrees)); });
+    number_field(publish, "time, s", key.time,
+                 [&](double time) { publish.take(publish.editor.set_time(time)); });
+    number_field(publish, "degrees of view", key.camera.vertical_fov * kDegrees,
+                 [&](double fov) { publish.take(publish.editor.set_fov(fov / kDegrees)); });
     ImGui::PopID();
 }
 
-void preview(PublishModel& show) {
-    const bool any = !show.editor.empty();
-    if (button(show.playing ? "Stop" : "Play", any)) show.play();
+void preview(PublishModel& publish) {
+    const bool any = !publish.editor.empty();
+    if (button(publish.playing ? "Stop" : "Play", any)) publish.play();
     ImGui::SameLine();
     ImGui::BeginDisabled(!any);
-    const double first = any ? show.editor.path().start() : 0,
-                 last = any ? show.editor.path().keys.back().time : 0;
-    show.time = std::clamp(show.time, first, last);
-    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &show.time, &first, &last, "%.2f s")) {
-        show.playing = false;
-        show.sought = true;
+    const double first = any ? publish.editor.path().start() : 0,
+                 last = any ? publish.editor.path().keys.back().time : 0;
+    publish.time = std::clamp(publish.time, first, last);
+    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &publish.time, &first, &last, "%.2f s")) {
+        publish.playing = false;
+        publish.sought = true;
     }
     ImGui::EndDisabled();
 }
 
-void files(PublishModel& show) {
-    const bool any = !show.editor.empty();
-    ImGui::InputText("path's file", &show.path_file);
-    if (button("Save", any)) show.commands.push(SavePath{});
+void files(PublishModel& publish) {
+    const bool any = !publish.editor.empty();
+    ImGui::InputText("path's file", &publish.path_file);
+    if (button("Save", any)) publish.commands.push(SavePath{});
     ImGui::SameLine();
-    if (button("Load", true)) show.commands.push(LoadPath{});
+    if (button("Load", true)) publish.commands.push(LoadPath{});
     ImGui::Separator();
-    number_field(show, "frames a second", show.editor.path().frames_per_second,
-                 [&](double rate) { show.take(show.editor.set_frames_per_second(rate)); });
-    size_fields("size of frames", show.flight_width, show.flight_height);
-    ImGui::InputText("PNG folder", &show.frames_folder);
-    ImGui::InputText("video's file", &show.video_file);
-    if (!render_progress(show)) return;
-    if (button("Render frames", any)) show.commands.push(RenderFrames{});
+    number_field(publish, "frames a second", publish.editor.path().frames_per_second,
+                 [&](double rate) { publish.take(publish.editor.set_frames_per_second(rate)); });
+    size_fields("size of frames", publish.flight_width, publish.flight_height);
+    ImGui::InputText("PNG folder", &publish.frames_folder);
+    ImGui::InputText("video's file", &publish.video_file);
+    if (!render_progress(publish)) return;
+    if (button("Render frames", any)) publish.commands.push(RenderFrames{});
     ImGui::SameLine();
-    if (button("Render video", any)) show.commands.push(RenderVideo{});
+    if (button("Render video", any)) publish.commands.push(RenderVideo{});
 }
 
 }  // namespace
 
 void draw_flythrough_panel(const Publishing& model) {
-    PublishModel& show = model.publish;
+    PublishModel& publish = model.publish;
     key_buttons(model);
-    key_list(show);
-    key_fields(show);
-    preview(show);
-    files(show);
+    key_list(publish);
+    key_fields(publish);
+    preview(publish);
+    files(publish);
 }
 
 }  // namespace lucarne::viewer

@@ -10,19 +10,19 @@
 namespace lucarne::viewer {
 
 void draw_picture_panel(const Publishing& model) {
-    PublishModel& show = model.publish;
-    size_fields("size", show.width, show.height);
+    PublishModel& publish = model.publish;
+    size_fields("size", publish.width, publish.height);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (ImGui::Button("the window's size")) {
-        show.width = static_cast<int>(display.x);
-        show.height = static_cast<int>(display.y);
+        publish.width = static_cast<int>(display.x);
+        publish.height = static_cast<int>(display.y);
     }
-    ImGui::InputInt("averaged", &show.frames);
-    show.frames = std::clamp(show.frames, 1, kMostAveraged);
-    ImGui::Checkbox("transparent where no point is", &show.finish.transparent);
-    ImGui::Checkbox("legend, axes and scale bar", &show.finish.overlays);
-    ImGui::InputText("file", &show.picture_file);
-    if (render_progress(show) && ImGui::Button("Save")) show.commands.push(RenderPicture{});
+    ImGui::InputInt("averaged", &publish.frames);
+    publish.frames = std::clamp(publish.frames, 1, kMostAveraged);
+    ImGui::Checkbox("transparent where no point is", &publish.finish.transparent);
+    ImGui::Checkbox("legend, axes and scale bar", &publish.finish.overlays);
+    ImGui::InputText("file", &publish.picture_file);
+    if (render_progress(publish) && ImGui::Button("Save")) publish.commands.push(RenderPicture{});
 }
 
 }  // namespace lucarne::viewer

@@ -21,14 +21,14 @@ inline void size_fields(const char* label, int& width, int& height) {
 }
 
 /// Draws the progress of rendering and a button to cancel it. Returns true if nothing is being rendered.
-inline bool render_progress(PublishModel& show) {
-    const RenderState& state = show.rendering;
+inline bool render_progress(PublishModel& publish) {
+    const RenderState& state = publish.rendering;
     if (!state.running) return true;
     const float share = static_cast<float>(state.done) / static_cast<float>(std::max<size_t>(state.total, 1));
     ImGui::ProgressBar(share, ImVec2(14 * ImGui::GetFontSize(), 0),
                        fmt::format("{} of {} frames", state.done, state.total).c_str());
     ImGui::SameLine();
-    if (ImGui::Button("Cancel")) show.commands.push(CancelRendering{});
+    if (ImGui::Button("Cancel")) publish.commands.push(CancelRendering{});
     return false;
 }
 

@@ -39,10 +39,10 @@ RenderOrder flight_order(const Publishing& model, std::shared_ptr<const octree::
 }  // namespace
 
 void PublishSession::path_files(const Publishing& model, bool save) {
-    PublishModel& show = model.publish;
-    const auto file = model.view.pictures / show.path_file;
-    const auto done = save ? show.save_path(file) : show.load_path(file);
-    show.message =
+    PublishModel& publish = model.publish;
+    const auto file = model.view.pictures / publish.path_file;
+    const auto done = save ? publish.save_path(file) : publish.load_path(file);
+    publish.message =
         done ? fmt::format("{} {}", save ? "saved" : "loaded", file.string()) : done.error().line();
 }
 
@@ -82,17 +82,17 @@ Result<void> PublishSession::render(RenderOrder order) {
 
 bool PublishSession::follow(const Publishing& model,
                             const std::shared_ptr<const octree::NodeSource>& source) {
-    PublishModel& show = model.publish;
+    PublishModel& publish = model.publish;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    show.set_sizes(static_cast<int>(window.x), static_cast<int>(window.y));
+    publish.set_sizes(static_cast<int>(window.x), static_cast<int>(window.y));
     if (auto outcome = worker_.take_outcome())  // before the next order discards it
-        show.message = *outcome ? std::move(**outcome) : outcome->error().line();
+        publish.message = *outcome ? std::move(**outcome) : outcome->error().line();
     carry_out(model, source);
-    show.rendering = worker_.state();
-    if (!show.message.empty()) model.view.message = std::exchange(show.message, {});
-    show.advance(ImGui::GetIO().DeltaTime);
-    if (!std::exchange(show.sought, false) || show.editor.empty()) return false;
-    model.view.go_to(show.editor.path().at(show.time));
+    publish.rendering = worker_.state();
+    if (!publish.message.empty()) model.view.message = std::exchange(publish.message, {});
+    publish.advance(ImGui::GetIO().DeltaTime);
+    if (!std::exchange(publish.sought, false) || publish.editor.empty()) return false;
+    model.view.go_to(publish.editor.path().at(publish.time));
     return true;
 }
 
