@@ -14,9 +14,13 @@ const uint kBindIds = 4u;     // surfel ids, a word per pixel
 const uint kBindQueues = 5u;  // queues.h
 const uint kBindTexels = 6u;  // GBufferTexel[]
 const uint kBindCandidates = 7u;
+const uint kBindBlocks = 8u;  // the cut's blocks: 1 for each that is seen, then a list of these
+const uint kBindSums = 9u;    // blend_sums.h
 
 // Texture units.
 const uint kUnitKeys = 3u;
+const uint kUnitFront = 4u;  // GBufferTexel[]
+const uint kUnitSums = 5u;
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi::raster

@@ -33,6 +33,15 @@ vec2 ray_slope(vec2 tangent) { return tangent * (1.0 - view_origin.w); }
 vec2 ray_start(vec2 tangent) { return tangent * view_origin.w; }
 vec3 to_view(vec3 v) { return vec3(dot(v, view_right.xyz), dot(v, view_down.xyz), dot(v, view_forward.xyz)); }
 
+// Discs of a larger radius, in pixels, are drawn by a workgroup each.
+const float kSmallRadius = 8.0;
+bool is_small(Disc disc) {
+    vec2 pixels = disc.radius * pixels_per_tangent();
+    return max(pixels.x, pixels.y) <= kSmallRadius * view_scale(disc.centre.z);
+}
+
+uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
+
 // Transforms a surfel to the view. Returns false if no part of its disc is in front of the near plane, and for
 // outliers.
 bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {

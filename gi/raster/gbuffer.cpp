@@ -1,6 +1,5 @@
 #include "gi/raster/gbuffer.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -12,24 +11,6 @@
 namespace lucarne::gi {
 namespace {
 
-void set_view(const Program& program, const CameraView& view, const PointSize& size) {
-    const auto axis = [&](std::string_view name, const glm::vec3& v, float w) {
-        const std::array<float, 4> values = {v.x, v.y, v.z, w};
-        program.set_block(name, values);
-    };
-    const glm::vec3 right(view.right.x, view.right.y, view.right.z), up(view.up.x, view.up.y, view.up.z);
-    const float tan_x = glm::length(right), tan_y = glm::length(up);
-    axis("view_right", right / tan_x, tan_x);
-    axis("view_down", up / -tan_y, tan_y);
-    axis("view_forward", {view.forward.x, view.forward.y, view.forward.z}, view.origin.w);
-    axis("view_origin", {view.origin.x, view.origin.y, view.origin.z},
-         view.projection == kOrthographic ? 1.0f : 0.0f);
-    program.set("view_width", view.width);
-    program.set("view_height", view.height);
-    program.set("point_scale", size.scale);
-    program.set("point_pixels", size.pixels);
-}
-
 const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
 
 /// `places` is the number of ids of the cut, gaps included.
@@ -39,14 +20,15 @@ Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& targ
     LUCARNE_TRY(hold(target.ids, pixels * sizeof(uint32_t)));
     LUCARNE_TRY(hold(target.keys, pixels * sizeof(uint32_t)));
     LUCARNE_TRY(hold(target.queues, sizeof(QueueHeader) + kLargeQueue * sizeof(uint32_t)));
-    return hold(target.candidates, places * sizeof(uint32_t));
+    LUCARNE_TRY(hold(target.candidates, places * sizeof(uint32_t)));
+    return hold(target.seen_blocks, places / kBlockSurfels * 2 * sizeof(uint32_t));
 }
 
 Result<void> draw_large(Device& device, const CameraView& view, const PointSize& size, const GBuffer& target,
                         const Defines& defines) {
     LUCARNE_ASSIGN(const Program* queued, device.program("gi/raster/splat_large.comp", defines));
     LUCARNE_ASSIGN(const Program* overflow, device.program("gi/raster/splat_overflow.comp", defines));
-    for (const Program* program : {queued, overflow}) set_view(*program, view, size);
+    for (const Program* program : {queued, overflow}) set_disc_view(*program, view, size);
     queued->dispatch_indirect(target.queues, offsetof(QueueHeader, large_groups));
     overflow->dispatch_indirect(target.queues, offsetof(QueueHeader, overflow_groups));
     return {};
@@ -68,6 +50,7 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     target.keys.clear(UINT32_MAX);
     target.ids.clear(kNoSurfel);
     target.queues.clear(0);
+    target.seen_blocks.clear(0);
     cut.bind();
     target.keys.bind(raster::kBindKeys);
     target.keys.bind_texels(raster::kUnitKeys, TexelView::four_words);
@@ -75,8 +58,9 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     target.queues.bind(raster::kBindQueues);
     target.texels.bind(raster::kBindTexels);
     target.candidates.bind(raster::kBindCandidates);
-    for (const Program* program : {splat, splat_ids, resolve}) set_view(*program, view, size);
-    plan->set("blocks", cut.blocks());
+    target.seen_blocks.bind(raster::kBindBlocks);
+    for (const Program* program : {splat, splat_ids, resolve}) set_disc_view(*program, view, size);
+    for (const Program* program : {plan, resolve}) program->set("blocks", cut.blocks());
     splat->dispatch(places);
     plan->dispatch(1);
     LUCARNE_TRY(draw_large(device, view, size, target, {}));

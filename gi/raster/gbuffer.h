@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gi/device/gl/device.h"
+#include "gi/raster/disc_view.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/light.h"
@@ -12,15 +13,10 @@ namespace lucarne::gi {
 /// What a camera or a light sees of a cut: one GBufferTexel per pixel and the id of the surfel behind it.
 struct GBuffer {
     uint32_t width = 0, height = 0;
-    Buffer texels;                    ///< GBufferTexel[width * height]
-    Buffer ids;                       ///< uint[width * height], kNoSurfel where empty
-    Buffer keys, queues, candidates;  ///< scratch of rasterize()
-};
-
-/// The size at which points are drawn for the camera; light views ignore it.
-struct PointSize {
-    float scale = 1;   ///< scale of the discs' radii
-    float pixels = 0;  ///< if over 0: the diameter of every point, which then faces the eye
+    Buffer texels;                                 ///< GBufferTexel[width * height]
+    Buffer ids;                                    ///< uint[width * height], kNoSurfel where empty
+    Buffer keys, queues, candidates, seen_blocks;  ///< scratch of rasterize()
+    Buffer sums;                                   ///< scratch of blend(), zero between its calls
 };
 
 /// Draws the discs of a cut by compute shaders. In each pixel the nearest intersection of its ray with a

@@ -3,38 +3,10 @@
 // (LUCARNE_ID_PASS, see take_pixel) goes through that list, a fraction of the cut.
 layout(local_size_x = 256) in;
 #include "gi/raster/bindings.h"
+#include "gi/raster/ellipse.glsl"
 #include "gi/raster/splat.glsl"
 
 layout(std430, binding = kBindCandidates) buffer Candidates { uint candidates[]; };
-
-// A small disc in the picture, to first order about its centre (the error is a share radius/depth of the disc). For
-// pixel offsets d from the centre, (distance / radius)^2 is the quadratic form (xx, xy, yy) and the depth has the
-// gradient `slope`.
-struct Ellipse {
-    vec2 centre;  // in pixels, their centres at whole numbers
-    float xx, xy, yy;
-    vec2 slope;  // m a pixel
-};
-
-Ellipse project(Disc disc) {
-    vec2 scale = pixels_per_tangent();
-    vec2 place = disc.centre.xy / view_scale(disc.centre.z), tangent = ray_slope(place);
-    Ellipse e;
-    e.centre = place * scale + 0.5 * vec2(view_width, view_height) - 0.5;
-    float facing = dot(disc.normal, vec3(tangent, 1.0));
-    if (abs(facing) < 1e-4) facing = 1e-4;
-    vec2 step = view_scale(disc.centre.z) / scale;  // m a pixel at the centre's depth
-    e.slope = -step * disc.normal.xy / facing;
-    vec3 along_x = vec3(e.slope.x * tangent + vec2(step.x, 0.0), e.slope.x);
-    vec3 along_y = vec3(e.slope.y * tangent + vec2(0.0, step.y), e.slope.y);
-    float inverse = 1.0 / max(disc.radius * disc.radius, 1e-12);
-    e.xx = dot(along_x, along_x) * inverse;
-    e.xy = 2.0 * dot(along_x, along_y) * inverse;
-    e.yy = dot(along_y, along_y) * inverse;
-    return e;
-}
-
-float ellipse_distance2(Ellipse e, vec2 d) { return d.x * (e.xx * d.x + e.xy * d.y) + e.yy * d.y * d.y; }
 
 // Returns the order of the disc at an offset, see disc_key. In the pixel of its centre, if the disc does not cover it
 // (seen edge-on, or smaller than a pixel), the order is that of the depth of its centre, pushed back like a rim.

@@ -14,15 +14,6 @@ layout(std430, binding = kBindQueues) buffer Queues {
 // The keys again, four a texel; in the first pass perhaps not the latest ones.
 layout(binding = kUnitKeys) uniform usamplerBuffer key_texels;
 
-// Discs of a larger radius, in pixels, are drawn by a workgroup each.
-const float kSmallRadius = 8.0;
-bool is_small(Disc disc) {
-    vec2 pixels = disc.radius * pixels_per_tangent();
-    return max(pixels.x, pixels.y) <= kSmallRadius * view_scale(disc.centre.z);
-}
-
-uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
-
 // Returns whether the disc may take the pixel; saves the atomic operation if it cannot.
 bool may_take_pixel(vec2 pixel, uint key) {
     // Fetching four words and choosing one is faster on llvmpipe than fetching one: x86 gathers single words slowly.

@@ -67,6 +67,7 @@ struct Look {
     std::bitset<256> hidden_classes;  ///< neither drawn nor blocking light
     double point_size = 1;            ///< scales the surfels' radii for the camera only, .05 to 20
     double point_pixels = 0;          ///< if over 0: the diameter of every point, pixels
+    bool single_discs = false;  ///< draws each pixel as its nearest disc, not blended with those around it
     Unlit unlit;
     Backdrop backdrop;
     Clip clip;

@@ -150,6 +150,7 @@ Result<Look> read_look(JsonObject object) {
     LUCARNE_TRY(read_colours(object, look));
     LUCARNE_ASSIGN(look.point_size, object.number("point_size", kSize, look.point_size));
     LUCARNE_ASSIGN(look.point_pixels, object.number("point_pixels", kPixels, look.point_pixels));
+    LUCARNE_ASSIGN(look.single_discs, object.boolean("single_discs", false));
     LUCARNE_ASSIGN(const size_t shading,
                    object.choice("shading", list(shading_names()), static_cast<size_t>(look.unlit.shading)));
     look.unlit.shading = static_cast<Shading>(shading);
@@ -188,6 +189,7 @@ json write_look(const Look& look) {
         if (look.hidden_classes[number]) written["hidden_classes"].push_back(number);
     put("point_size", look.point_size, plain.point_size);
     put("point_pixels", look.point_pixels, plain.point_pixels);
+    put("single_discs", look.single_discs, plain.single_discs);
     if (look.unlit.shading != plain.unlit.shading)
         written["shading"] = shading_names()[static_cast<size_t>(look.unlit.shading)];
     put("shading_strength", look.unlit.strength, plain.unlit.strength);

@@ -13,9 +13,12 @@ LUCARNE_STRUCT(GBufferTexel) {
     float depth;    // along the camera's forward axis, m; 0: empty
     uint normal;    // octahedral 2 x 16 bit, turned toward the viewer (a surfel is an opaque sheet with two
                     // equal sides); surfels without a normal face the viewer
-    uint albedo;    // as PackedSurfel.d: sRGB-coded 3 x 10 bit | flags
+    uint albedo;    // as PackedSurfel.d: sRGB-coded 3 x 10 bit | flags, with kTexelFromBehind
     uint material;  // index | radius of the surfel as a half float << 16
 };
+
+// Flag in GBufferTexel.albedo: the normal of the surfel points away from the viewer and was turned.
+LUCARNE_CONST uint kTexelFromBehind = 0x80000000u;
 
 // Where discs of one surface overlap, the disc with the nearest centre shall take the pixel; otherwise the
 // noise of their planes would decide. So discs are ordered by the depth of their plane, pushed back by this

@@ -35,11 +35,17 @@ LUCARNE_FN float linear_to_srgb(float v) {
     return v <= 0.0031308f ? v * 12.92f : 1.055f * pow(v, 1.0f / 2.4f) - 0.055f;
 }
 
-// Returns the linear Rec. 709 colour of the 3 x 10 bits of PackedSurfel.d.
+// Decode and encode a linear Rec. 709 colour in [0, 1] as the 3 x 10 bits of PackedSurfel.d.
 LUCARNE_FN vec3 decode_albedo(uint code) {
     return vec3(srgb_to_linear(float(code & 1023u) / 1023.0f),
                 srgb_to_linear(float(code >> 10 & 1023u) / 1023.0f),
                 srgb_to_linear(float(code >> 20 & 1023u) / 1023.0f));
+}
+
+LUCARNE_FN uint encode_albedo(vec3 colour) {
+    return uint(linear_to_srgb(colour.x) * 1023.0f + 0.5f) |
+           uint(linear_to_srgb(colour.y) * 1023.0f + 0.5f) << 10 |
+           uint(linear_to_srgb(colour.z) * 1023.0f + 0.5f) << 20;
 }
 
 // Returns the 16-bit fractions of the node's cube; a point lies in the middle of its step.

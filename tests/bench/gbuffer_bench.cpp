@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "gi/raster/gbuffer.h"
+#include "gi/raster/blend.h"
 #include "io/core/random.h"
 #include "tests/bench/bench_run.h"
 #include "tests/gi/engines/surfel_cloud.h"
@@ -111,6 +114,33 @@ double now(clockid_t clock) {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Times a pass in turns with the others, so that other work on the machine slows down all of them alike.
+struct Pass {
+    std::string name;
+    std::function<Result<void>()> run;
+    std::vector<double> wall, cpu;  // s
+};
+
+Result<void> time_passes(Device& device, std::vector<Pass>& passes) {
+    for (int i = 0; i < 9; ++i)
+        for (Pass& pass : passes) {
+            device.finish();
+            const double wall_start = now(CLOCK_MONOTONIC), cpu_start = now(CLOCK_PROCESS_CPUTIME_ID);
+            LUCARNE_TRY(pass.run());
+            device.finish();
+            pass.wall.push_back(now(CLOCK_MONOTONIC) - wall_start);
+            pass.cpu.push_back(now(CLOCK_PROCESS_CPUTIME_ID) - cpu_start);
+        }
+    for (Pass& pass : passes) {
+        std::sort(pass.wall.begin(), pass.wall.end());
+        std::sort(pass.cpu.begin(), pass.cpu.end());
+        fmt::print("  {:<12} median {:.1f} ms, best {:.1f} ms; processor time {:.1f} ms\n", pass.name,
+                   pass.wall[pass.wall.size() / 2] * 1e3, pass.wall[0] * 1e3,
+                   pass.cpu[pass.cpu.size() / 2] * 1e3);
+    }
+    return {};
+}
+
 Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
     LUCARNE_ASSIGN(const auto device, Device::headless());
     const CameraView view = look({0.3f, 1, 3}, {0, 50, 5}, width, height, 1.0f);
@@ -118,24 +148,15 @@ Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
     const SurfelCloud cloud(std::move(surfels), {{-16, -1, -1}, 64}, 1024, kThinned);
     LUCARNE_ASSIGN(const auto packed, load_cloud(*device, cloud));
     GBuffer gbuffer;
-    std::vector<double> wall, cpu;
-    for (int i = 0; i < 9; ++i) {
-        device->finish();
-        const double wall_start = now(CLOCK_MONOTONIC), cpu_start = now(CLOCK_PROCESS_CPUTIME_ID);
-        LUCARNE_TRY(rasterize(*device, packed->cut, view, gbuffer));
-        device->finish();
-        wall.push_back(now(CLOCK_MONOTONIC) - wall_start);
-        cpu.push_back(now(CLOCK_PROCESS_CPUTIME_ID) - cpu_start);
-    }
-    std::sort(wall.begin(), wall.end());
-    std::sort(cpu.begin(), cpu.end());
+    std::vector<Pass> passes;
+    passes.push_back({"visibility", [&] { return rasterize(*device, packed->cut, view, gbuffer); }, {}, {}});
+    passes.push_back({"blending", [&] { return blend(*device, packed->cut, view, gbuffer); }, {}, {}});
+    LUCARNE_TRY(passes[0].run());
     const auto ids = gbuffer.ids.download_all<uint32_t>(size_t{width} * height);
     const auto empty = std::count(ids.begin(), ids.end(), kNoSurfel);
     fmt::print("{} surfels in {} nodes, {}x{}: {} pixels empty\n", packed->cut.surfels(),
                cloud.nodes().size(), width, height, empty);
-    fmt::print("  median {:.1f} ms, best {:.1f} ms; processor time {:.1f} ms\n", wall[wall.size() / 2] * 1e3,
-               wall[0] * 1e3, cpu[cpu.size() / 2] * 1e3);
-    return {};
+    return time_passes(*device, passes);
 }
 
 Result<void> measure(const bench::BenchRun& run) {

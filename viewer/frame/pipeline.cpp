@@ -11,6 +11,7 @@
 
 #include "gi/gl_frame.h"
 #include "gi/lighting/light_options.h"
+#include "gi/raster/blend.h"
 #include "gi/registry.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
@@ -287,6 +288,11 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
                              static_cast<float>(scene.look.point_pixels)};
     LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer, size));
     times.end();
+    if (!scene.look.single_discs) {
+        times.begin("blending");
+        LUCARNE_TRY(gi::blend(device, view, camera, gbuffer, size));
+        times.end();
+    }
     LUCARNE_TRY(draw_with(*engine, request, presentation.sample(false)));
     return other ? draw_with(*other, request, presentation.sample(true)) : Result<void>();
 }

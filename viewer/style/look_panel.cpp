@@ -84,6 +84,11 @@ bool edit_points(gi::Look& look) {
     bool changed = ImGui::Checkbox("points of a fixed size", &fixed);
     if (changed) look.point_pixels = fixed ? 3 : 0;
     if (fixed) return slider("size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
+    bool blended = !look.single_discs;
+    if (ImGui::Checkbox("blended surfaces", &blended)) {
+        look.single_discs = !blended;
+        changed = true;
+    }
     return slider("size", look.point_size, 0.1f, 5, "%.2f of the points' own",
                   ImGuiSliderFlags_Logarithmic) ||
            changed;

@@ -1,70 +1,9 @@
 #include "gi/raster/gbuffer.h"
 
-#include <random>
-
-#include <gtest/gtest.h>
-
-#include "tests/gi/engines/surfel_cloud.h"
-#include "tests/gi/engines/surfel_scenes.h"
-#include "tests/gi/on_device.h"
+#include "tests/gi/raster/drawn_surfels.h"
 
 namespace lucarne::gi {
 namespace {
-
-const glm::vec3 kWhite(0.8f), kRed(0.8f, 0.0f, 0.0f);
-
-struct Picture {
-    CameraView view;
-    std::vector<GBufferTexel> texels;
-    std::vector<uint32_t> ids;
-    std::vector<Surfel> surfels;  ///< as the device stores them
-
-    glm::vec3 ray(uint32_t x, uint32_t y) const {
-        const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(view.width) - 1;
-        const float v = 2 * (static_cast<float>(y) + .5f) / static_cast<float>(view.height) - 1;
-        return glm::vec3(view.forward.x, view.forward.y, view.forward.z) +
-               u * glm::vec3(view.right.x, view.right.y, view.right.z) -
-               v * glm::vec3(view.up.x, view.up.y, view.up.z);
-    }
-    glm::vec3 eye() const { return {view.origin.x, view.origin.y, view.origin.z}; }
-    bool empty(size_t at) const { return ids[at] == kNoSurfel; }
-    bool red(size_t at) const { return !empty(at) && decode_albedo(texels[at].albedo).y < 0.1f; }
-};
-
-class GBufferTest : public OnDevice {
- protected:
-    Picture draw(std::vector<Surfel> surfels, const CameraView& view, uint32_t keep = 1024) {
-        const SurfelCloud cloud(std::move(surfels), {{-32, -32, -32}, 64}, keep);
-        auto loaded = load_cloud(*device, cloud);
-        EXPECT_TRUE(loaded) << loaded.error().line();
-        GBuffer target;
-        const auto drawn = rasterize(*device, (*loaded)->cut, view, target);
-        EXPECT_TRUE(drawn) << drawn.error().line();
-        const size_t pixels = size_t{view.width} * view.height;
-        return {view, target.texels.download_all<GBufferTexel>(pixels),
-                target.ids.download_all<uint32_t>(pixels), (*loaded)->pool.download((*loaded)->cut)};
-    }
-};
-
-/// A wall at y = `at`, facing the camera, as an uneven pattern of about `spacing` metres.
-std::vector<Surfel> wall(float at, float half, float spacing, const glm::vec3& albedo, uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> jitter(-0.5f, 0.5f);
-    std::vector<Surfel> surfels;
-    for (float x = -half; x <= half; x += spacing)
-        for (float z = -half; z <= half; z += spacing)
-            surfels.push_back({{x + jitter(random) * spacing, at, z + jitter(random) * spacing},
-                               glm::normalize(glm::vec3(0.1f * jitter(random), -1, 0.1f * jitter(random))),
-                               albedo,
-                               0,
-                               spacing * spacing,
-                               0});
-    return surfels;
-}
-
-void append(std::vector<Surfel>& to, const std::vector<Surfel>& more) {
-    to.insert(to.end(), more.begin(), more.end());
-}
 
 TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
     for (const float area : {2e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: small and large discs

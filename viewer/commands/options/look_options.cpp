@@ -137,6 +137,8 @@ void add_look_options(Arguments& command, LookOptions& options) {
     command.add("--point-pixels", options.point_pixels, "Draw all points with this size, in pixels")
         .range(0.0, 64.0)
         .type_name("N");
+    command.flag("--single-discs", options.single_discs,
+                 "Show in each pixel the nearest point's disc alone, not blended with those around it");
     command
         .add("--background", options.background,
              "Background: scene, one colour, or a gradient from top to bottom (sRGB, 0 to 1)")
@@ -172,6 +174,7 @@ Result<void> apply(const LookOptions& options, gi::Look& look) {
         LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
         look.unlit.shading = static_cast<gi::Shading>(shading);
     }
+    look.single_discs |= options.single_discs;
     look.legend |= options.legend;
     look.axes |= options.axes;
     look.scale_bar |= options.scale_bar;

@@ -16,7 +16,8 @@ struct LookOptions {
     std::optional<double> point_size, point_pixels, shading_strength;
     std::vector<std::string> clip_boxes, clip_planes, clip_outside;
     std::vector<int> hidden_classes;
-    bool reversed = false, clip_casts = false, legend = false, axes = false, scale_bar = false;
+    bool reversed = false, clip_casts = false, single_discs = false, legend = false, axes = false,
+         scale_bar = false;
 };
 
 /// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size
