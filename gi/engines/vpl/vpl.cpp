@@ -13,6 +13,7 @@
 #include "gi/engines/vpl/seeding/light_gbuffers.h"
 #include "gi/engines/vpl/shading/shading.h"
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/engines/vpl/view_importance/view_importance.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
@@ -28,6 +29,7 @@ struct Basis {
     SceneRevisions scene;
     LightCutRevisions cuts;
     uint64_t index = UINT64_MAX;  ///< of the frame
+    CameraView camera{};          ///< for which VPLs were chosen, if they are chosen by the view
     bool operator==(const Basis&) const = default;
 };
 
@@ -40,9 +42,10 @@ struct Bounce {
 // Bytes of maps that are kept from frame to frame: sixteen bounces of `interactive`, one of `high`.
 constexpr size_t kMostKept = size_t{64} << 20;
 
-constexpr const OptionInfo* kOptions[] = {
-    &kBounces.info,         &kOnlyBounce.info,   &kVpls.info,          &kInterleave.info, &kAtlas.info,
-    &kLightResolution.info, &kLightSamples.info, &kBestCandidate.info, &kReuse.info,      &kSeed.info};
+constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,    &kVpls.info,
+                                          &kInterleave.info,   &kAtlas.info,         &kLightResolution.info,
+                                          &kLightSamples.info, &kBestCandidate.info, &kViewVpls.info,
+                                          &kReuse.info,        &kSeed.info};
 constexpr EngineInfo kInfo{
     .name = "vpl", .description = "virtual point lights with imperfect shadow maps", .options = kOptions};
 
@@ -59,10 +62,14 @@ class VplEngine : public Engine {
  private:
     Result<void> add_direct(Frame& frame);
     Result<void> light_indirectly(Frame& frame);
+    Result<void> seed(Frame& frame, Seeds& target);
+    Basis basis_of(const Frame& frame) const;
 
     Buffer materials_;
     Sky sky_;
     LightGBuffers light_gbuffers_;
+    Seeds candidates_;
+    ViewImportance view_importance_;
     std::vector<Bounce> bounces_;
     ShadowMaps maps_;       ///< borrows the atlas of a bounce while it is drawn or read
     Basis basis_;           ///< what bounces_ were made from
@@ -109,6 +116,33 @@ void VplEngine::update(const Changes& changes) {
     cuts_ = changes.light_cuts;
 }
 
+/// Returns what the VPLs of a frame are made from. A moving camera keeps the VPLs that were chosen for a view
+/// close to its own: new ones in every frame would flicker.
+Basis VplEngine::basis_of(const Frame& frame) const {
+    Basis basis{scene_, cuts_, frame.index, {}};
+    if (!frame.settings[kViewVpls]) return basis;
+    const bool serves = frame.moving && view_importance_.serves(frame.camera);
+    basis.camera = serves ? basis_.camera : frame.camera;
+    return basis;
+}
+
+/// Places the VPLs of the first bounce. The casters must have been decoded.
+Result<void> VplEngine::seed(Frame& frame, Seeds& target) {
+    const EngineSettings& s = frame.settings;
+    const uint64_t seed = mix64(s[kSeed], frame.index);
+    const uint32_t count = s[kViewVpls] ? candidates_for(s[kVpls]) : s[kVpls];
+    Seeds& placed = s[kViewVpls] ? candidates_ : target;
+    LUCARNE_TRY(pass(frame, "VPL seeding",
+                     [&] { return light_gbuffers_.seed(frame, materials_, count, seed, placed); }));
+    if (!s[kViewVpls]) return {};
+    LUCARNE_TRY(view_importance_.measure(frame, materials_, seed, candidates_, count, maps_));
+    target.host_lights =
+        draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls], seed);
+    LUCARNE_TRY(frame.gl.device.reserve(target.lights, s[kVpls] * sizeof(VplLight), "virtual point lights"));
+    target.lights.upload_all(target.host_lights);
+    return {};
+}
+
 /// Sets frame.gl.radiance to the light of the requested bounces. It places VPLs on the surfaces that the
 /// lights see, draws their shadow maps and shades interleaved pixels, then redistributes the VPLs and repeats
 /// this for the next bounce. VPLs and maps are kept while nothing but the camera moves.
@@ -117,9 +151,9 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s[kAtlas], s[kVpls]));
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
-    const Basis basis{scene_, cuts_, frame.index};
+    const Basis basis = basis_of(frame);
     const bool held = keep && basis == basis_;
-    basis_ = {};  // invalid until everything is drawn
+    basis_.index = UINT64_MAX;  // invalid until everything is drawn
     // Each averaged frame blurs less, so that the average converges.
     const float shrink = 1.0f / static_cast<float>(frame.index + 1);
     bounces_.resize(std::max<size_t>(bounces_.size(), last));
@@ -127,12 +161,9 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     redistribution_.footprint_variance = footprint_variance(frame.index);
     LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
     if (!held) {
-        LUCARNE_TRY(pass(frame, "VPL seeding", [&] {
-            return light_gbuffers_.seed(frame, materials_, s[kVpls], mix64(s[kSeed], frame.index),
-                                        bounces_[0].seeds);
-        }));
         LUCARNE_TRY(pass(frame, "ISM casters",
                          [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
+        LUCARNE_TRY(seed(frame, bounces_[0].seeds));
     }
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
         Seeds& seeds = bounces_[bounce - 1].seeds;

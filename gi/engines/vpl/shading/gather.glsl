@@ -65,14 +65,26 @@ float disc_form_factor(vec3 normal, vec3 light_normal, vec3 offset, float r2) {
 
 // What an unoccluded VPL sends to a receiver. Each VPL is a disc of its footprint A: it sends what its surface would
 // send to a near receiver, where a point would be unbounded. Lobes: lobes.glsl.
-//
-// Points of one plane do not light each other, whichever side they face. Positions are rounded, and the G-buffer lets
-// the rim of a disc stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a
-// roof would light the ceiling under it.
 struct Arriving {
     Gathered light;
     bool any;
 };
+
+// Returns the share, from 0 to 1, of the light between two points that counts, because they may belong to one surface.
+// `heights` are those of each over the plane of the other, m; `cosine` is that between their normals. Points of one
+// plane do not light each other, whichever side they face: positions are rounded, and the G-buffer lets the rim of a disc
+// stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a roof would light the
+// ceiling under it. Neither do points that see each other at very low angles: on a scanned floor noise tilts normals by
+// some degrees, and two points that happen to lean toward each other would exchange light over many metres (a loft by
+// daylight became 40 % too bright in this way). Where both face each other they may also be the two sides of a thin sheet,
+// such as a ceiling in the sun: only points that stand clear of each other count.
+float separate_share(vec2 heights, float distance_m, float radius, float cosine) {
+    float opposite = clamp(-cosine, 0.0, 1.0);
+    float clearance = min(heights.x, heights.y) / radius;
+    float rise = max(heights.x, heights.y) / distance_m;  // sine of the larger angle over the horizon
+    return clamp((clearance - mix(kRimPush, 2.0, opposite)) / mix(0.6 - kRimPush, 2.0, opposite), 0.0, 1.0) *
+           clamp((rise - mix(0.035, 0.1, opposite)) / mix(0.07, 0.1, opposite), 0.0, 1.0);
+}
 
 // Returns cos cos' / d^2 of two points, 1/m^2; `offset` leads from the VPL to the receiver. Returns 0 if they lie in
 // one plane, and for dead VPLs.
@@ -121,8 +133,9 @@ Arriving from_vpl(uint i, Receiver receiver) {
     if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also for dead VPLs
     result.any = true;
     float r2 = max(position.w / kPi, 1e-12);
-    float clear = clamp((min(cosines, light_cosine) / receiver.radius - kRimPush) / (0.6 - kRimPush), 0.0, 1.0);
-    float form_factor = clear * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
+    float share = separate_share(vec2(cosines, light_cosine), length(offset), receiver.radius,
+                                 dot(light_normal.xyz, receiver.normal));
+    float form_factor = share * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
 #ifdef LUCARNE_GLOSSY
     result.light = with_lobes(i, receiver, light_normal.xyz, offset, form_factor);
 #else

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gi/engines/vpl/redistribution/redistribution.h"
+#include "gi/engines/vpl/seeding/seeding.h"
+#include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/frame.h"
+#include "gi/gl_frame.h"
+
+namespace lucarne::gi::vpl {
+
+/// Returns how many VPLs are drawn, of which `vpls` are kept: as many as take little time to measure.
+constexpr uint32_t candidates_for(uint32_t vpls) {
+    return vpls * std::clamp(32768u / vpls, 8u, 128u);
+}
+
+/// Chooses those of many candidates for VPLs whose light reaches the picture. Sun and sky light roofs and
+/// outer walls; of the VPLs there a camera in a room sees nothing. So many more VPLs are drawn than needed,
+/// and each is kept with a probability in proportion to what it adds to a few points that the camera sees, by
+/// one bounce and by two (Georgiev & Slusallek 2010, "Simple and robust iterative importance sampling of
+/// virtual point lights"). The sum stays unbiased.
+class ViewImportance {
+ public:
+    /// Measures the importance of `count` candidates. `maps` has decoded casters and lends its scratch
+    /// buffers. Errors: no device memory, a shader that fails.
+    Result<void> measure(Frame& frame, const Buffer& materials, uint64_t seed, const Seeds& candidates,
+                         uint32_t count, ShadowMaps& maps);
+    /// The importance of each candidate.
+    const std::vector<float>& importance() const { return importance_; }
+    /// Returns whether a moving camera still sees about what it saw when the importance was measured.
+    bool serves(const CameraView& camera) const;
+
+ private:
+    Result<void> add(Frame& frame, const Seeds& importons, const Seeds& candidates, uint32_t count,
+                     bool sources, ShadowMaps& maps);
+
+    Seeds importons_, second_;
+    Redistribution redistribution_;
+    Buffer sums_, atlas_;
+    std::vector<float> importance_;
+    CameraView camera_{};
+    float distance_ = 0;  ///< from the camera to what it sees, m
+};
+
+/// Draws `count` of the candidates with probabilities in proportion to their light times their importance,
+/// and scales flux and footprint to match. One in ten is drawn by its light alone, so that light which no
+/// importon sees is not lost. The order of the candidates is kept. `seed` chooses the offset.
+std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std::span<const float> importance,
+                                      uint32_t count, uint64_t seed);
+
+}  // namespace lucarne::gi::vpl
