@@ -10,7 +10,8 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr int kCells = 32;  // along the cube, at the finest: four times the spacing of a node's samples
+// Along the cube, at the finest: a few times the spacing of the node's samples.
+constexpr int kCells = 32;
 
 constexpr int kBlackCells = 16;
 /// Where photographs end, their last pixels are blends with black. Darker points than this, as a share of

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostStations = kMostStationColours;
 constexpr size_t kMostRatios = 262144;  // 2.5 MiB
-constexpr uint32_t kCells = 32;         // along a node's cube: four times the spacing of its samples
+constexpr uint32_t kCells = 16;         // along a node's cube: eight times the spacing of its samples
 constexpr uint32_t kLeastPoints = 3;    // of a station in a cell
 constexpr double kClipped = 250.0 / 255;
 constexpr float kDark = 0.002f;       // linear; darker ratios consist of rounding and noise
@@ -109,8 +109,8 @@ void ColourSurvey::compare_cells(const Cube& cube, const NodeData& data) {
         sorted_.push_back({cell << 10 | seen_[i].station, i});
     }
     static_assert(kMostStations <= 1 << 10);
-    sort_by_code(sorted_, 10 + 15);
-    static_assert(kCells == 1 << 5);
+    sort_by_code(sorted_, 10 + 12);
+    static_assert(kCells == 1 << 4);
     for (size_t at = 0; at < sorted_.size();) {
         const uint64_t cell = sorted_[at].code >> 10;
         patches_.clear();

@@ -13,7 +13,7 @@ using test::ComputedSource;
 using test::TempFolder;
 using namespace testing;
 
-io::SyntheticOptions two_stations(uint64_t points = 200'000) {
+io::SyntheticOptions two_stations(uint64_t points = 100'000) {
     io::SyntheticOptions options;
     options.points = points;
     options.stations = 2;
@@ -98,7 +98,7 @@ TEST(ColourSurvey, TheTwoSidesOfAThinWallAreNotCompared) {
         io::Schema schema;
         schema.add("normal", io::ScalarType::f32, 3);
         schema.add("color", io::ScalarType::u8, 3);
-        return ComputedSource(schema, 60'000, [=](uint64_t index, std::byte* record) {
+        return ComputedSource(schema, 30'000, [=](uint64_t index, std::byte* record) {
             Random random(7, index);
             const double x = random.uniform();
             io::store(record, glm::dvec3(x, random.uniform(), up * 0.001));
@@ -117,7 +117,7 @@ TEST(ColourSurvey, ScansOfDifferentColourWidthsAreComparedInLight) {
     const auto narrow = strip(0, 1, glm::dvec3(1));
     io::Schema schema;
     schema.add("color", io::ScalarType::u16, 3);
-    ComputedSource wide(schema, 60'000, [](uint64_t index, std::byte* record) {
+    ComputedSource wide(schema, 30'000, [](uint64_t index, std::byte* record) {
         Random random(77, index);
         const double x = random.uniform(), y = random.uniform();
         io::store(record, glm::dvec3(x, y, 0));
@@ -156,7 +156,7 @@ TEST(ColourSurvey, HostileColoursAreNoStations) {
         [](uint64_t i) { return static_cast<float>(i % 100) / 100; }};
     int number = 0;
     for (const auto& value : values)
-        for (const uint64_t points : {uint64_t{1}, uint64_t{70'000}})
+        for (const uint64_t points : {uint64_t{1}, uint64_t{20'000}})
             for (const bool one_place : {false, true}) {
                 const auto scan = computed(points, value, one_place);
                 const auto cache = converted({&scan}, folder / ("a" + std::to_string(number++) + ".luc"), 2,
@@ -168,7 +168,7 @@ TEST(ColourSurvey, HostileColoursAreNoStations) {
 
 TEST(ColourSurvey, TheSameBytesForAnyNumberOfThreads) {
     const TempFolder folder;
-    const Recoloured scan(two_stations(400'000), exposed({0.9, 0.7, 0.35}));
+    const Recoloured scan(two_stations(150'000), exposed({0.9, 0.7, 0.35}));
     ASSERT_TRUE(converted({&scan}, folder / "one.luc", 1));
     ASSERT_TRUE(converted({&scan}, folder / "many.luc", 5));
     EXPECT_EQ(bytes_of(folder / "one.luc"), bytes_of(folder / "many.luc"));
@@ -216,7 +216,7 @@ template <class Level>
 ComputedSource painted(const Level& level) {
     io::Schema schema;
     schema.add("color", io::ScalarType::u8, 3);
-    return {schema, 100'000, [level](uint64_t index, std::byte* record) {
+    return {schema, 40'000, [level](uint64_t index, std::byte* record) {
                 Random random(5, index);
                 const double x = random.uniform(), y = random.uniform();
                 io::store(record, glm::dvec3(x, y, 0));

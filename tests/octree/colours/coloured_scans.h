@@ -75,7 +75,7 @@ class Recoloured final : public io::PointSource {
 };
 
 /// A rectangle of the plane z = 0, x from `low` to `high`, y from 0 to 1, with colours u8.
-inline test::ComputedSource strip(double low, double high, const glm::dvec3& gain, uint64_t points = 60'000) {
+inline test::ComputedSource strip(double low, double high, const glm::dvec3& gain, uint64_t points = 30'000) {
     io::Schema schema;
     schema.add("color", io::ScalarType::u8, 3);
     return {schema, points, [=](uint64_t index, std::byte* record) {
