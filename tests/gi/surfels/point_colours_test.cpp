@@ -80,11 +80,11 @@ TEST(PointColours, NeverPhotographedPointsGetTheColourAroundThem) {
     node.add({2, 2, 2}, {0, 0, 0});
     node.add({2.1, 2, 2}, {200, 100, 50});
     node.add({14, 2, 2}, {0, 0, 0});
-    node.add({14.1, 2, 2}, {50, 100, 200}, 2);
+    node.add({14.1, 2, 2}, {50, 100, 150}, 2);
     node.add({8, 15, 15}, {0, 0, 0}, 2);
     const auto colours = node.colours();
     expect_near(colours[0], colours[1]);
-    expect_near(colours[2], 2.0f * linear(50, 100, 200));
+    expect_near(colours[2], 2.0f * linear(50, 100, 150));
     EXPECT_EQ(colours[4], glm::vec3(0)) << "station 2 has seen black";
     EXPECT_EQ(node.colours(false)[0], glm::vec3(0));
 }
