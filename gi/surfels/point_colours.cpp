@@ -18,6 +18,20 @@ constexpr int kBlackCells = 16;
 /// white, that are near points without a photograph count as such.
 constexpr double kBlend = 16.5 / 255;
 
+bool all_zero(const std::byte* at, size_t bytes) {
+    return std::all_of(at, at + bytes, [](std::byte b) { return b == std::byte{0}; });
+}
+
+/// sRGB to linear, exact to a thousandth: for means.
+float nearly_linear(double srgb) {
+    static const auto kTable = [] {
+        std::array<float, 1024> table{};
+        for (size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(static_cast<float>(i) / 1023);
+        return table;
+    }();
+    return srgb >= 0 && srgb <= 1 ? kTable[static_cast<size_t>(srgb * 1023 + 0.5)] : 0.0f;
+}
+
 size_t index_of(const glm::ivec3& cell, int cells) {
     return static_cast<size_t>((cell.z * cells + cell.y) * cells + cell.x);
 }
@@ -39,22 +53,23 @@ PointColours::PointColours(const octree::SourceHeader& header, const octree::Cub
     const auto* color = header.schema.find(io::names::color);
     if (!color || color->components != 3) return;
     const auto fills = [](const octree::StationColour& colour) { return colour.unphotographed.has_value(); };
+    const bool fill = balanced && std::ranges::any_of(header.station_colours, fills);
     // Scans without a camera often have colour fields that were never filled.
-    bool filled = balanced && std::ranges::any_of(header.station_colours, fills);
+    bool filled = fill;
     for (size_t at = color->offset; !filled && at < data.records.size(); at += header.schema.stride)
-        filled = std::any_of(&data.records[at], &data.records[at] + color->bytes(),
-                             [](std::byte b) { return b != std::byte{0}; });
+        filled = !all_zero(&data.records[at], color->bytes());
     if (!filled) return;
     color_ = color;
-    if (balanced && std::ranges::any_of(header.station_colours, fills)) mark_black_cells();
+    if (fill) mark_black_cells();
 }
 
 void PointColours::mark_black_cells() {
     const size_t stride = header_.schema.stride;
     for (size_t at = 0; at + stride <= data_.records.size(); at += stride) {
         const std::byte* record = &data_.records[at];
+        if (!all_zero(record + color_->offset, color_->bytes())) continue;
         const octree::StationColour* colour = station_of(record).colour;
-        if (!colour || !colour->unphotographed || raw(record) != glm::dvec3(0.0)) continue;
+        if (!colour || !colour->unphotographed) continue;
         black_.resize(size_t{kBlackCells} * kBlackCells * kBlackCells);
         black_[cell_of(io::position_of(header_.schema, record), cube_, kBlackCells)] = true;
     }
@@ -139,10 +154,8 @@ void PointColours::sum_up_cells() {
         const glm::dvec3 position = io::position_of(header_.schema, record);
         if (never_photographed(colour, position, station)) continue;
         glm::vec4 sum(0, 0, 0, 1);
-        for (int c = 0; c < 3; ++c) {
-            const auto srgb = static_cast<float>(balanced(colour, station)[c]);
-            sum[c] = srgb >= 0 && srgb <= 1 ? srgb_to_linear(srgb) : 0.0f;
-        }
+        const glm::dvec3 srgb = balanced(colour, station);
+        for (int c = 0; c < 3; ++c) sum[c] = nearly_linear(srgb[c]);
         cells_[0][cell_of(position, cube_, kCells)] += sum;
     }
     for (int cells = kCells / 2; cells > 0; cells /= 2) {

@@ -164,7 +164,8 @@ TEST_F(LightCommand, AnEngineDiffersFromItselfNowhere) {
 TEST_F(LightCommand, MistakesAreRefusedInOneLine) {
     for (const char* mistake : {"--tone-map sepia", "--luminance 5:1", "--luminance 1", "--beside none-such",
                                 "--border 0.5", "--beside direct --beside-show both"}) {
-        const Outcome ran = test::lucarne("render " + at(cache) + " -o " + at("none.png") + " " + mistake);
+        const Outcome ran =
+            test::lucarne("render " + at("scan.luc") + " -o " + at("none.png") + " " + mistake);
         EXPECT_EQ(ran.code, 2) << mistake;
         EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
     }
