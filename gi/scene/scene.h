@@ -66,6 +66,9 @@ struct SceneMaterial {
 struct Albedo {
     double scale = 1;    ///< 0 to 10; the albedo stays within 0 to .95
     double flatten = 0;  ///< 0 to 1: how much of the light at the time of the scan is divided out
+    /// Whether stations of different exposure are balanced, and points that were never photographed get the
+    /// colour of those around them.
+    bool balance = true;
 
     bool operator==(const Albedo&) const = default;
 };

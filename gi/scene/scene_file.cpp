@@ -114,6 +114,7 @@ Result<Albedo> read_albedo(JsonObject object) {
     Albedo albedo;
     LUCARNE_ASSIGN(albedo.scale, object.number("scale", kScale, 1));
     LUCARNE_ASSIGN(albedo.flatten, object.number("flatten", kShare, 0));
+    LUCARNE_ASSIGN(albedo.balance, object.boolean("balance", true));
     LUCARNE_TRY(object.finish());
     return albedo;
 }

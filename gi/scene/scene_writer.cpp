@@ -165,6 +165,7 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder)
     Json albedo = Json::object();
     put(albedo, "scale", scene.albedo.scale, 1.0);
     put(albedo, "flatten", scene.albedo.flatten, 0.0);
+    put(albedo, "balance", scene.albedo.balance, true);
     put_object("albedo", albedo);
     put_object("look", write_look(scene.look));
     if (scene.comparison) written["comparison"] = write_comparison(*scene.comparison);

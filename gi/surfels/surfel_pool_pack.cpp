@@ -8,6 +8,7 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
+#include "gi/surfels/point_colours.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/point_normals.h"
@@ -17,42 +18,24 @@ namespace {
 
 using io::Attribute;
 
-glm::dvec3 vector_at(const Attribute& attribute, const std::byte* record) {
-    const std::byte* at = record + attribute.offset;
-    const size_t step = io::scalar_bytes(attribute.type);
-    return {io::scalar_at(attribute.type, at), io::scalar_at(attribute.type, at + step),
-            io::scalar_at(attribute.type, at + 2 * step)};
-}
-
 /// Packs records of one layout. Attributes of an unexpected shape count as absent.
 class Packer {
  public:
-    Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const Scene& scene,
-           uint32_t first_scan, const BakedLight* baked)
+    Packer(const octree::SourceHeader& header, const octree::NodeInfo& node, const octree::NodeData& data,
+           const Scene& scene, uint32_t first_scan, const BakedLight* baked)
         : header_(header),
           scene_(scene),
           cube_(header.root.of(node.key)),
           normals_(header.schema),
           colouring_(header.schema, scene.look, first_scan),
-          baked_(scene.albedo.flatten > 0 ? baked : nullptr) {
-        color_ = find(io::names::color, 3);
+          baked_(scene.albedo.flatten > 0 ? baked : nullptr),
+          colours_(header, cube_, data, scene.albedo.balance) {
         area_ = find(io::names::area, 1);
         classification_ = find(io::names::classification, 1);
         scan_ = find(io::names::scan, 1);
     }
 
-    /// Drops the colours of a node in which every colour is zero: scans without a camera often have colour
-    /// fields that were never filled.
-    void drop_empty_colours(const octree::NodeData& data) {
-        if (!color_) return;
-        const size_t stride = header_.schema.stride;
-        for (size_t at = color_->offset; at < data.records.size(); at += stride)
-            for (size_t i = 0; i < color_->bytes(); ++i)
-                if (data.records[at + i] != std::byte{0}) return;
-        color_ = nullptr;
-    }
-
-    PackedSurfel pack(const std::byte* record) const {
+    PackedSurfel pack(const std::byte* record) {
         const glm::dvec3 position = io::position_of(header_.schema, record);
         const uint32_t scan = scan_ ? static_cast<uint32_t>(scalar(scan_, record)) : 0;
         const glm::uvec3 at(fraction(position.x - cube_.min.x), fraction(position.y - cube_.min.y),
@@ -64,7 +47,7 @@ class Packer {
         surfel.b = at.z | (hidden ? kStrayArea : area(record)) << 16 | material(position, record, scan) << 24;
         const glm::vec3 n = hidden ? glm::vec3(0.0f) : normals_.of(record);
         const auto shown = colouring_.colour(record, position.z, scan, n);
-        surfel.d = shown ? *shown : albedo(position, record, scan);
+        surfel.d = shown ? *shown : albedo(position, record);
         const bool has_normal = n != glm::vec3(0.0f);
         surfel.c = has_normal ? encode_octahedral(n) : 0u;
         if (has_normal) surfel.d |= kSurfelHasNormal;
@@ -116,19 +99,12 @@ class Packer {
         return 0;
     }
 
-    /// Returns the value of full white in a scan's colours.
-    double white(uint32_t scan) const {
-        if (scan < header_.scans.size()) return io::color_white(header_.scans[scan].color_bits);
-        const io::ScalarType type = color_->type;
-        return io::color_white(type == io::ScalarType::u8 ? 8 : type == io::ScalarType::u16 ? 16 : 0);
-    }
-
-    uint32_t albedo(const glm::dvec3& position, const std::byte* record, uint32_t scan) const {
+    uint32_t albedo(const glm::dvec3& position, const std::byte* record) {
         constexpr double kDefault = 0.5;            // of a scan without colour, linear
         constexpr double kLargestFlattened = 0.95;  // as brdf.h caps it
-        glm::dvec3 srgb(linear_to_srgb(static_cast<float>(kDefault)));
-        if (color_) srgb = vector_at(*color_, record) / white(scan);
-        if (color_ && baked_) {
+        const auto own = colours_.of(record, position);
+        glm::dvec3 srgb = own.value_or(glm::dvec3(linear_to_srgb(static_cast<float>(kDefault))));
+        if (own && baked_) {
             const double factor = baked_->factor(position, scene_.albedo.flatten);
             for (int i = 0; i < 3; ++i) {
                 const double linear = factor * srgb_to_linear(static_cast<float>(srgb[i]));
@@ -144,7 +120,8 @@ class Packer {
     const octree::PointNormals normals_;
     const Colouring colouring_;
     const BakedLight* const baked_;
-    const Attribute *color_, *area_, *classification_, *scan_;
+    PointColours colours_;
+    const Attribute *area_, *classification_, *scan_;
 };
 
 /// The shares of a node add up to its surface. Where a hostile file claims more than a node can hold, all
@@ -169,8 +146,7 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
     const size_t stride = header.schema.stride;
     assert(data.records.size() % stride == 0);
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
-    Packer packer(header, node, scene, first_scan, baked);
-    packer.drop_empty_colours(data);
+    Packer packer(header, node, data, scene, first_scan, baked);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
     limit_areas(surfels);
     return surfels;

@@ -113,13 +113,7 @@ Result<void> CacheFile::read_directory() {
             return damaged(*file_, fmt::format("node {} has the unknown layout {}", i, entry.layout));
         payloads_.push_back({entry.payload_offset, entry.checksum, entry.codec, entry.layout});
     }
-    layouts_.push_back({header_.schema.stride, std::make_unique<codec::DecoderPool>(header_.schema), {}});
-    for (const auto& layout : header_.layouts) {
-        if (!RecordMap::fits(layout, header_.schema))
-            return damaged(*file_, "it has a layout that does not fit into its schema");
-        layouts_.push_back(
-            {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header_.schema)});
-    }
+    LUCARNE_ASSIGN(reader_, PayloadReader::create(file_->path().string(), header_));
     return {};
 }
 
@@ -161,7 +155,7 @@ Result<void> CacheFile::check_payloads() {
     ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
     for (size_t i = 0; i < nodes_.size(); ++i) {
         const uint64_t bytes = nodes_[i].payload_bytes;
-        const uint64_t records = uint64_t{nodes_[i].count} * layouts_[payloads_[i].layout].stride;
+        const uint64_t records = uint64_t{nodes_[i].count} * reader_.stride(payloads_[i].layout);
         const bool fits = payloads_[i].codec == format::kCodecRaw
                               ? bytes == records
                               : bytes < records && records <= codec::kMostRecordBytes;
@@ -188,14 +182,31 @@ Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeI
     return data;
 }
 
-Result<NodeData> CacheFile::load(uint32_t node) const {
-    const Layout& layout = layouts_[payloads_[node].layout];
-    LUCARNE_ASSIGN(NodeData data, load_payload(*file_, node, nodes_[node], payloads_[node], *layout.decoders,
-                                               layout.stride));
+Result<PayloadReader> PayloadReader::create(const std::string& name, const SourceHeader& header) {
+    PayloadReader reader;
+    reader.layouts_.push_back(
+        {header.schema.stride, std::make_unique<codec::DecoderPool>(header.schema), {}});
+    for (const auto& layout : header.layouts) {
+        if (!RecordMap::fits(layout, header.schema))
+            return rejected(name, "it has a layout that does not fit into its schema", kAgain);
+        reader.layouts_.push_back(
+            {layout.stride, std::make_unique<codec::DecoderPool>(layout), RecordMap(layout, header.schema)});
+    }
+    return reader;
+}
+
+Result<NodeData> PayloadReader::load(const ByteSource& file, uint32_t node, const NodeInfo& info,
+                                     const StoredPayload& payload) const {
+    const Layout& layout = layouts_[payload.layout];
+    LUCARNE_ASSIGN(NodeData data, load_payload(file, node, info, payload, *layout.decoders, layout.stride));
     if (!layout.to_schema) return data;
     NodeData converted{data.count, {}};
     layout.to_schema->convert(data.records.data(), data.count, converted.records);
     return converted;
+}
+
+Result<NodeData> CacheFile::load(uint32_t node) const {
+    return reader_.load(*file_, node, nodes_[node], payloads_[node]);
 }
 
 Entry CacheFile::entry(uint32_t node) const {

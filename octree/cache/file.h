@@ -28,6 +28,27 @@ struct StoredPayload {
 Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
 
+/// Loads payloads of any of a cache's layouts as records of its schema. Thread-safe.
+class PayloadReader {
+ public:
+    /// Errors: a layout that does not fit into the schema. `name` is the cache's name in errors.
+    static Result<PayloadReader> create(const std::string& name, const SourceHeader& header);
+
+    size_t layouts() const { return layouts_.size(); }  ///< with the schema itself, which is the first
+    uint32_t stride(uint8_t layout) const { return layouts_[layout].stride; }
+    /// Loads a node; see load_payload.
+    Result<NodeData> load(const ByteSource& file, uint32_t node, const NodeInfo& info,
+                          const StoredPayload& payload) const;
+
+ private:
+    struct Layout {
+        uint32_t stride = 0;
+        std::unique_ptr<codec::DecoderPool> decoders;
+        std::optional<RecordMap> to_schema;  ///< empty for the cache's own schema
+    };
+    std::vector<Layout> layouts_;
+};
+
 /// An open cache. Its directory is in memory, its points are in the file.
 class CacheFile final : public NodeSource {
  public:
@@ -55,13 +76,7 @@ class CacheFile final : public NodeSource {
     SourceHeader header_;
     std::vector<NodeInfo> nodes_;
     std::vector<StoredPayload> payloads_;
-    /// A schema in which payloads are stored.
-    struct Layout {
-        uint32_t stride = 0;
-        std::unique_ptr<codec::DecoderPool> decoders;
-        std::optional<RecordMap> to_schema;  ///< empty for the cache's own schema
-    };
-    std::vector<Layout> layouts_;
+    PayloadReader reader_;
 };
 
 }  // namespace lucarne::octree

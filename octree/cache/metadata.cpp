@@ -134,6 +134,39 @@ io::ScanInfo scan_of(const json& value) {
     return scan;
 }
 
+json colour_json(const StationColour& colour) {
+    json result{{"scan", colour.scan}, {"gain", vector_json(colour.gain)}};
+    if (colour.station) result["station"] = *colour.station;
+    if (colour.unphotographed) result["unphotographed"] = vector_json(*colour.unphotographed);
+    return result;
+}
+
+uint32_t index_of(const json& value, uint64_t end) {
+    require(value.is_number_unsigned() && value.get<uint64_t>() < end, "an index that is too large");
+    return value.get<uint32_t>();
+}
+
+std::vector<StationColour> colours_of(const json& value, size_t scans) {
+    require(value.is_array() && value.size() <= kMostStationColours, "a list of colours is expected");
+    std::vector<StationColour> colours;
+    for (const auto& item : value) {
+        StationColour colour{.scan = index_of(item.at("scan"), scans)};
+        if (item.contains("station")) colour.station = index_of(item.at("station"), UINT16_MAX + 1);
+        colour.gain = vector_of(item.at("gain"));
+        if (item.contains("unphotographed")) colour.unphotographed = vector_of(item.at("unphotographed"));
+        for (int c = 0; c < 3; ++c) {
+            require(colour.gain[c] >= 1 / kMostGain && colour.gain[c] <= kMostGain, "an impossible gain");
+            require(!colour.unphotographed ||
+                        ((*colour.unphotographed)[c] >= 0 && (*colour.unphotographed)[c] <= 1),
+                    "an impossible colour");
+        }
+        const auto key = [](const StationColour& c) { return std::pair(c.scan, c.station); };
+        require(colours.empty() || key(colours.back()) < key(colour), "colours in a wrong order");
+        colours.push_back(colour);
+    }
+    return colours;
+}
+
 json root_json(const Cube& root) {
     json result{{"min", vector_json(root.min)}, {"size", root.size}};
     if (root.doublings)
@@ -185,6 +218,7 @@ std::string metadata_text(const SourceHeader& header) {
               {"scans", std::move(scans)}};
     if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
+    for (const auto& colour : header.station_colours) root["station_colours"].push_back(colour_json(colour));
     // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
 }
@@ -212,6 +246,8 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         require(header.metres_per_unit > 0, "a unit whose length is not positive");
         header.options = root.value("options", std::string());
         for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
+        if (root.contains("station_colours"))
+            header.station_colours = colours_of(root.at("station_colours"), header.scans.size());
         return header;
     } catch (const std::exception& error) {
         return rejected(file, fmt::format("its metadata is damaged ({})", error.what()),

@@ -8,6 +8,7 @@
 namespace lucarne::octree {
 
 inline constexpr size_t kMostLayouts = 255;
+inline constexpr size_t kMostStationColours = 1024;
 
 /// Writes a cache's metadata as JSON (octree/FORMAT.md). Doubles are written so that they read back bit by
 /// bit.

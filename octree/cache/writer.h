@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,11 @@ class CacheWriter {
     /// Appends a payload and returns its offset.
     Result<uint64_t> append(std::span<const std::byte> payload);
     Result<void> add(const format::Entry& entry);
+    /// Takes a node's cube and its points in the new state's schema. Returns whether it wants more nodes.
+    using NodeVisit = std::function<bool(const Cube& cube, const NodeData& data)>;
+    /// Visits the coarsest of the nodes added so far: the root, further whole levels that have `most` points
+    /// at the most, and of the next level as many nodes, evenly spaced. `header` is that of the new state.
+    Result<void> visit_coarsest(const SourceHeader& header, uint64_t most, const NodeVisit& visit);
     /// Writes directory, metadata and superblocks, syncs, and gives a new file its name.
     Result<void> finish(const SourceHeader& header);
     /// Call when an update has failed: cuts off what it wrote, unless the switch may have happened.
@@ -45,6 +51,9 @@ class CacheWriter {
     Result<void> read_at(uint64_t offset, std::span<std::byte> out) const;
     Result<void> commit(format::Superblock block);
     Result<void> flush_entries();
+    /// Visits the entries in the order of add().
+    Result<void> each_entry(const std::function<void(const format::Entry&)>& visit);
+    Result<std::vector<format::Entry>> coarsest(uint64_t most);
     Result<uint64_t> write_directory();
 
     std::optional<OutputFile> output_;  ///< of a new cache...

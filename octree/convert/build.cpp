@@ -13,6 +13,7 @@
 #include "io/core/options.h"
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
+#include "octree/colours/colour_survey.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/identity.h"
 #include "octree/convert/nodes/assembler.h"
@@ -220,11 +221,11 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     }));
     report.stages.back().cpu_seconds -= encoding;
     report.stages.push_back({"encode", 0, encoding});
-    LUCARNE_TRY(timed(report, "write", [&] {
-        SourceHeader header = bare;
-        header.schema = loader.schema();
-        return writer.finish(header);
-    }));
+    SourceHeader header = bare;
+    header.schema = loader.schema();
+    LUCARNE_ASSIGN(header.station_colours,
+                   timed(report, "colours", [&] { return survey_colours(writer, header); }));
+    LUCARNE_TRY(timed(report, "write", [&] { return writer.finish(header); }));
     work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;

@@ -8,6 +8,7 @@
 
 #include "io/core/parallel.h"
 #include "io/core/progress.h"
+#include "octree/colours/colour_survey.h"
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/in_order.h"
 #include "octree/edit/edit_plan.h"
@@ -276,7 +277,12 @@ Result<EditReport> Rewrite::run(CacheWriter& writer) {
     LUCARNE_TRY(deal());
     LUCARNE_TRY(find_surface());
     LUCARNE_TRY(write_nodes(writer));
-    LUCARNE_TRY(writer.finish(change_.header));
+    SourceHeader header = change_.header;
+    // Points that are deleted leave the others' colours as they were; new ones are compared with the old.
+    if (change_.added) {
+        LUCARNE_ASSIGN(header.station_colours, survey_colours(writer, header));
+    }
+    LUCARNE_TRY(writer.finish(header));
     report_.points = change_.header.points;
     report_.nodes = writer.nodes();
     report_.bytes = writer.bytes();

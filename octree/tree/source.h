@@ -8,6 +8,7 @@
 
 #include "io/points.h"
 #include "octree/tree/key.h"
+#include "octree/tree/station_colour.h"
 
 namespace lucarne::octree {
 
@@ -53,6 +54,7 @@ struct SourceHeader {
     uint64_t points = 0;
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
+    std::vector<StationColour> station_colours;  ///< sorted by scan and station
     std::string options;  ///< how the scans were read where it differs from the default: io::options_text
 };
 

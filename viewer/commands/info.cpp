@@ -58,18 +58,26 @@ Json describe_octree(const octree::NodeSource& cache, const char* kind) {
                          {"epsg", scan.epsg ? Json(scan.epsg) : Json()},
                          {"stations", scan.stations.size()},
                          {"left_out", losses_json(scan.losses)}});
-    return {{"kind", kind},
-            {"points", header.points},
-            {"nodes", cache.nodes().size()},
-            {"levels", std::move(levels)},
-            {"min", vector_json(header.min)},
-            {"max", vector_json(header.max)},
-            {"root_size", header.root.size},
-            {"bytes_per_point", header.schema.stride},
-            {"unit", unit_name(header.metres_per_unit)},
-            {"metres_per_unit", header.metres_per_unit},
-            {"attributes", attributes_json(header.schema)},
-            {"scans", std::move(scans)}};
+    Json described{{"kind", kind},
+                   {"points", header.points},
+                   {"nodes", cache.nodes().size()},
+                   {"levels", std::move(levels)},
+                   {"min", vector_json(header.min)},
+                   {"max", vector_json(header.max)},
+                   {"root_size", header.root.size},
+                   {"bytes_per_point", header.schema.stride},
+                   {"unit", unit_name(header.metres_per_unit)},
+                   {"metres_per_unit", header.metres_per_unit},
+                   {"attributes", attributes_json(header.schema)},
+                   {"scans", std::move(scans)}};
+    for (const auto& colour : header.station_colours) {
+        Json& station = described["station_colours"].emplace_back();
+        station["scan"] = colour.scan;
+        if (colour.station) station["station"] = *colour.station;
+        station["gain"] = vector_json(colour.gain);
+        if (colour.unphotographed) station["unphotographed"] = vector_json(*colour.unphotographed);
+    }
+    return described;
 }
 
 Result<Json> describe_scan(std::shared_ptr<const ByteSource> file, const InfoOptions& options) {

@@ -492,7 +492,8 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
     state_->repack |= !std::ranges::equal(scene.materials, state_->scene.materials, {},
                                           &gi::SceneMaterial::assignment, &gi::SceneMaterial::assignment) ||
                       !gi::same_colours(scene.look, state_->scene.look) ||
-                      scene.albedo.flatten != state_->scene.albedo.flatten;
+                      scene.albedo.flatten != state_->scene.albedo.flatten ||
+                      scene.albedo.balance != state_->scene.albedo.balance;
     state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
     state_->scene = std::move(scene);
     return {};

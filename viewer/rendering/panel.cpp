@@ -196,6 +196,10 @@ void albedo(const Rendering& model) {
     tell_cost(
         "share of the light that the scan was taken in to be divided out: luminance is evened out over\n"
         "a 48th of the scan's length. All points are sent to the device again");
+    if (ImGui::Checkbox("balance stations", &albedo.balance)) model.view.scene_changed();
+    tell_cost(
+        "gains that the conversion found make stations of different exposure agree, and points that were\n"
+        "never photographed get the colour around them. All points are sent to the device again");
 }
 
 void comparison(const Rendering& model) {

@@ -131,7 +131,8 @@ class Chance {
         else
             scene["environment"] = {
                 {"on", coin()}, {"radiance", list(vector(0, 9))}, {"rotation", number(-360, 360)}};
-        if (coin()) scene["albedo"] = {{"scale", number(0, 10)}, {"flatten", number(0, 1)}};
+        if (coin())
+            scene["albedo"] = {{"scale", number(0, 10)}, {"flatten", number(0, 1)}, {"balance", coin()}};
         if (coin()) scene["look"] = look();
         if (coin())
             scene["comparison"] = {{"engine", "direct"},

@@ -1,5 +1,6 @@
 #include "octree/cache/metadata.h"
 
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -28,6 +29,41 @@ TEST(Metadata, RejectsColoursOfAnUnknownWidth) {
     ASSERT_NE(at, std::string::npos) << text;
     text.replace(at, 15, "\"color_bits\": 7");
     EXPECT_FALSE(parse_metadata("cache.luc", text));
+}
+
+SourceHeader with_colours() {
+    SourceHeader header;
+    header.scans.resize(2);
+    header.station_colours = {{0, 3, {1.25, 1, 1 / 16.0}, glm::dvec3(0, 0.5, 1)}, {1, {}, {0.8, 1, 16}, {}}};
+    return header;
+}
+
+TEST(Metadata, KeepsWhatIsKnownAboutStationsColours) {
+    const auto read = parse_metadata("cache.luc", metadata_text(with_colours()));
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(read->station_colours, with_colours().station_colours);
+    EXPECT_EQ(metadata_text(SourceHeader{}).find("station_colours"), std::string::npos);
+}
+
+TEST(Metadata, RejectsImpossibleColoursOfStations) {
+    const auto rejects = [](auto change) {
+        SourceHeader header = with_colours();
+        change(header.station_colours);
+        return !parse_metadata("cache.luc", metadata_text(header));
+    };
+    EXPECT_FALSE(rejects([](auto&) {}));
+    for (const double gain : {0.0, -1.0, 0.06, 16.01, 1e300, std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_TRUE(rejects([gain](auto& colours) { colours[1].gain.y = gain; })) << gain;
+    for (const double colour : {-0.01, 1.01, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_TRUE(rejects([colour](auto& colours) { colours[0].unphotographed->z = colour; })) << colour;
+    EXPECT_TRUE(rejects([](auto& colours) { colours[1].scan = 2; })) << "there are two";
+    EXPECT_TRUE(rejects([](auto& colours) { colours[0].station = 65536; })) << "an id is a u16";
+    EXPECT_TRUE(rejects([](auto& colours) { std::swap(colours[0], colours[1]); })) << "not sorted";
+    EXPECT_TRUE(rejects([](auto& colours) { colours[1] = colours[0]; })) << "twice";
+    EXPECT_TRUE(rejects([](auto& colours) {
+        for (uint32_t i = 0; i < 1024; ++i) colours.push_back({1, i, glm::dvec3(1), {}});
+    })) << "too many";
 }
 
 }  // namespace

@@ -38,12 +38,13 @@ class LightCommand : public testing::Test {
     static std::string at(const std::string& name) { return *folder_ / name; }
 
     /// Renders a scene with the keys `more` in addition to its camera.
-    static io::Image8 render(const std::string& more, const std::string& options) {
+    static io::Image8 render(const std::string& more, const std::string& options,
+                             const std::string& cache = "scan.luc") {
         std::ofstream(at("scene.json")) << R"({"cameras": [{"name": "above", "position": [2.075, 1.025, 40],
             "target": [2.075, 1.025, 0], "up": [0, 1, 0], "fov": 2.6}])"
                                         << more << "}";
         const Outcome ran =
-            test::lucarne("render " + at("scan.luc") + " -o " + at("out.png") + " --overwrite --scene " +
+            test::lucarne("render " + at(cache) + " -o " + at("out.png") + " --overwrite --scene " +
                           at("scene.json") + " --size 256x128 " + options);
         EXPECT_EQ(ran.code, 0) << ran.output;
         return io::read_png(at("out.png")).value_or(io::Image8{});
@@ -99,6 +100,37 @@ TEST_F(LightCommand, FlatteningEvensOutTheLightThatColoursWereTakenIn) {
     EXPECT_NEAR(pixel(flat, 30, 32).x, pixel(flat, 98, 32).x, 0.02f);
     EXPECT_GT(pixel(flat, 30, 32).x, 60 / 255.0f);
     EXPECT_LT(pixel(flat, 98, 32).x, 180 / 255.0f);
+}
+
+TEST_F(LightCommand, StationsOfDifferentExposureAreBalancedUnlessTheyAreToStay) {
+    // The right half again, from a station that records half of the light: 131 instead of 180.
+    std::ofstream scan(at("dim.xyz"));
+    for (int y = 0; y < 42; ++y)
+        for (int x = 42; x < 84; ++x)
+            scan << x * 0.05 + 0.025 << ' ' << y * 0.05 + 0.025 << " 0 131 131 131 0 0 1\n";
+    scan.close();
+    const Outcome converted = test::lucarne("convert " + at("scan.xyz") + " " + at("dim.xyz") +
+                                            " --columns x,y,z,r,g,b,nx,ny,nz -o " + at("two.luc"));
+    ASSERT_EQ(converted.code, 0) << converted.output;
+    EXPECT_THAT(test::lucarne("info " + at("two.luc")).output, testing::HasSubstr("station_colours"));
+    const auto range = [](const io::Image8& picture) {
+        float least = 1, most = 0;
+        for (int y = 20; y < 44; ++y)
+            for (int x = 80; x < 110; ++x) {
+                const float grey = pixel(picture, x, y).x;
+                least = std::min(least, grey);
+                most = std::max(most, grey);
+            }
+        return std::pair(least, most);
+    };
+    const auto [dim, bright] = range(render("", "--engine unlit --shading flat --unbalanced", "two.luc"));
+    EXPECT_NEAR(dim, 131 / 255.0f, 0.02f);
+    EXPECT_NEAR(bright, 180 / 255.0f, 0.02f);
+    const auto [least, most] = range(render("", "--engine unlit --shading flat", "two.luc"));
+    EXPECT_NEAR(least, 154 / 255.0f, 0.02f) << "between them: the gains' product is 1";
+    EXPECT_NEAR(most, least, 0.01f);
+    const std::string off = R"(, "albedo": {"balance": false})";
+    EXPECT_NEAR(range(render(off, "--engine unlit --shading flat", "two.luc")).first, dim, 0.001f);
 }
 
 TEST_F(LightCommand, AnAlbedoOfHalfReflectsHalf) {

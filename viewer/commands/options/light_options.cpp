@@ -40,6 +40,8 @@ void add_light_options(Arguments& command, LightOptions& options) {
     command.add("--flatten", options.flatten, "Share of the light in the points' colours to divide out")
         .range(0.0, 1.0)
         .type_name("X");
+    command.flag("--unbalanced", options.unbalanced,
+                 "Keep the stations' different exposures, and points that were never photographed black");
     command.add("--beside", options.compare, "Show this engine beside the picture's own (.png)")
         .type_name("ENGINE");
     command
@@ -68,6 +70,7 @@ Result<void> apply(const LightOptions& options, gi::Scene& scene) {
     }
     scene.albedo.scale = options.albedo.value_or(scene.albedo.scale);
     scene.albedo.flatten = options.flatten.value_or(scene.albedo.flatten);
+    if (options.unbalanced) scene.albedo.balance = false;
     if (!options.compare.empty()) {
         LUCARNE_TRY(gi::find_engine(options.compare));
         if (!scene.comparison) scene.comparison.emplace();

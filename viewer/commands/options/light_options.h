@@ -12,9 +12,11 @@ namespace lucarne::viewer {
 struct LightOptions {
     std::string tone_map, luminance, compare, compare_show;
     std::optional<double> border, difference_range, albedo, flatten;
+    bool unbalanced = false;
 };
 
-/// Declares --tone-map --luminance --albedo --flatten --beside --beside-show --border --difference-range.
+/// Declares --tone-map --luminance --albedo --flatten --unbalanced --beside --beside-show --border
+/// --difference-range.
 /// `options` must outlive the command.
 void add_light_options(Arguments& command, LightOptions& options);
 
