@@ -31,9 +31,11 @@ inline constexpr std::array kCauses = {std::pair{Cause::empty, "no surfel"},
                                        std::pair{Cause::farther, "farther than the truth"},
                                        std::pair{Cause::bent, "bent normal"}, std::pair{Cause::good, "good"}};
 
-/// A visible surfel is another surface if it lies farther than this off the plane of the true one: five
-/// times the scanner's noise. Measured along the ray, slanting surfaces would exaggerate the noise.
+/// A visible surfel is another surface if it lies farther than this off the plane of the true one, metres:
+/// five times the scanner's noise. Measured along the ray, slanting surfaces would exaggerate the noise.
 inline constexpr double kOtherSurface = .01;
+/// The same in pixels: a disc that is thinner than a pixel shows wherever in the pixel it lies.
+inline constexpr double kOtherSurfacePixels = .5;
 inline constexpr double kBentDegrees = 10;
 
 /// Returns the angle between two planes of these unit normals, degrees, whichever way they point.
@@ -41,7 +43,31 @@ inline double plane_angle(const glm::dvec3& a, const glm::dvec3& b) {
     return std::acos(std::min(1.0, std::abs(dot(a, b)))) * 180 / M_PI;
 }
 
-/// The true surface behind each pixel of a view.
+inline constexpr uint32_t kTrueSide = 192;  ///< pixels, of the true pictures
+/// The outermost pixels are left out: in the view of the Cornell box their rays pass 2 mm beside its front
+/// rim, where every disc sticks out over nothing.
+inline constexpr uint32_t kMargin = 1;
+
+/// Returns a picture without its outermost pixels.
+inline std::vector<glm::vec4> inner(const std::vector<glm::vec4>& pixels, uint32_t side) {
+    std::vector<glm::vec4> kept;
+    for (uint32_t y = kMargin; y + kMargin < side; ++y)
+        for (uint32_t x = kMargin; x + kMargin < side; ++x) kept.push_back(pixels[size_t{y} * side + x]);
+    return kept;
+}
+
+/// Returns a picture of half the width and height.
+inline std::vector<glm::vec4> halved(const std::vector<glm::vec4>& pixels, uint32_t side) {
+    std::vector<glm::vec4> means;
+    for (uint32_t y = 0; y + 1 < side; y += 2)
+        for (uint32_t x = 0; x + 1 < side; x += 2) {
+            const glm::vec4* at = &pixels[size_t{y} * side + x];
+            means.push_back((at[0] + at[1] + at[side] + at[side + 1]) / 4.0f);
+        }
+    return means;
+}
+
+/// The true surface behind each of the inner pixels of a square view.
 class TrueView {
  public:
     struct Pixel {
@@ -50,7 +76,9 @@ class TrueView {
     };
 
     TrueView(const io::SceneGeometry& geometry, const gi::SceneCamera& camera, uint32_t side)
-        : view_(viewer::camera_view(camera, {side, side}, {})), pixels_(size_t{side} * side) {
+        : view_(viewer::camera_view(camera, {side, side}, {})),
+          inner_(side - 2 * kMargin),
+          pixels_(size_t{inner_} * inner_) {
         parallel_ranges(pixels_.size(), side, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const glm::dvec3 along = ray(i);
@@ -64,8 +92,8 @@ class TrueView {
     const std::vector<Pixel>& pixels() const { return pixels_; }
     /// Returns the direction of a pixel's ray, as in gi/shared/camera.h: one metre of depth long.
     glm::dvec3 ray(size_t pixel) const {
-        const double x = 2 * (static_cast<double>(pixel % view_.width) + .5) / view_.width - 1,
-                     y = 2 * (static_cast<double>(pixel / view_.width) + .5) / view_.height - 1;
+        const double x = 2 * (static_cast<double>(pixel % inner_ + kMargin) + .5) / view_.width - 1,
+                     y = 2 * (static_cast<double>(pixel / inner_ + kMargin) + .5) / view_.height - 1;
         return glm::dvec3(view_.forward) + glm::dvec3(view_.right) * x - glm::dvec3(view_.up) * y;
     }
     /// Compares a pixel with what a scan shows there: normal and depth, as `lucarne render --gbuffer` writes.
@@ -74,12 +102,15 @@ class TrueView {
         if (!(shown.w > 0)) return truth.depth > 0 ? Cause::empty : Cause::good;
         if (!(truth.depth > 0)) return Cause::nearer;  // a rim that sticks out over nothing
         const double off = (shown.w - truth.depth) * dot(ray(pixel), truth.normal);
-        if (std::abs(off) > kOtherSurface) return shown.w < truth.depth ? Cause::nearer : Cause::farther;
+        const double pixel_size = 2 * glm::length(glm::dvec3(view_.up)) * truth.depth / view_.height;
+        if (std::abs(off) > std::max(kOtherSurface, kOtherSurfacePixels * pixel_size))
+            return shown.w < truth.depth ? Cause::nearer : Cause::farther;
         return plane_angle(truth.normal, glm::dvec3(shown)) > kBentDegrees ? Cause::bent : Cause::good;
     }
 
  private:
     gi::CameraView view_;
+    uint32_t inner_;  ///< side of the inner picture
     std::vector<Pixel> pixels_;
 };
 
@@ -101,19 +132,16 @@ struct TrueScene {
                     scene, view};
         return failed(scene_file(scene), "has no camera " + view);
     }
-    /// Reads "bounce-0" and so on.
-    Result<io::Image> picture(const std::string& name) const {
-        return io::read_exr(pictures + name + ".exr");
-    }
-    /// Returns the sum of several of them.
-    Result<io::Image> sum(const std::vector<std::string>& names) const {
-        io::Image whole;
+    /// Reads the inner pixels of the sum of pictures: "bounce-0" and so on.
+    Result<std::vector<glm::vec4>> picture(const std::vector<std::string>& names) const {
+        std::vector<glm::vec4> whole(size_t{kTrueSide} * kTrueSide);
         for (const std::string& name : names) {
-            LUCARNE_ASSIGN(io::Image part, picture(name));
-            for (size_t i = 0; i < whole.pixels.size(); ++i) part.pixels[i] += whole.pixels[i];
-            whole = std::move(part);
+            LUCARNE_ASSIGN(const io::Image part, io::read_exr(pictures + name + ".exr"));
+            if (part.width != kTrueSide || part.height != kTrueSide)
+                return failed(pictures + name + ".exr", "has another size");
+            for (size_t i = 0; i < whole.size(); ++i) whole[i] += part.pixels[i];
         }
-        return whole;
+        return inner(whole, kTrueSide);
     }
 };
 

@@ -1,8 +1,8 @@
 // Scans against the mesh that was scanned, as a table: the light of pictures of scans, split by why pixels
 // differ, and how the scans' discs lie on the true surface. The true pictures are those of
 // tests/oracles/truth_oracle.py; the engine is the reference, so that the differences are those of surfaces
-// and not of light transport. `lucarne_truth [FOLDER] [--scale S]`: pictures go to FOLDER (default: a
-// temporary one that is removed).
+// and not of light transport. `lucarne_truth [FOLDER] [--scale S] [--samples N]`: pictures go to FOLDER
+// (default: a temporary one that is removed).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,9 +24,9 @@ namespace lucarne {
 namespace {
 
 using bench::BenchRun, bench::Cause, bench::DiscFit, bench::Scan, bench::TrueScene, bench::TrueView;
+using Pixels = std::vector<glm::vec4>;
 
-constexpr uint32_t kSide = 192;           ///< pixels, of the true pictures
-constexpr uint64_t kSamples = 256;        ///< paths a pixel of whole pictures
+constexpr uint64_t kSamples = 256;        ///< paths a pixel of whole pictures, without --samples
 constexpr uint64_t kBounceSamples = 32;   ///< of single bounces, whose means alone are compared
 constexpr size_t kFittedDiscs = 100'000;  ///< discs whose rims and creases are probed
 constexpr double kRogueMetres = .05, kRogueRadii = 3, kNoise = .01;  ///< m off the surface
@@ -99,25 +99,25 @@ void print_causes(const std::string& what, const std::vector<Share>& shares, dou
 }
 
 /// Compares a picture, its two halves and its G-buffer with the truth.
-Result<void> judge(const std::string& what, const Scan::Truth& picture, const io::Image& gbuffer,
-                   const TrueView& view, const io::Image& truth, double flip_target) {
-    LUCARNE_ASSIGN(const auto metrics, gi::compare_images(picture.whole, truth.pixels));
+Result<void> judge(const std::string& what, const Scan::Truth& picture, const Pixels& gbuffer,
+                   const TrueView& view, const Pixels& truth, double flip_target) {
+    LUCARNE_ASSIGN(const auto metrics, gi::compare_images(picture.whole, truth));
     row(what, "mean, bounces 0 to 3", 100 * metrics.luminance_error, "%", 2);
-    const double epsilon = gi::relative_epsilon(truth.pixels);
+    const double epsilon = gi::relative_epsilon(truth);
     std::vector<Share> shares(bench::kCauses.size());
     std::vector<double> errors;
-    for (size_t i = 0; i < truth.pixels.size(); ++i) {
-        Share& share = shares[static_cast<size_t>(view.cause(i, gbuffer.pixels[i]))];
+    for (size_t i = 0; i < truth.size(); ++i) {
+        Share& share = shares[static_cast<size_t>(view.cause(i, gbuffer[i]))];
         // The product of two independent errors is free of the reference's noise (compare_with_halves).
         double squared = 0;
         for (glm::length_t c = 0; c < 3; ++c) {
-            const double r = truth.pixels[i][c];
+            const double r = truth[i][c];
             squared += (picture.first[i][c] - r) * (picture.second[i][c] - r) / (r * r + epsilon) / 3;
         }
         errors.push_back(squared);
         share.pixels += 1;
         share.squared += squared;
-        share.luminance += gi::luminance(picture.whole[i]) - gi::luminance(truth.pixels[i]);
+        share.luminance += gi::luminance(picture.whole[i]) - gi::luminance(truth[i]);
     }
     const auto pixels = static_cast<double>(errors.size());
     std::sort(errors.begin(), errors.end());
@@ -126,19 +126,21 @@ Result<void> judge(const std::string& what, const Scan::Truth& picture, const io
     for (size_t i = 0; i < errors.size(); ++i) (i < kept ? trimmed : all) += errors[i];
     row(what, "relMSE, without noise", (all + trimmed) / pixels, "");
     row(what, "relMSE without the worst .1 %", trimmed / static_cast<double>(kept), "");
-    const double ev = gi::automatic_exposure(truth.pixels);
-    const auto shown = [ev](const std::vector<glm::vec4>& radiance) {
-        return gi::tone_map(radiance, gi::ToneMap::filmic, ev);
+    // At half the size, because FLIP counts noise that an eye would see: four times fewer paths will do.
+    const double ev = gi::automatic_exposure(truth);
+    const uint32_t side = bench::kTrueSide - 2 * bench::kMargin;
+    const auto shown = [&](const Pixels& radiance) {
+        return gi::tone_map(bench::halved(radiance, side), gi::ToneMap::filmic, ev);
     };
     const auto mean = [](const std::vector<float>& values) {
         double sum = 0;
         for (const float value : values) sum += value;
         return sum / static_cast<double>(values.size());
     };
-    const auto flip = [&](const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
-        return mean(gi::flip_errors(shown(a), shown(b), kSide));
+    const auto flip = [&](const Pixels& a, const Pixels& b) {
+        return mean(gi::flip_errors(shown(a), shown(b), side / 2));
     };
-    row(what, "FLIP", flip(picture.whole, truth.pixels), "", flip_target);
+    row(what, "FLIP", flip(picture.whole, truth), "", flip_target);
     // The halves differ by twice the noise of the whole.
     row(what, "FLIP of the noise, at most", flip(picture.first, picture.second), "");
     print_causes(what, shares, pixels, metrics.reference_mean_luminance * pixels);
@@ -196,27 +198,33 @@ Result<void> pictures(const BenchRun& run, const Case& measured, const Scan& sca
                       const std::string& camera) {
     LUCARNE_ASSIGN(const TrueScene truth, TrueScene::open(measured.scene, camera));
     const std::string what = measured.name + (measured.views.size() > 1 ? ", " + camera : "");
-    const std::string common = fmt::format("--camera {} --size {}x{} --preset {} ", camera, kSide, kSide,
-                                           run.trial() ? "preview" : "high");
+    const std::string common = fmt::format("--camera {} --size {}x{} --preset {} ", camera, bench::kTrueSide,
+                                           bench::kTrueSide, run.trial() ? "preview" : "high");
     for (const int bounce : run.cases(measured.bounces)) {
         const uint64_t paths = bounce > 0 ? run.count(kBounceSamples) : 1;  // direct light has no noise
         LUCARNE_ASSIGN(
             const auto picture,
             scan.picture("bounce", common + fmt::format("--engine reference --only-bounce {} --samples {}",
                                                         bounce, paths)));
-        LUCARNE_ASSIGN(const io::Image expected, truth.picture(kBounces[static_cast<size_t>(bounce)]));
+        LUCARNE_ASSIGN(const auto expected, truth.picture({kBounces[static_cast<size_t>(bounce)]}));
         row(what, fmt::format("mean, bounce {}", bounce),
-            100 * (gi::mean_luminance(picture) / gi::mean_luminance(expected.pixels) - 1), "%",
-            bounce > 0 ? 5 : 2);
+            100 *
+                (gi::mean_luminance(bench::inner(picture, bench::kTrueSide)) / gi::mean_luminance(expected) -
+                 1),
+            "%", bounce > 0 ? 5 : 2);
     }
     const std::string gbuffer = run.folder / "gbuffer.exr";
-    LUCARNE_ASSIGN(const auto picture,
-                   scan.truth("whole", common + fmt::format("--bounces 3 --samples {} --gbuffer {}",
-                                                            run.count(kSamples), gbuffer)));
+    const auto full = static_cast<uint64_t>(run.option("samples", kSamples));
+    const uint64_t paths = std::max<uint64_t>(run.count(full), 2);  // one for each half
+    LUCARNE_ASSIGN(
+        Scan::Truth picture,
+        scan.truth("whole", common + fmt::format("--bounces 3 --samples {} --gbuffer {}", paths, gbuffer)));
+    for (Pixels* pixels : {&picture.whole, &picture.first, &picture.second})
+        *pixels = bench::inner(*pixels, bench::kTrueSide);
     LUCARNE_ASSIGN(const io::Image seen, io::read_exr(gbuffer));
-    LUCARNE_ASSIGN(const io::Image expected, truth.sum(measured.parts));
-    return judge(what, picture, seen, TrueView(*truth.geometry, truth.camera, kSide), expected,
-                 measured.flip);
+    LUCARNE_ASSIGN(const auto expected, truth.picture(measured.parts));
+    return judge(what, picture, bench::inner(seen.pixels, bench::kTrueSide),
+                 TrueView(*truth.geometry, truth.camera, bench::kTrueSide), expected, measured.flip);
 }
 
 Result<void> measure(const BenchRun& run) {
@@ -235,5 +243,5 @@ Result<void> measure(const BenchRun& run) {
 }  // namespace lucarne
 
 int main(int argc, char** argv) {
-    return lucarne::bench::bench_main(argc, argv, lucarne::measure);
+    return lucarne::bench::bench_main(argc, argv, lucarne::measure, {"samples"});
 }
