@@ -65,8 +65,10 @@ def load_mesh(path):
     mesh.add_attribute("vertex_color", 3, numpy.minimum(linear(vertices["albedo"]), ALBEDO_CAP).ravel())
     parameters = mi.traverse(mesh)
     parameters["vertex_positions"] = vertices["position"].ravel()
-    parameters["vertex_normals"] = vertices["normal"].ravel()
     parameters["faces"] = faces["corners"].ravel()
+    parameters.update()
+    # On their own: a change of positions replaces normals by means of the faces.
+    parameters["vertex_normals"] = vertices["normal"].ravel()
     parameters.update()
     return mesh
 
