@@ -175,6 +175,12 @@ dvec3 albedo_at(Finish finish, const dvec3& p, const dvec3& normal) {
     return glm::clamp(value, dvec3(.01), dvec3(.95));
 }
 
+bool albedo_varies(Finish finish) {
+    constexpr std::array kOfOneColour = {Finish::white, Finish::red, Finish::green, Finish::half,
+                                         Finish::gilt};
+    return std::find(kOfOneColour.begin(), kOfOneColour.end(), finish) == kOfOneColour.end();
+}
+
 uint8_t srgb_code(double linear) {
     // Linear values at which the code changes: exact, and without calling pow for each point.
     static const auto kThresholds = [] {

@@ -34,6 +34,9 @@ enum class Finish : uint8_t {
 /// in (0, .95).
 glm::dvec3 albedo_at(Finish finish, const glm::dvec3& position, const glm::dvec3& normal);
 
+/// Returns whether the albedo of such a surface differs from place to place.
+bool albedo_varies(Finish finish);
+
 /// Converts linear [0, 1] to an 8-bit sRGB code (IEC 61966-2-1).
 uint8_t srgb_code(double linear);
 

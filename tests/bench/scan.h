@@ -23,12 +23,13 @@ inline std::string scene_file(const std::string& name) {
 /// The cache of a virtual scan of a scene in `folder`.
 class Scan {
  public:
-    static Result<Scan> create(const std::string& scene, uint64_t points,
-                               const std::filesystem::path& folder) {
+    /// `sampling` are further options of `lucarne generate`.
+    static Result<Scan> create(const std::string& scene, uint64_t points, const std::filesystem::path& folder,
+                               const std::string& sampling = "--even --normals") {
         const Scan made(scene, folder);
         const std::string scan = folder / (scene + ".ply");
-        LUCARNE_TRY(run(
-            fmt::format("generate {} --even --normals --points {} -o {} --overwrite", scene, points, scan)));
+        LUCARNE_TRY(
+            run(fmt::format("generate {} {} --points {} -o {} --overwrite", scene, sampling, points, scan)));
         LUCARNE_TRY(run("convert " + scan + " -o " + made.cache_ + " --overwrite"));
         std::filesystem::remove(scan);
         return made;

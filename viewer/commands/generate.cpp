@@ -8,21 +8,38 @@
 #include "io/core/options.h"
 #include "io/core/progress.h"
 #include "io/formats/scan.h"
+#include "io/synthetic/scene_geometry.h"
+#include "io/synthetic/surface_mesh.h"
 #include "io/synthetic/synthetic.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/options/outputs.h"
 
 namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kBatchPoints = 1 << 17;
+constexpr double kLeastMeshStep = .01, kLargestMeshStep = 100;  ///< metres; the nave has 2^26 vertices at .01
 
 struct GenerateOptions {
     io::SyntheticOptions scan;
-    std::string points = "1M", output;
+    std::string points = "1M", output, mesh;
+    double mesh_step = io::kMeshStep;
     bool overwrite = false;
 };
 
-Result<void> generate(GenerateOptions options) {
+Result<void> write_mesh(const GenerateOptions& options) {
+    if (options.scan.scene == io::synthetic_survey().name)
+        return bad_arguments(fmt::format("scene '{}'", options.scan.scene), "has no true surface",
+                             "choose another scene for --mesh");
+    LUCARNE_ASSIGN(const auto geometry, io::SceneGeometry::create(options.scan.scene));
+    const io::SurfaceMesh mesh = io::surface_mesh(geometry->mesh(), options.mesh_step);
+    LUCARNE_TRY(io::write_surface_mesh(mesh, options.mesh, options.overwrite));
+    log::info("{}: the surface of {}, {}, {:.1f} m2", options.mesh, options.scan.scene,
+              counted(mesh.triangles.size(), "triangles"), geometry->area());
+    return {};
+}
+
+Result<void> write_scan(GenerateOptions options) {
     LUCARNE_ASSIGN(options.scan.points, parse_count("--points", options.points));
     LUCARNE_ASSIGN(const auto source, io::synthetic_source(options.scan));
     const io::WriteOptions write{options.overwrite, options.scan.even ? options.scan.points : 0};
@@ -54,6 +71,15 @@ Result<void> generate(GenerateOptions options) {
     return {};
 }
 
+Result<void> generate(const GenerateOptions& options) {
+    if (options.output.empty() && options.mesh.empty())
+        return bad_arguments("generate", "there is nothing to write", "give --output, --mesh or both");
+    LUCARNE_TRY(check_outputs({options.output, options.mesh}, options.overwrite, {}));
+    if (!options.mesh.empty()) LUCARNE_TRY(write_mesh(options));
+    if (!options.output.empty()) LUCARNE_TRY(write_scan(options));
+    return {};
+}
+
 }  // namespace
 
 void add_generate(CommandLine& line) {
@@ -65,9 +91,18 @@ void add_generate(CommandLine& line) {
     scenes += fmt::format("\n  {:<11}{}", io::synthetic_survey().name, io::synthetic_survey().summary);
     command.footer(scenes);
     command.add("scene", options->scan.scene, "Which scene, see below").required().type_name("SCENE");
-    command.add("-o,--output", options->output, "The scan to write: .las, .laz or .ply")
-        .required()
-        .type_name("FILE");
+    command.add("-o,--output", options->output, "The scan to write: .las, .laz or .ply").type_name("FILE");
+    command
+        .add("--mesh", options->mesh,
+             "Write the true surface as binary PLY: triangles with normals and albedo (sRGB); without "
+             "--output write no scan")
+        .type_name("FILE.ply");
+    command
+        .add("--mesh-step", options->mesh_step,
+             "Largest side of the mesh's cells where the albedo varies, metres")
+        .range(kLeastMeshStep, kLargestMeshStep)
+        .show_default()
+        .type_name("M");
     command.add("--points", options->points, "Number of points: approximate, or exact with --even")
         .show_default()
         .type_name("N[k|M|G]");

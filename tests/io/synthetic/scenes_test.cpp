@@ -6,6 +6,7 @@
 #include "io/core/random.h"
 #include "io/synthetic/scene_geometry.h"
 #include "io/synthetic/synthetic.h"
+#include "tests/io/synthetic/random_direction.h"
 
 namespace lucarne::io {
 namespace {
@@ -14,11 +15,6 @@ using glm::dvec3;
 
 std::shared_ptr<const SceneGeometry> geometry_of(const std::string& scene) {
     return SceneGeometry::create(scene).value();
-}
-
-dvec3 random_direction(Random& random) {
-    const double z = 2 * random.uniform() - 1, angle = 2 * M_PI * random.uniform(), r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
 TEST(SyntheticScenes, SealedRoomsAreWatertight) {

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "io/formats/scan.h"
 #include "io/synthetic/synthetic.h"
@@ -93,6 +94,34 @@ TEST_F(GenerateCommand, BadArgumentsLeaveNothingBehind) {
     EXPECT_EQ(lucarne("generate cornell -o " + path("a.zyx")).code, 2);
     EXPECT_EQ(lucarne("generate cornell").code, 2);
     EXPECT_EQ(lucarne("generate cornell -o " + path("missing/a.las")).code, 1);
+}
+
+TEST_F(GenerateCommand, WritesTheSurfaceAloneOrBesideTheScan) {
+    ASSERT_EQ(lucarne("generate cornell --mesh " + path("alone.ply")).code, 0);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+    ASSERT_EQ(lucarne("generate cornell --points 1000 -o " + path("a.las") + " --mesh " + path("a.ply")).code,
+              0);
+    EXPECT_EQ(test::bytes_of(path("a.ply")), test::bytes_of(path("alone.ply")));
+    EXPECT_TRUE(io::open_scan(path("a.las")));
+    // Another reader's view of the file: 151.25 m2 of walls and 38.4 m2 of blocks.
+    ASSERT_EQ(lucarne("info " + path("a.ply") + " --json " + path("info.json")).code, 0);
+    std::ifstream file(path("info.json"));
+    const auto info = nlohmann::json::parse(file).dump();
+    EXPECT_THAT(info, HasSubstr("\"triangles\":34"));
+    EXPECT_THAT(info, HasSubstr("\"area_m2\":189.6"));
+    for (const char* attribute : {"\"normal\"", "\"color\""}) EXPECT_THAT(info, HasSubstr(attribute));
+}
+
+TEST_F(GenerateCommand, AMeshNeedsASceneWithASurfaceAndANameOfItsOwn) {
+    const auto survey = lucarne("generate survey --mesh " + path("a.ply"));
+    EXPECT_EQ(survey.code, 2);
+    EXPECT_THAT(survey.output, HasSubstr("has no true surface"));
+    EXPECT_EQ(lucarne("generate cornell -o " + path("a.ply") + " --mesh " + path("a.ply")).code, 2);
+    EXPECT_EQ(lucarne("generate cornell --mesh " + path("a.ply") + " --mesh-step 0").code, 2);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+    std::ofstream(path("a.ply")) << "precious";
+    EXPECT_EQ(lucarne("generate cornell --mesh " + path("a.ply")).code, 1);
+    EXPECT_EQ(test::bytes_of(path("a.ply")), "precious");
 }
 
 TEST_F(GenerateCommand, AFileThatExistsIsKeptUnlessOverwritten) {

@@ -1,0 +1,37 @@
+// All surfels that the renderer makes of a scan or cache.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gi/surfels/surfel_pool.h"
+#include "octree/stream/cut.h"
+#include "viewer/inputs/input.h"
+
+namespace lucarne::bench {
+
+/// Returns the surfels of an input at full detail; positions in metres from the origin.
+inline Result<std::vector<gi::Surfel>> all_surfels(gi::Device& device, const std::string& input) {
+    LUCARNE_ASSIGN(const auto source, viewer::open_input(input));
+    const octree::Cut cut = octree::full_cut(*source);
+    uint64_t room = 0;
+    for (const auto& node : cut.nodes) room += node.count + gi::SurfelPool::kPageSurfels;
+    if (room > 100'000'000) return failed(input, "is too large to be held whole");
+    LUCARNE_ASSIGN(auto pool, gi::SurfelPool::create(device, static_cast<uint32_t>(room)));
+    gi::Scene scene;
+    scene.materials.resize(1);
+    std::vector<gi::CutEntry> entries;
+    for (const auto& node : cut.nodes) {
+        LUCARNE_ASSIGN(const auto data, source->load(node.node));
+        LUCARNE_ASSIGN(const bool fits,
+                       pool.load(node.node, gi::pack_surfels(source->header(), source->nodes()[node.node],
+                                                             data, scene)));
+        if (!fits) return failed(input, "does not fit the pool");
+        entries.push_back({node.node, node.count});
+    }
+    gi::DeviceCut drawn;
+    LUCARNE_TRY(pool.make_cut(device, *source, entries, glm::dvec3(0.0), drawn));
+    return pool.download(drawn);
+}
+
+}  // namespace lucarne::bench
