@@ -21,6 +21,10 @@ constexpr double kGrazing = 0.05;
 /// Sine of the largest angle between a silhouette's tangent plane and the rays that graze it. A plane fitted
 /// to a pier covers some degrees of its curve.
 constexpr double kSilhouette = 0.1;
+/// The same for groups of points that are far sparser than the surfaces around them: their planes are
+/// rougher.
+constexpr double kCurtain = 0.3;
+constexpr float kRough = 64;  ///< crowding from which kCurtain is used
 
 /// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
@@ -32,18 +36,20 @@ struct ChunkEstimate {
     ChunkOrientation orientation;
 };
 
-/// Drops points of `surface.apart` whose plane contains their station, too. They are not a sparse surface:
+/// Drops sparse points beside denser surfaces whose plane contains their station, too. They are no surface:
 /// mixed pixels behind a silhouette lie on the rays that graze it, and form a curtain in the silhouette's
-/// tangent plane.
+/// tangent plane. The sparser they are, the rougher the plane of the curtain may be.
 void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
-    for (const uint32_t site : surface.apart) {
+    const auto drop = [&](uint32_t site, double sine) {
         const glm::dvec3& ray = ray_of_site[site];
         const double facing = std::abs(glm::dot(glm::dvec3(surface.normals[site]), ray));
-        if (glm::length(ray) > 0 && facing <= kSilhouette * glm::length(ray)) {
-            surface.normals[site] = glm::vec3(0.0f);
-            surface.areas[site] = kStrayArea;
-        }
-    }
+        if (!(glm::length(ray) > 0 && facing <= sine * glm::length(ray))) return;
+        surface.normals[site] = glm::vec3(0.0f);
+        surface.areas[site] = kStrayArea;
+    };
+    for (const uint32_t site : surface.apart) drop(site, kSilhouette);
+    for (const auto& [site, crowding] : surface.crowded)
+        drop(site, crowding < kRough ? kSilhouette : kCurtain);
 }
 
 /// Returns the scaled ray from each site to the station that saw it. The site's first point with a known

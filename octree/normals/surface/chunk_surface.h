@@ -21,6 +21,13 @@ struct BorderEdge {
     glm::vec3 offset{0.0f};  ///< from the site to the other point
 };
 
+/// A site whose neighbours are much sparser than a surface nearby.
+struct CrowdedSite {
+    uint32_t site = 0;
+    /// Points near the site over the number that a sheet as sparse as the site's neighbourhood has there.
+    float crowding = 0;
+};
+
 /// The estimated surface at each site of a chunk.
 struct ChunkSurface {
     std::vector<glm::vec3> normals;  ///< zero: no stable plane
@@ -30,6 +37,7 @@ struct ChunkSurface {
     /// Sites that were accepted as a sparse surface beside a dense patch, although they look isolated;
     /// sorted.
     std::vector<uint32_t> apart;
+    std::vector<CrowdedSite> crowded;  ///< sorted by site
 };
 
 /// Estimates normals and areas of all sites from `k` neighbours, and from about four times as many where
