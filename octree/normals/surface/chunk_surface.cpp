@@ -31,6 +31,9 @@ constexpr float kLine = 0.05f;
 /// If the heights in the window have this many times the variance of those of the neighbours, the surface
 /// bends. Noise has the same in both.
 constexpr float kBend = 1.5f;
+/// The side of a crease is that much flatter (variance of heights) than all points in the window. Of noise,
+/// too, some part is flatter than the whole, but only by half.
+constexpr float kFlatter = 0.3f;
 /// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
 /// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
 constexpr float kMostShares = 4, kWide = 1.5f;
@@ -128,10 +131,13 @@ class SiteEstimator {
                 if (!apart) return leave_out(site);
             }
             if (bends) side = creases_.fit(window_, fit.normal, spacing);
+            if (side && !(side->deviation < fit.deviation && side->variance < kFlatter * fit.variance))
+                side.reset();
             if (side) {
                 patch = &window_;
                 fit.normal = glm::vec3(side->plane.normal);
-                fit.deviation = deviation_of(side->plane, side->count);
+                fit.deviation = side->deviation;
+                fit.variance = side->variance;
                 fit.layer = side->layer;
             }
         }
@@ -158,8 +164,10 @@ class SiteEstimator {
         }
         // A point in the air has a wide cell although its neighbours have narrow ones.
         float& area = surface_.areas[site];
-        if (!apart && area > kWide * spacing * spacing)
-            area = std::min(area, kMostShares * share_of_neighbours(nearest));
+        if (!apart && area > kWide * spacing * spacing) {
+            const float most = kMostShares * share_of_neighbours(nearest);
+            if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
+        }
         surface_.normals[site] = fit.normal;
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});

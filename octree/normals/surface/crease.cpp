@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
 
 namespace lucarne::octree {
@@ -15,7 +16,10 @@ namespace {
 constexpr size_t kSectors = 16;
 /// Sectors that are fitted together: 112 degrees. A corner of three planes leaves 90.
 constexpr size_t kRun = 5;
-constexpr size_t kLeastRun = 6;   ///< points of a run
+constexpr size_t kLeastRun = 6;  ///< points of a run
+/// A side has at least one of so many points of the patch. A plane across the two faces of a thin wall has
+/// fewer.
+constexpr size_t kLeastPart = 3;
 constexpr size_t kLeastSide = 8;  ///< points of each of two planes at a crease
 /// Points within this many deviations of a plane belong to it. Where there is no noise, within this share of
 /// the spacing.
@@ -66,9 +70,15 @@ float misfit(const Moments& m) {
     return trace * least * n / (n - 3) + height * height / glm::dot(column, column);
 }
 
+/// The variance of heights over a plane that was fitted to `count` points.
+double variance_of(const Plane& plane, size_t count) {
+    const double n = static_cast<double>(count);
+    return plane.variances[0] * n / (n - 3);
+}
+
 float limit_of(const Plane& plane, size_t count, float spacing) {
-    const double n = static_cast<double>(count), noise = plane.variances[0] * n / (n - 3);
-    return std::max(kInliers * static_cast<float>(std::sqrt(noise)), kInSpacing * spacing);
+    return std::max(kInliers * static_cast<float>(std::sqrt(variance_of(plane, count))),
+                    kInSpacing * spacing);
 }
 
 glm::dvec3 middle_of(const Moments& m) {
@@ -124,7 +134,8 @@ std::optional<Side> CreaseFitter::fit(const Patch& patch, const glm::vec3& norma
     side.count = own.count;
     for (int refit = 0; refit < kRefits; ++refit) {
         divide(patch, own, side.plane, limit_of(side.plane, side.count, spacing));
-        if (own_.count < kLeastSide || others_.count < kLeastSide) return std::nullopt;
+        if (own_.count < std::max(kLeastSide, patch.count / kLeastPart) || others_.count < kLeastSide)
+            return std::nullopt;
         own = moments_of(own_);
         side.plane = plane_of(own);
         side.count = own_.count;
@@ -133,6 +144,8 @@ std::optional<Side> CreaseFitter::fit(const Patch& patch, const glm::vec3& norma
     const Plane other = plane_of(rest);
     if (std::abs(glm::dot(other.normal, side.plane.normal)) > kTurned) return std::nullopt;
 
+    side.variance = static_cast<float>(variance_of(side.plane, side.count));
+    side.deviation = deviation_of(side.plane, side.count);
     const float limit = limit_of(side.plane, side.count, spacing);
     const glm::dvec3 middle = middle_of(own);
     const auto level = static_cast<float>(glm::dot(side.plane.normal, middle));

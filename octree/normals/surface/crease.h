@@ -13,6 +13,8 @@ namespace lucarne::octree {
 struct Side {
     Plane plane;
     size_t count = 0;       ///< points of the patch on this side
+    float variance = 0;     ///< of their heights over the plane, unbiased
+    float deviation = 0;    ///< standard error of the normal, radians
     Range layer{0, 0};      ///< their heights over the tangent plane through the point
     glm::vec3 other{0.0f};  ///< the normal of the plane of all other points
     float offset = 0;       ///< other . x = offset on that plane; x is relative to the point

@@ -31,8 +31,8 @@ constexpr float kSparserInDoubt = 5.0f;
 /// A sparse point beside a dense patch belongs to the patch's surface if it lies in the patch's plane: within
 /// this share of its distance, plus this many deviations of the patch's own heights.
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
-/// But not higher than this share of its distance, however rough the patch is (9 degrees).
-constexpr float kMostHeight = 0.15f;
+/// But not higher than this share of its distance, however rough the patch is (17 degrees).
+constexpr float kMostHeight = 0.3f;
 /// A point farther from the patch than this many of the patch's spacings is too far for its plane to tell.
 constexpr float kMostApart = 10.0f;
 constexpr size_t kCompanions = 2;
