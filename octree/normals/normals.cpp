@@ -93,6 +93,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
         orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
     } else {
         std::fill(surface.normals.begin(), surface.normals.end(), glm::vec3(0.0f));
+        surface.sides.clear();
         orientation.components.assign(neighbours.site_count(), 0);
     }
     return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
@@ -115,10 +116,15 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     normals.normals.resize(points);
     normals.areas.resize(points);
     normals.components.resize(points);
+    auto side = estimate.surface.sides.begin();
     for (uint32_t site = 0; site < sites; ++site) {
         const auto members = estimate.neighbours.members(site);
+        glm::vec3 normal = estimate.surface.normals[site];
+        for (; side != estimate.surface.sides.end() && side->site == site; ++side)
+            if (normal != glm::vec3(0.0f))
+                normal = glm::dot(side->normal, normal) < 0 ? -side->normal : side->normal;
         for (const uint32_t point : members) {
-            normals.normals[point] = estimate.surface.normals[site];
+            normals.normals[point] = normal;
             normals.areas[point] =
                 in_squares(estimate.surface.areas[site] / static_cast<float>(members.size()), unit);
             normals.components[point] = estimate.orientation.components[site];

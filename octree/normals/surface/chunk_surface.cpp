@@ -34,6 +34,9 @@ constexpr float kBend = 1.5f;
 /// The side of a crease is that much flatter (variance of heights) than all points in the window. Of noise,
 /// too, some part is flatter than the whole, but only by half.
 constexpr float kFlatter = 0.3f;
+/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
+/// degrees, and less beside them; a side at more is another one than the point's own.
+constexpr float kLeastTurn = 0.64f;
 /// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
 /// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
 constexpr float kMostShares = 4, kWide = 1.5f;
@@ -98,7 +101,8 @@ class SiteEstimator {
         const Patch* patch = &nearest;  // the patch of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
         std::optional<Side> side;
-        double seen = reach;  // all points nearer than this are in `patch`
+        glm::vec3 whole(0.0f);  // the normal of the whole neighbourhood at a crease
+        double seen = reach;    // all points nearer than this are in `patch`
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
@@ -131,10 +135,10 @@ class SiteEstimator {
                 if (!apart) return leave_out(site);
             }
             if (bends) side = creases_.fit(window_, fit.normal, spacing);
-            if (side && !(side->deviation < fit.deviation && side->variance < kFlatter * fit.variance))
-                side.reset();
+            if (side && !is_better(*side, fit)) side.reset();
             if (side) {
                 patch = &window_;
+                if (fit.deviation < kPoorDeviation) whole = fit.normal;
                 fit.normal = glm::vec3(side->plane.normal);
                 fit.deviation = side->deviation;
                 fit.variance = side->variance;
@@ -168,12 +172,14 @@ class SiteEstimator {
             const float most = kMostShares * share_of_neighbours(nearest);
             if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
         }
-        surface_.normals[site] = fit.normal;
+        surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
+        if (whole != glm::vec3(0.0f)) sides_.push_back({site, fit.normal});
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;
     }
     std::span<const uint32_t> apart() const { return apart_; }
+    std::span<const SideNormal> sides() const { return sides_; }
     std::span<const CrowdedSite> crowded() const { return crowded_; }
     std::span<const BorderEdge> border() const { return border_; }
 
@@ -211,6 +217,12 @@ class SiteEstimator {
         if (!(other.deviation < fit.deviation)) return &old;
         fit = other;
         return &patch;
+    }
+
+    static bool is_better(const Side& side, const SurfaceFit& fit) {
+        const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), fit.normal));
+        return side.deviation < fit.deviation && side.variance < kFlatter * fit.variance &&
+               (turn > kLeastTurn || !(fit.deviation < kPoorDeviation));
     }
 
     /// Takes the window around a site. Returns its radius.
@@ -277,6 +289,7 @@ class SiteEstimator {
     Patch window_, further_;
     std::vector<float> heights_;
     std::vector<uint32_t> apart_;
+    std::vector<SideNormal> sides_;
     std::vector<CrowdedSite> crowded_;
     std::vector<BorderEdge> border_;
 };
@@ -284,6 +297,8 @@ class SiteEstimator {
 /// What single sites found out, in an order that does not depend on threads.
 void collect(ChunkSurface& surface) {
     std::sort(surface.apart.begin(), surface.apart.end());
+    std::sort(surface.sides.begin(), surface.sides.end(),
+              [](const SideNormal& a, const SideNormal& b) { return a.site < b.site; });
     std::sort(surface.crowded.begin(), surface.crowded.end(),
               [](const CrowdedSite& a, const CrowdedSite& b) { return a.site < b.site; });
     auto& border = surface.border;
@@ -312,6 +327,7 @@ Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
         }));
     for (const auto& estimator : estimators) {
         surface.apart.insert(surface.apart.end(), estimator.apart().begin(), estimator.apart().end());
+        surface.sides.insert(surface.sides.end(), estimator.sides().begin(), estimator.sides().end());
         surface.crowded.insert(surface.crowded.end(), estimator.crowded().begin(), estimator.crowded().end());
         surface.border.insert(surface.border.end(), estimator.border().begin(), estimator.border().end());
     }

@@ -28,10 +28,19 @@ struct CrowdedSite {
     float crowding = 0;
 };
 
+/// The normal of a site's own side of a crease.
+struct SideNormal {
+    uint32_t site = 0;
+    glm::vec3 normal{0.0f};  ///< the sign is arbitrary
+};
+
 /// The estimated surface at each site of a chunk.
 struct ChunkSurface {
     std::vector<glm::vec3> normals;  ///< zero: no stable plane
-    std::vector<float> areas;        ///< of the site, to be divided among its points; 0: unknown
+    /// Sharper normals of sites at creases, sorted by site. `normals` has the normal of the whole
+    /// neighbourhood there, which turns gradually over a crease, so that orientation can follow it across.
+    std::vector<SideNormal> sides;
+    std::vector<float> areas;  ///< of the site, to be divided among its points; 0: unknown
     std::vector<SiteEdges> edges;
     std::vector<BorderEdge> border;  ///< sorted by site and other point
     /// Sites that were accepted as a sparse surface beside a dense patch, although they look isolated;
