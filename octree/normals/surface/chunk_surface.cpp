@@ -138,7 +138,7 @@ class SiteEstimator {
             if (side && !is_better(*side, fit)) side.reset();
             if (side) {
                 patch = &window_;
-                if (fit.deviation < kPoorDeviation) whole = fit.normal;
+                whole = fit.normal;
                 fit.normal = glm::vec3(side->plane.normal);
                 fit.deviation = side->deviation;
                 fit.variance = side->variance;
@@ -221,8 +221,8 @@ class SiteEstimator {
 
     static bool is_better(const Side& side, const SurfaceFit& fit) {
         const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), fit.normal));
-        return side.deviation < fit.deviation && side.variance < kFlatter * fit.variance &&
-               (turn > kLeastTurn || !(fit.deviation < kPoorDeviation));
+        return fit.deviation < kPoorDeviation && side.deviation < fit.deviation &&
+               side.variance < kFlatter * fit.variance && turn > kLeastTurn;
     }
 
     /// Takes the window around a site. Returns its radius.
