@@ -26,6 +26,11 @@ constexpr double kSilhouette = 0.1;
 constexpr double kCurtain = 0.3;
 constexpr float kRough = 64;  ///< crowding from which kCurtain is used
 
+/// Least |n.n'| of a side of a crease and its whole neighbourhood where no station is known: 33 degrees. Some
+/// sides that turn farther are not the point's own, and only .969 of the nave's normals would face the right
+/// way.
+constexpr float kLeastTurn = 0.84f;
+
 /// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
 
@@ -50,6 +55,14 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
     for (const uint32_t site : surface.apart) drop(site, kSilhouette);
     for (const auto& [site, crowding] : surface.crowded)
         drop(site, crowding < kRough ? kSilhouette : kCurtain);
+}
+
+/// Drops the sides of creases that turn far and have no station.
+void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    std::erase_if(surface.sides, [&](const SideNormal& side) {
+        if (!ray_of_site.empty() && ray_of_site[side.site] != glm::dvec3(0.0)) return false;
+        return std::abs(glm::dot(side.normal, surface.normals[side.site])) < kLeastTurn;
+    });
 }
 
 /// Returns the scaled ray from each site to the station that saw it. The site's first point with a known
@@ -88,6 +101,7 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) drop_curtains(surface, rays);
+    drop_doubtful_sides(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {
         orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));

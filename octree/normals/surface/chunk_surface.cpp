@@ -34,11 +34,9 @@ constexpr float kBend = 1.5f;
 /// The side of a crease is that much flatter (variance of heights) than all points in the window. Of noise,
 /// too, some part is flatter than the whole, but only by half.
 constexpr float kFlatter = 0.3f;
-/// Least |n.n'| of a side and the whole window: 33 degrees. Between two sides at right angles it is 45
-/// degrees. Some sides that turn farther are not the point's own: with 50 degrees, creases are sharper
-/// (cornell, 300k points: p95 32 instead of 45 degrees), but only .969 of the nave's normals face the right
-/// way without stations.
-constexpr float kLeastTurn = 0.84f;
+/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
+/// degrees.
+constexpr float kLeastTurn = 0.64f;
 /// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
 /// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
 constexpr float kMostShares = 4, kWide = 1.5f;
@@ -147,7 +145,7 @@ class SiteEstimator {
                 fit.layer = side->layer;
             }
         }
-        connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, fit.normal);
+        connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, side ? whole : fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
             // A blob has no disc. An outlier must not get the area of the empty space around it.
             surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
