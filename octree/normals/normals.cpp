@@ -21,6 +21,15 @@ constexpr double kGrazing = 0.05;
 /// Sine of the largest angle between a silhouette's tangent plane and the rays that graze it. A plane fitted
 /// to a pier covers some degrees of its curve.
 constexpr double kSilhouette = 0.1;
+/// The same for groups of points that are far sparser than the surfaces around them: their planes are
+/// rougher.
+constexpr double kCurtain = 0.3;
+constexpr float kRough = 64;  ///< crowding from which kCurtain is used
+
+/// Least |n.n'| of a side of a crease and its whole neighbourhood where no station is known: 33 degrees. Some
+/// sides that turn farther are not the point's own, and only .969 of the nave's normals would face the right
+/// way.
+constexpr float kLeastTurn = 0.84f;
 
 /// A halo may take 1/kHaloMemory of the memory: two chunks are processed at a time even if memory is short.
 constexpr uint64_t kHaloMemory = 8;
@@ -32,18 +41,28 @@ struct ChunkEstimate {
     ChunkOrientation orientation;
 };
 
-/// Drops points of `surface.apart` whose plane contains their station, too. They are not a sparse surface:
+/// Drops sparse points beside denser surfaces whose plane contains their station, too. They are no surface:
 /// mixed pixels behind a silhouette lie on the rays that graze it, and form a curtain in the silhouette's
-/// tangent plane.
+/// tangent plane. The sparser they are, the rougher the plane of the curtain may be.
 void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
-    for (const uint32_t site : surface.apart) {
+    const auto drop = [&](uint32_t site, double sine) {
         const glm::dvec3& ray = ray_of_site[site];
         const double facing = std::abs(glm::dot(glm::dvec3(surface.normals[site]), ray));
-        if (glm::length(ray) > 0 && facing <= kSilhouette * glm::length(ray)) {
-            surface.normals[site] = glm::vec3(0.0f);
-            surface.areas[site] = kStrayArea;
-        }
-    }
+        if (!(glm::length(ray) > 0 && facing <= sine * glm::length(ray))) return;
+        surface.normals[site] = glm::vec3(0.0f);
+        surface.areas[site] = kStrayArea;
+    };
+    for (const uint32_t site : surface.apart) drop(site, kSilhouette);
+    for (const auto& [site, crowding] : surface.crowded)
+        drop(site, crowding < kRough ? kSilhouette : kCurtain);
+}
+
+/// Drops the sides of creases that turn far and have no station.
+void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    std::erase_if(surface.sides, [&](const SideNormal& side) {
+        if (!ray_of_site.empty() && ray_of_site[side.site] != glm::dvec3(0.0)) return false;
+        return std::abs(glm::dot(side.normal, surface.normals[side.site])) < kLeastTurn;
+    });
 }
 
 /// Returns the scaled ray from each site to the station that saw it. The site's first point with a known
@@ -82,11 +101,13 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
     if (!rays.empty()) drop_curtains(surface, rays);
+    drop_doubtful_sides(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {
         orientation = orient_chunk(neighbours, surface, toward_stations(surface, rays));
     } else {
         std::fill(surface.normals.begin(), surface.normals.end(), glm::vec3(0.0f));
+        surface.sides.clear();
         orientation.components.assign(neighbours.site_count(), 0);
     }
     return ChunkEstimate{std::move(neighbours), std::move(surface), std::move(orientation)};
@@ -109,10 +130,15 @@ ChunkNormals points_of(const ChunkEstimate& estimate, double unit) {
     normals.normals.resize(points);
     normals.areas.resize(points);
     normals.components.resize(points);
+    auto side = estimate.surface.sides.begin();
     for (uint32_t site = 0; site < sites; ++site) {
         const auto members = estimate.neighbours.members(site);
+        glm::vec3 normal = estimate.surface.normals[site];
+        for (; side != estimate.surface.sides.end() && side->site == site; ++side)
+            if (normal != glm::vec3(0.0f))
+                normal = glm::dot(side->normal, normal) < 0 ? -side->normal : side->normal;
         for (const uint32_t point : members) {
-            normals.normals[point] = estimate.surface.normals[site];
+            normals.normals[point] = normal;
             normals.areas[point] =
                 in_squares(estimate.surface.areas[site] / static_cast<float>(members.size()), unit);
             normals.components[point] = estimate.orientation.components[site];

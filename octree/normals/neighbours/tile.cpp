@@ -187,8 +187,8 @@ const Directions& directions() {
 }
 
 size_t cut_by_layer(const Patch& patch, const std::vector<float>& heights, const Range& layer,
-                    const TangentFrame& frame, float coincident2, Nearness& nearness) {
-    return LUCARNE_CALL(cut_layer, patch, heights.data(), layer, frame, coincident2, nearness);
+                    const TangentFrame& frame, float coincident2, bool others, Nearness& nearness) {
+    return LUCARNE_CALL(cut_layer, patch, heights.data(), layer, frame, coincident2, others, nearness);
 }
 
 size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,

@@ -118,11 +118,12 @@ struct TangentFrame {
 /// limits the reach to (u^2 + v^2) / (2 (u cos + v sin)).
 using Nearness = std::array<float, kDirections>;
 
-/// Cuts the cell by the neighbours whose height is in the layer. Neighbours nearer to the point, in the
+/// Cuts the cell by the neighbours whose height is in the layer, as if they were in the plane. `others`: and
+/// by all others, half-way to where they are in space. Neighbours nearer to the point, in the
 /// plane, than the root of `coincident2` cut nothing; returns their number. `heights` are those of
 /// heights_over().
 size_t cut_by_layer(const Patch& patch, const std::vector<float>& heights, const Range& layer,
-                    const TangentFrame& frame, float coincident2, Nearness& nearness);
+                    const TangentFrame& frame, float coincident2, bool others, Nearness& nearness);
 
 /// Selects the points of a tile that continue a surface: those within the root of `limit2` of `centre` whose
 /// squared height over the plane is at most `slope2` of their squared distance in it.

@@ -215,18 +215,19 @@ LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y
 }
 
 [[gnu::noinline]] size_t cut_layer(const Patch& patch, const float* heights, const Range& layer,
-                                   const TangentFrame& frame, float coincident2, Nearness& nearness) {
+                                   const TangentFrame& frame, float coincident2, bool others,
+                                   Nearness& nearness) {
     Cuts cuts;
     Words here{};
+    const Words all = (others ? -1 : 0) - Words{};
     for (size_t i = 0; i < patch.count; i += kLanes) {
         const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]),
                     h = load<Lanes>(&heights[i]);
         const Lanes u = along(frame.x, x, y, z), v = along(frame.y, x, y, z), length2 = u * u + v * v;
-        const Words in = (h >= layer.low) & (h <= layer.high) &
-                         (kLane < static_cast<int32_t>(patch.count - i)),
-                    apart = length2 > coincident2;
+        const Words valid = kLane < static_cast<int32_t>(patch.count - i),
+                    in = (h >= layer.low) & (h <= layer.high) & valid, apart = length2 > coincident2;
         here -= in & ~apart;
-        cuts.take(in & apart, u, v, length2, nearness);
+        cuts.take((in | (all & valid)) & apart, u, v, in ? length2 : length2 + h * h, nearness);
     }
     cuts.apply(nearness);
     size_t sum = 0;

@@ -10,6 +10,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "io/core/parallel.h"
+#include "octree/normals/surface/crease.h"
 #include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
 
@@ -27,12 +28,56 @@ constexpr size_t kMostWindow = 6, kUsualWindow = 4;
 /// Neighbours whose variance across their main axis is below this share of that along it lie on a line, such
 /// as one scan line.
 constexpr float kLine = 0.05f;
+/// If the heights in the window have this many times the variance of those of the neighbours, the surface
+/// bends. Noise has the same in both.
+constexpr float kBend = 1.5f;
+/// The side of a crease is that much flatter (variance of heights) than all points in the window. Of noise,
+/// too, some part is flatter than the whole, but only by half.
+constexpr float kFlatter = 0.3f;
+/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
+/// degrees.
+constexpr float kLeastTurn = 0.64f;
+/// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
+/// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
+constexpr float kMostShares = 4, kWide = 1.5f;
+/// A site whose neighbourhood is this many times wider than the distance from one site to the next nearby may
+/// hang in the air beside a much denser surface. The ratio is 2 to 3 on a surface of even density.
+constexpr double kSparse = 8;
+/// From this ratio on the group of points in the air may be farther from the surface than kWindow.
+constexpr double kVerySparse = 24, kFarWindow = 4;
+/// If the window of such a site holds this many times what a surface of the site's own density has there, the
+/// site is crowded. Within a sheet the number is 1.
+constexpr float kCrowded = 8;
+/// A very sparse site that is more crowded than this is an outlier.
+constexpr float kMostCrowded = 64;
+constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
+
+/// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
+std::vector<double> median_steps(const ChunkNeighbours& neighbours) {
+    const size_t sites = neighbours.site_count();
+    std::vector<double> medians((sites + kStepSites - 1) / kStepSites);
+    parallel_ranges(medians.size(), 64, [&](size_t first, size_t last) {
+        std::vector<double> steps;
+        for (size_t block = first; block < last; ++block) {
+            steps.clear();
+            const size_t end = std::min(sites - 1, (block + 1) * kStepSites);
+            for (size_t i = block * kStepSites; i < end; ++i)
+                steps.push_back(glm::distance(neighbours.position(static_cast<uint32_t>(i)),
+                                              neighbours.position(static_cast<uint32_t>(i + 1))));
+            const auto middle = steps.begin() + static_cast<ptrdiff_t>(steps.size() / 2);
+            std::nth_element(steps.begin(), middle, steps.end());
+            medians[block] = middle == steps.end() ? 0 : *middle;
+        }
+    });
+    return medians;
+}
 
 /// Estimates the surface at one site after another; one per thread.
 class SiteEstimator {
  public:
-    SiteEstimator(ChunkNeighbours& neighbours, size_t usual, ChunkSurface& surface)
-        : neighbours_(neighbours), usual_(usual), surface_(surface) {}
+    SiteEstimator(ChunkNeighbours& neighbours, size_t usual, std::span<const double> steps,
+                  ChunkSurface& surface)
+        : neighbours_(neighbours), usual_(usual), steps_(steps), surface_(surface) {}
 
     /// Estimates the surface at a site. Returns 0, or the radius that must be known around the site first.
     double visit(uint32_t site, const Patch& nearest, ChunkNeighbours::Surroundings& around) {
@@ -46,15 +91,28 @@ class SiteEstimator {
         const float reach2 = nearest.distance2[nearest.count - 1], reach = std::sqrt(reach2);
         const float spacing =
             std::sqrt(std::numbers::pi_v<float> * reach2 / static_cast<float>(nearest.count - 1));
+        float crowding = 0;
+        if (const double sparser = reach / step_near(site); !whole_cloud && sparser > kSparse) {
+            const double times = sparser > kVerySparse ? kFarWindow : kWindow;
+            if (!around.knows(times * reach)) return times * reach;
+            crowding = crowding_at(around, reach, times);
+            if (sparser > kVerySparse && crowding > kMostCrowded) return leave_out(site);
+        }
         const Patch* patch = &nearest;  // the patch of the fit
         SurfaceFit fit = fitter_.fit(nearest, spacing);
-        double seen = reach;  // all points nearer than this are in `patch`
+        std::optional<Side> side;
+        glm::vec3 whole(0.0f);  // the normal of the whole neighbourhood at a crease
+        double seen = reach;    // all points nearer than this are in `patch`
         const bool blurred = fit.roundness < kLine || !(fit.deviation < kPoorDeviation);
         if (fit.deviation > kGoodDeviation && !whole_cloud) {
             if (!around.knows(kWindow * reach)) return kWindow * reach;
             seen = take_window(around, reach);
-            if (window_.count > nearest.count)
-                patch = improve(fit, fitter_.fit(window_, spacing), window_, *patch);
+            bool bends = false;
+            if (window_.count > nearest.count) {
+                const SurfaceFit wide = fitter_.fit(window_, spacing);
+                bends = wide.variance > kBend * fit.variance || !(wide.deviation < kGoodDeviation);
+                patch = improve(fit, wide, window_, *patch);
+            }
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
             // The window was narrowed: it held too many points.
             const bool cut_short = seen < kWindow * reach;
@@ -76,8 +134,18 @@ class SiteEstimator {
                 apart = goes_on_with(further_);
                 if (!apart) return leave_out(site);
             }
+            if (bends) side = creases_.fit(window_, fit.normal, spacing);
+            if (side && !is_better(*side, fit)) side.reset();
+            if (side) {
+                patch = &window_;
+                whole = fit.normal;
+                fit.normal = glm::vec3(side->plane.normal);
+                fit.deviation = side->deviation;
+                fit.variance = side->variance;
+                fit.layer = side->layer;
+            }
         }
-        connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, fit.normal);
+        connect(site, nearest, blurred && patch != &nearest ? patch : nullptr, side ? whole : fit.normal);
         if (!(fit.deviation < kPoorDeviation)) {
             // A blob has no disc. An outlier must not get the area of the empty space around it.
             surface_.areas[site] = std::min(spacing * spacing, share_of_neighbours(nearest));
@@ -86,7 +154,8 @@ class SiteEstimator {
         if (patch != &window_) seen = reach;  // at least
         ShareCell cell(fit.normal, reach, nearest.count - 1, static_cast<float>(seen));
         heights_over(*patch, fit.normal, heights_);
-        cell.cut(*patch, heights_, fit.layer);
+        cell.cut(*patch, heights_, fit.layer, side.has_value());
+        if (side) cell.cut_at(side->other, side->offset);
         if (cell.open()) {
             if (!around.knows(cell.widest_search())) return cell.widest_search();
             const auto view = around.around(std::min(cell.widest_search(), cell.widest_cut()));
@@ -97,11 +166,21 @@ class SiteEstimator {
         } else {
             surface_.areas[site] = cell.area();
         }
-        surface_.normals[site] = fit.normal;
+        // A point in the air has a wide cell although its neighbours have narrow ones.
+        float& area = surface_.areas[site];
+        if (!apart && area > kWide * spacing * spacing) {
+            const float most = kMostShares * share_of_neighbours(nearest);
+            if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
+        }
+        surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
+        if (whole != glm::vec3(0.0f)) sides_.push_back({site, fit.normal});
         if (apart) apart_.push_back(site);
+        if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;
     }
     std::span<const uint32_t> apart() const { return apart_; }
+    std::span<const SideNormal> sides() const { return sides_; }
+    std::span<const CrowdedSite> crowded() const { return crowded_; }
     std::span<const BorderEdge> border() const { return border_; }
 
  private:
@@ -110,6 +189,22 @@ class SiteEstimator {
     /// Whether a point that looks isolated belongs to its neighbours' surface nevertheless.
     bool goes_on_with(const Patch& others) {
         return is_near_enough(others) && fitter_.lies_in_plane_of_others(others);
+    }
+
+    /// The distance between sites at the densest surface near a site, roughly.
+    double step_near(uint32_t site) const {
+        const size_t block = site / kStepSites, last = std::min(steps_.size() - 1, block + 1);
+        return *std::min_element(steps_.begin() + static_cast<ptrdiff_t>(block - std::min<size_t>(block, 1)),
+                                 steps_.begin() + static_cast<ptrdiff_t>(last + 1));
+    }
+
+    /// The number of points within `times` the reach, divided by that of a sheet as sparse as the site's
+    /// neighbourhood.
+    float crowding_at(ChunkNeighbours::Surroundings& around, double reach, double times) {
+        const double radius = around.within(times * reach, window_);
+        if (radius < times * reach) return std::numeric_limits<float>::infinity();  // too many to gather
+        return static_cast<float>(static_cast<double>(window_.count) /
+                                  (times * times * static_cast<double>(usual_)));
     }
 
     double leave_out(uint32_t site) {
@@ -122,6 +217,12 @@ class SiteEstimator {
         if (!(other.deviation < fit.deviation)) return &old;
         fit = other;
         return &patch;
+    }
+
+    static bool is_better(const Side& side, const SurfaceFit& fit) {
+        const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), fit.normal));
+        return fit.deviation < kPoorDeviation && side.deviation < fit.deviation &&
+               side.variance < kFlatter * fit.variance && turn > kLeastTurn;
     }
 
     /// Takes the window around a site. Returns its radius.
@@ -181,17 +282,25 @@ class SiteEstimator {
 
     ChunkNeighbours& neighbours_;
     size_t usual_;  ///< how many neighbours are asked for, the site included
+    std::span<const double> steps_;
     ChunkSurface& surface_;
     SurfaceFitter fitter_;
+    CreaseFitter creases_;
     Patch window_, further_;
     std::vector<float> heights_;
     std::vector<uint32_t> apart_;
+    std::vector<SideNormal> sides_;
+    std::vector<CrowdedSite> crowded_;
     std::vector<BorderEdge> border_;
 };
 
 /// What single sites found out, in an order that does not depend on threads.
 void collect(ChunkSurface& surface) {
     std::sort(surface.apart.begin(), surface.apart.end());
+    std::sort(surface.sides.begin(), surface.sides.end(),
+              [](const SideNormal& a, const SideNormal& b) { return a.site < b.site; });
+    std::sort(surface.crowded.begin(), surface.crowded.end(),
+              [](const CrowdedSite& a, const CrowdedSite& b) { return a.site < b.site; });
     auto& border = surface.border;
     const auto key = [](const BorderEdge& e) { return std::tie(e.site, e.other.chunk, e.other.index); };
     std::sort(border.begin(), border.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
@@ -209,14 +318,17 @@ Result<ChunkSurface> estimate_surface(ChunkNeighbours& neighbours, size_t k) {
     SiteEdges none;
     none.fill(kNoSite);
     surface.edges.assign(sites, none);
+    const std::vector<double> steps = median_steps(neighbours);
     tbb::enumerable_thread_specific<SiteEstimator> estimators(
-        [&] { return SiteEstimator(neighbours, k + 1, surface); });
+        [&] { return SiteEstimator(neighbours, k + 1, steps, surface); });
     LUCARNE_TRY(neighbours.search(
         k + 1, [&](uint32_t site, const Patch& nearest, bool exact, ChunkNeighbours::Surroundings& around) {
             return exact ? estimators.local().visit(site, nearest, around) : 0.0;
         }));
     for (const auto& estimator : estimators) {
         surface.apart.insert(surface.apart.end(), estimator.apart().begin(), estimator.apart().end());
+        surface.sides.insert(surface.sides.end(), estimator.sides().begin(), estimator.sides().end());
+        surface.crowded.insert(surface.crowded.end(), estimator.crowded().begin(), estimator.crowded().end());
         surface.border.insert(surface.border.end(), estimator.border().begin(), estimator.border().end());
     }
     collect(surface);

@@ -21,15 +21,32 @@ struct BorderEdge {
     glm::vec3 offset{0.0f};  ///< from the site to the other point
 };
 
+/// A site whose neighbours are much sparser than a surface nearby.
+struct CrowdedSite {
+    uint32_t site = 0;
+    /// Points near the site over the number that a sheet as sparse as the site's neighbourhood has there.
+    float crowding = 0;
+};
+
+/// The normal of a site's own side of a crease.
+struct SideNormal {
+    uint32_t site = 0;
+    glm::vec3 normal{0.0f};  ///< the sign is arbitrary
+};
+
 /// The estimated surface at each site of a chunk.
 struct ChunkSurface {
     std::vector<glm::vec3> normals;  ///< zero: no stable plane
-    std::vector<float> areas;        ///< of the site, to be divided among its points; 0: unknown
+    /// Sharper normals of sites at creases, sorted by site. `normals` has the normal of the whole
+    /// neighbourhood there, which turns gradually over a crease, so that orientation can follow it across.
+    std::vector<SideNormal> sides;
+    std::vector<float> areas;  ///< of the site, to be divided among its points; 0: unknown
     std::vector<SiteEdges> edges;
     std::vector<BorderEdge> border;  ///< sorted by site and other point
     /// Sites that were accepted as a sparse surface beside a dense patch, although they look isolated;
     /// sorted.
     std::vector<uint32_t> apart;
+    std::vector<CrowdedSite> crowded;  ///< sorted by site
 };
 
 /// Estimates normals and areas of all sites from `k` neighbours, and from about four times as many where

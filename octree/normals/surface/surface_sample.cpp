@@ -31,6 +31,8 @@ constexpr float kSparserInDoubt = 5.0f;
 /// A sparse point beside a dense patch belongs to the patch's surface if it lies in the patch's plane: within
 /// this share of its distance, plus this many deviations of the patch's own heights.
 constexpr float kInPlane = 0.03f, kInNoise = 3.0f;
+/// But not higher than this share of its distance, however rough the patch is (17 degrees).
+constexpr float kMostHeight = 0.3f;
 /// A point farther from the patch than this many of the patch's spacings is too far for its plane to tell.
 constexpr float kMostApart = 10.0f;
 constexpr size_t kCompanions = 2;
@@ -79,21 +81,6 @@ bool stands_apart(const Patch& near, float sparser) {
     return 2 * denser >= near.count - 1;
 }
 
-float deviation_of(const Plane& plane, size_t points) {
-    const double n = static_cast<double>(points);
-    const double widest = plane.variances[2];
-    if (!(widest > 0) || points < 4) return 10.0f;
-    // The plane takes three degrees of freedom from the residuals.
-    const double noise = plane.variances[0] * n / (n - 3) + kVarianceFloor * widest;
-    double variance = 0;
-    for (const size_t axis : {1, 2}) {
-        const double gap = plane.variances[axis] - noise;
-        if (!(gap > 0)) return 10.0f;
-        variance += noise * plane.variances[axis] / (n * gap * gap);
-    }
-    return static_cast<float>(std::min(10.0, std::sqrt(variance)));
-}
-
 /// Returns the range of heights of the layer that contains the point itself, whose height is 0. A gap of
 /// nearly half the range or more contains the middle, so it is looked for there.
 Range own_layer(const std::vector<float>& heights, size_t count, const Range& range, float spacing) {
@@ -109,6 +96,21 @@ Range own_layer(const std::vector<float>& heights, size_t count, const Range& ra
 }
 
 }  // namespace
+
+float deviation_of(const Plane& plane, size_t points) {
+    const double n = static_cast<double>(points);
+    const double widest = plane.variances[2];
+    if (!(widest > 0) || points < 4) return 10.0f;
+    // The plane takes three degrees of freedom from the residuals.
+    const double noise = plane.variances[0] * n / (n - 3) + kVarianceFloor * widest;
+    double variance = 0;
+    for (const size_t axis : {1, 2}) {
+        const double gap = plane.variances[axis] - noise;
+        if (!(gap > 0)) return 10.0f;
+        variance += noise * plane.variances[axis] / (n * gap * gap);
+    }
+    return static_cast<float>(std::min(10.0, std::sqrt(variance)));
+}
 
 SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
     Plane plane = plane_of(moments_of(patch));
@@ -126,7 +128,8 @@ SurfaceFit SurfaceFitter::fit(const Patch& patch, float spacing) {
         plane = plane_of(moments_of(layer_));
     }
     const auto& v = plane.variances;
-    return {glm::vec3(plane.normal), deviation_of(plane, used), layer,
+    const double freedom = static_cast<double>(used) / (static_cast<double>(used) - 3);
+    return {glm::vec3(plane.normal), deviation_of(plane, used), layer, static_cast<float>(v[0] * freedom),
             v[2] > 0 ? static_cast<float>(v[1] / v[2]) : 0.0f};
 }
 
@@ -140,8 +143,9 @@ bool SurfaceFitter::lies_in_plane_of_others(const Patch& patch) {
     double height = 0;
     for (size_t i = 0; i < layer_.count; ++i) height += glm::dot(glm::dvec3(layer_.offset(i)), plane.normal);
     height /= static_cast<double>(layer_.count);
+    const double gap = std::sqrt(patch.distance2[1]);
     return std::abs(height) <=
-           kInPlane * std::sqrt(patch.distance2[1]) + kInNoise * std::sqrt(plane.variances[0]);
+           std::min(kInPlane * gap + kInNoise * std::sqrt(plane.variances[0]), kMostHeight * gap);
 }
 
 bool is_stray(const Patch& nearest, size_t usual, bool in_doubt) {

@@ -18,11 +18,18 @@ inline constexpr float kGoodDeviation = 0.052f;
 /// and more, planes with noise equal to their spacing have 4.
 inline constexpr float kPoorDeviation = 0.26f;
 
+/// Returns the standard error of the normal of a plane through `points` points: that of an eigenvector
+/// (Anderson 1963, theorem 1). With eigenvalues l0 <= l1 <= l2 over n points,
+///     var = sum over i = 1, 2 of l0 li / (n (li - l0)^2).
+/// It grows without bound both for lines (l1 -> l0) and for blobs (l2 -> l0).
+float deviation_of(const Plane& plane, size_t points);
+
 /// What a point's neighbourhood tells about the surface there.
 struct SurfaceFit {
     glm::vec3 normal{0.0f};      ///< unit, sign arbitrary
     float deviation = kNoPlane;  ///< standard error of the normal, radians
     Range layer{0, 0};           ///< heights, over the plane, of the point's own surface
+    float variance = 0;          ///< of the heights over the plane, unbiased
     float roundness = 0;         ///< the middle variance divided by the largest: 0 for points on a line
 };
 
@@ -33,9 +40,6 @@ class SurfaceFitter {
     /// Fits a plane to at least four points.
     ///  - The plane is PCL's. Where the neighbourhood separates into layers along the normal (the two faces
     /// of a thin wall), judged by `spacing`, only the point's own layer is used.
-    ///  - The standard error of the normal is that of an eigenvector (Anderson 1963, theorem 1): with
-    /// eigenvalues l0 <= l1 <= l2 over n points, var = sum over i = 1, 2 of l0 li / (n (li - l0)^2). It grows
-    /// without bound both for lines (l1 -> l0) and for blobs (l2 -> l0).
     SurfaceFit fit(const Patch& patch, float spacing);
     /// Heights over the plane of the last fit.
     const std::vector<float>& heights() const { return heights_; }

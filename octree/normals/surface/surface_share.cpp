@@ -52,10 +52,18 @@ ShareCell::ShareCell(const glm::vec3& normal, float reach, size_t neighbours, fl
     nearness_.fill(least_);
 }
 
-void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer) {
+void ShareCell::cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer,
+                    bool others) {
     const size_t here =
-        cut_by_layer(neighbours, heights, layer, frame_, kCoincident * reach_ * reach_, nearness_);
+        cut_by_layer(neighbours, heights, layer, frame_, kCoincident * reach_ * reach_, others, nearness_);
     coincident_ = std::max<size_t>(here, 1) - 1;  // without the point itself
+    least_ = least_of(nearness_);
+}
+
+void ShareCell::cut_at(const glm::vec3& normal, float offset) {
+    const float u = glm::dot(normal, frame_.x) / offset, v = glm::dot(normal, frame_.y) / offset;
+    const Directions& to = directions();
+    for (size_t d = 0; d < kDirections; ++d) nearness_[d] = std::max(nearness_[d], u * to.x[d] + v * to.y[d]);
     least_ = least_of(nearness_);
 }
 

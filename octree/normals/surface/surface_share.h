@@ -22,8 +22,13 @@ class ShareCell {
     /// points nearer than this. widest_search() tells how far to look for more.
     ShareCell(const glm::vec3& normal, float reach, size_t neighbours, float seen);
 
-    /// Cuts the cell by the neighbours in the layer low .. high. All `heights` are over the plane.
-    void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer);
+    /// Cuts the cell by the neighbours in the layer low .. high, or by all (`others`), which bounds the cell
+    /// where the surface turns away. All `heights` are over the plane.
+    void cut(const Patch& neighbours, const std::vector<float>& heights, const Range& layer,
+             bool others = false);
+    /// Cuts the cell along a line: where its plane meets the plane normal . x = offset (x relative to the
+    /// point), which is another side of a crease.
+    void cut_at(const glm::vec3& normal, float offset);
     /// Cuts the cell, where it is open, by everything that continues the surface: the points of `around`
     /// within `radius` of the site, which is at `centre` there. Returns the nearest of them beyond the reach,
     /// or the tile's count.

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+#include "octree/normals/neighbours/tile.h"
+#include "octree/normals/surface/plane.h"
+
+namespace lucarne::octree {
+
+/// A side of a crease: the plane to which a point near the crease belongs.
+struct Side {
+    Plane plane;
+    size_t count = 0;       ///< points of the patch on this side
+    float variance = 0;     ///< of their heights over the plane, unbiased
+    float deviation = 0;    ///< standard error of the normal, radians
+    Range layer{0, 0};      ///< their heights over the tangent plane through the point
+    glm::vec3 other{0.0f};  ///< the normal of the plane of all other points
+    float offset = 0;       ///< other . x = offset on that plane; x is relative to the point
+};
+
+/// Finds the side of a crease on which a point lies. Holds scratch memory: use one per thread.
+///
+/// Every straight or bent crease near the point leaves a sector around the point that the crease does not cut
+/// (as the sectors of an adaptive filter: Nagao and Matsuyama 1979; for points, a neighbourhood shifted away
+/// from the crease: Cao et al. 2018). So the patch is divided into kSectors sectors about the point, planes
+/// are fitted to all runs of kRun sectors, and the run whose points, and the point itself, lie closest to
+/// their plane wins. Its plane is fitted again to all points that lie in it. The moments of sectors add up,
+/// so all runs together cost little more than one fit.
+class CreaseFitter {
+ public:
+    /// `normal`: of the plane of the whole patch. `spacing`: the distance between points. Returns nothing if
+    /// there is no crease, or if there are too few points.
+    std::optional<Side> fit(const Patch& patch, const glm::vec3& normal, float spacing);
+
+ private:
+    /// Divides the patch into the points in the plane of `own` and the others.
+    void divide(const Patch& patch, const Moments& own, const Plane& plane, float limit);
+
+    Patch own_, others_;
+    std::vector<float> heights_;
+};
+
+}  // namespace lucarne::octree
