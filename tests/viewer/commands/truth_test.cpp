@@ -54,7 +54,7 @@ TEST(Truth, TheReferenceAgreesWithTheMeshOnHoleFreePoints) {
         const auto ran = test::lucarne("render " + cache + " -o " + picture + " --gbuffer " + gbuffer +
                                        " --scene " + bench::scene_file("cornell") +
                                        " --camera front --engine reference --preset high --size 192x192 "
-                                       "--overwrite --samples 8 --only-bounce " +
+                                       "--overwrite --samples 32 --only-bounce " +
                                        std::to_string(bounce));
         ASSERT_EQ(ran.code, 0) << ran.output;
         const auto ours = bench::inner(io::read_exr(picture).value().pixels, bench::kTrueSide),
