@@ -131,7 +131,8 @@ TEST_F(LightCommand, StationsOfDifferentExposureAreBalancedUnlessTheyAreToStay) 
     EXPECT_NEAR(least, 154 / 255.0f, 0.02f) << "between them: the gains' product is 1";
     EXPECT_NEAR(most, least, 0.01f);
     const std::string off = R"(, "albedo": {"balance": false})";
-    EXPECT_NEAR(range(render(off, "--engine unlit --shading flat --single-discs", "two.luc")).first, dim, 0.001f);
+    EXPECT_NEAR(range(render(off, "--engine unlit --shading flat --single-discs", "two.luc")).first, dim,
+                0.001f);
 }
 
 TEST_F(LightCommand, AnAlbedoOfHalfReflectsHalf) {
