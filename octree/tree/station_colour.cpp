@@ -5,9 +5,10 @@
 namespace lucarne::octree {
 
 const StationColour* find_colour(const std::vector<StationColour>& colours, const StationKey& key) {
-    const auto of_scan = std::ranges::equal_range(colours, key.scan, {}, &StationColour::scan);
-    for (const StationColour& colour : of_scan)
-        if (!colour.station || *colour.station == key.station) return &colour;
+    const auto before = [](const StationColour& colour, uint32_t scan) { return colour.scan < scan; };
+    auto colour = std::lower_bound(colours.begin(), colours.end(), key.scan, before);
+    for (; colour != colours.end() && colour->scan == key.scan; ++colour)
+        if (!colour->station || *colour->station == key.station) return &*colour;
     return nullptr;
 }
 
