@@ -36,7 +36,9 @@ void blend_small(Disc disc, Contribution c) {
         vec2 d = pixel - e.centre;
         float weight = disc_weight(ellipse_distance2(e, d)), offset;
         uint at = pixel_index(pixel);
-        weight = weight_at(at, pixel_tangent(pixel), disc.centre.z + dot(e.slope, d), weight, c, offset);
+        // The plane of a disc that is seen edge-on could lie anywhere; that of a widened one reaches over its rim.
+        float z = disc.centre.z + clamp(dot(e.slope, d), -2.0 * disc.radius, 2.0 * disc.radius);
+        weight = weight_at(at, pixel_tangent(pixel), z, weight, c, offset);
         if (weight > 0.0) contribute(at, weight, offset, c);
         pixel = pixel.x < high.x ? vec2(pixel.x + 1.0, pixel.y) : vec2(low.x, pixel.y + 1.0);
     } while (pixel.y <= high.y);
