@@ -72,12 +72,12 @@ struct Arriving {
 
 // Returns the share, from 0 to 1, of the light between two points that counts, because they may belong to one surface.
 // `heights` are those of each over the plane of the other, m; `cosine` is that between their normals. Points of one
-// plane do not light each other, whichever side they face: positions are rounded, and the G-buffer lets the rim of a disc
-// stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a roof would light the
-// ceiling under it. Neither do points that see each other at very low angles: on a scanned floor noise tilts normals by
-// some degrees, and two points that happen to lean toward each other would exchange light over many metres (a loft by
-// daylight became 40 % too bright in this way). Where both face each other they may also be the two sides of a thin sheet,
-// such as a ceiling in the sun: only points that stand clear of each other count.
+// plane do not light each other, whichever side they face: positions are rounded, and the G-buffer lets the rim of a
+// disc stick out of the surface that hides it by a share of its radius (kRimPush). Otherwise a lamp on a roof would
+// light the ceiling under it. Neither do points that see each other at very low angles: noise tilts the normals of a
+// scanned floor by some degrees, and two points that happen to lean toward each other would exchange light over many
+// metres (README.md has figures). Where both face each other they may also be the two sides of a thin sheet, such as a
+// ceiling in the sun: only points that stand clear of each other count.
 float separate_share(vec2 heights, float distance_m, float radius, float cosine) {
     float opposite = clamp(-cosine, 0.0, 1.0);
     float clearance = min(heights.x, heights.y) / radius;
