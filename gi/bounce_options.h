@@ -16,7 +16,7 @@ inline constexpr Option<uint32_t> kBounces{{
     .least = 0,
     .most = 64,
     .slider = {0, 8},
-    .defaults = {int64_t{1}, int64_t{1}, int64_t{1}},
+    .defaults = {int64_t{1}, int64_t{3}, int64_t{3}},
     .keeps = true,
 }};
 

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
+#include "gi/lighting/sky_grid.h"
 #include "gi/shared/luminance.h"
 
 namespace lucarne::gi {
 namespace {
 
 constexpr uint32_t kMostColumns = 512;
+/// Share of the directions that are drawn by luminance alone: a direction that the importance missed counts
+/// at most twice as much as without it.
+constexpr double kByLuminance = 0.5;
+constexpr uint32_t kProbes = 4;  ///< along both sides of a cell, where the luminance is looked up
 
 /// Returns the first running sum that is beyond `at`, a share in [0, 1) of the last sum. Sets `at` to the
 /// share within that step.
@@ -22,6 +26,20 @@ uint32_t take(std::span<const double> running, double& at) {
     const double before = found ? running[found - 1] : 0;
     at = std::clamp((value - before) / (running[found] - before), 0.0, 1.0 - 1e-15);
     return static_cast<uint32_t>(found);
+}
+
+/// Returns the direction of height z at `u`, a share of a turn from the left edge of an environment's
+/// picture.
+glm::vec3 toward(double z, double u, double rotation) {
+    const double sine = std::sqrt(std::max(0.0, 1 - z * z));
+    const double turns = 2 * M_PI * (u - .5) - rotation;  // from +y to +x
+    return {sine * std::sin(turns), sine * std::cos(turns), z};
+}
+
+/// Returns the direction at (u, v) in [0, 1)^2 of a cell of the sky's grid, even over its solid angle.
+glm::vec3 in_cell(uint32_t cell, double u, double v) {
+    const double row = cell / kSkyColumns + v;
+    return toward(1 - 2 * row / kSkyRows, (cell % kSkyColumns + u) / kSkyColumns, 0);
 }
 
 }  // namespace
@@ -60,7 +78,7 @@ double SkyDirections::row_weight(uint32_t first_x, uint32_t end_x, uint32_t y) c
     return sum;
 }
 
-SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
+glm::vec3 SkyDirections::draw_by_luminance(const glm::dvec2& point) const {
     const Environment& sky = *environment_;
     double u = point.x, v = point.y;
     const uint32_t row = take(row_sums_, v);
@@ -77,12 +95,49 @@ SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
     // Draw evenly over the solid angle of the texel; gi/shared/environment.h defines where it lies.
     const double slice = M_PI / sky.height;
     const double top = std::cos(y * slice), low = std::cos((y + 1.0) * slice);
-    const double z = top + (low - top) * v, sine = std::sqrt(std::max(0.0, 1 - z * z));
-    const double turns = 2 * M_PI * ((x + u) / sky.width - .5) - sky.rotation;  // from +y to +x
-    const glm::vec3& radiance = sky.texels[size_t{y} * sky.width + x];
-    // The density is luminance over total.
-    return {glm::vec3(sine * std::sin(turns), sine * std::cos(turns), z),
-            radiance * static_cast<float>(total_ / luminance(glm::dvec3(radiance)))};
+    return toward(top + (low - top) * v, (x + u) / sky.width, sky.rotation);
+}
+
+glm::vec3 SkyDirections::draw_favoured(const glm::dvec2& point) const {
+    double within = point.y;
+    const uint32_t cell = take(favoured_, within);
+    return in_cell(cell, point.x, within);
+}
+
+void SkyDirections::favour(std::span<const float> importance) {
+    favoured_.clear();
+    if (dark() || importance.size() != kSkyCells) return;
+    double sum = 0;
+    for (uint32_t cell = 0; cell < kSkyCells; ++cell) {
+        double bright = 0;
+        if (importance[cell] > 0)
+            for (uint32_t probe = 0; probe < kProbes * kProbes; ++probe)
+                bright += luminance(glm::dvec3(environment_->radiance(
+                    in_cell(cell, (probe % kProbes + .5) / kProbes, (probe / kProbes + .5) / kProbes))));
+        // The root, because what matters little to the whole picture matters to its dark parts.
+        sum += bright * std::sqrt(std::max(importance[cell], 0.0f));
+        favoured_.push_back(sum);
+    }
+    if (!(sum > 0) || !std::isfinite(sum)) favoured_.clear();
+}
+
+SkyDirections::Drawn SkyDirections::draw(const glm::dvec2& point) const {
+    glm::vec3 direction;
+    if (favoured_.empty())
+        direction = draw_by_luminance(point);
+    else if (point.y < kByLuminance)
+        direction = draw_by_luminance({point.x, point.y / kByLuminance});
+    else
+        direction = draw_favoured({point.x, (point.y - kByLuminance) / (1 - kByLuminance)});
+    const glm::vec3 radiance = environment_->radiance(direction);
+    // Densities, 1/sr. Both ways may draw this direction: the balance heuristic (Veach & Guibas 1995).
+    double density = luminance(glm::dvec3(radiance)) / total_;
+    if (!favoured_.empty()) {
+        const uint32_t cell = sky_cell(direction);
+        const double share = (favoured_[cell] - (cell ? favoured_[cell - 1] : 0)) / favoured_.back();
+        density = kByLuminance * density + (1 - kByLuminance) * share * kSkyCells / (4 * M_PI);
+    }
+    return {direction, density > 0 ? radiance * static_cast<float>(1 / density) : glm::vec3(0.0f)};
 }
 
 }  // namespace lucarne::gi

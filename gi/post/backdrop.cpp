@@ -6,11 +6,12 @@
 
 namespace lucarne::gi {
 
-Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Backdrop& backdrop,
-                           Buffer& picture) {
+Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Buffer& radiance, bool averaged,
+                           const Backdrop& backdrop, Buffer& picture) {
     if (backdrop.kind == Backdrop::Kind::scene) return {};
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/backdrop.comp"));
     gbuffer.texels.bind_texels(post::kUnitGBuffer, TexelView::four_words);
+    radiance.bind(post::kBindRadiance);
     picture.bind(post::kBindPicture);
     const auto set = [&](std::string_view uniform, const glm::dvec3& colour) {
         const glm::vec3 c(colour);
@@ -18,6 +19,7 @@ Result<void> draw_backdrop(Device& device, const GBuffer& gbuffer, const Backdro
     };
     set("top", backdrop.top);
     set("bottom", backdrop.kind == Backdrop::Kind::gradient ? backdrop.bottom : backdrop.top);
+    program->set("averaged", averaged ? 1u : 0u);
     program->set("width", gbuffer.width);
     program->set("height", gbuffer.height);
     program->dispatch(gbuffer.width * gbuffer.height);

@@ -10,6 +10,7 @@ uniform vec4 view_forward;  // unit; w: near plane, m
 uniform vec4 view_origin;  // w: 1 if orthographic, else 0
 uniform uint view_width;
 uniform uint view_height;
+uniform vec2 view_shift;  // of the rays from the middles of their pixels, pixels (CameraView)
 uniform float point_scale;   // scale of the radii
 uniform float point_pixels;  // if over 0: the diameter of all points
 
@@ -25,8 +26,10 @@ const uint kNoKey = 0xffffffffu;
 
 vec2 pixels_per_tangent() { return vec2(view_width, view_height) / (2.0 * vec2(view_right.w, view_down.w)); }
 vec2 pixel_tangent(vec2 pixel) {
-    return (2.0 * (pixel + 0.5) / vec2(view_width, view_height) - 1.0) * vec2(view_right.w, view_down.w);
+    return (2.0 * (pixel + 0.5 + view_shift) / vec2(view_width, view_height) - 1.0) * vec2(view_right.w, view_down.w);
 }
+// Returns the place of the forward axis in the picture, pixels.
+vec2 view_middle() { return 0.5 * vec2(view_width, view_height) - view_shift; }
 // Returns the factor by which widths and heights in the view grow with depth.
 float view_scale(float depth) { return view_origin.w > 0.0 ? 1.0 : depth; }
 vec2 ray_slope(vec2 tangent) { return tangent * (1.0 - view_origin.w); }
@@ -83,7 +86,7 @@ vec2 tangent_range(float centre, float normal, Disc disc) {
 // of the centre of the disc, for which it always competes. Returns false if there are no such pixels.
 bool disc_box(Disc disc, out ivec4 box, out ivec2 home) {
     vec2 scale = pixels_per_tangent();
-    vec2 middle = 0.5 * vec2(view_width, view_height);
+    vec2 middle = view_middle();
     ivec2 last = ivec2(view_width, view_height) - 1;
     home = ivec2(-1);
     if (disc.centre.z > view_forward.w)

@@ -18,6 +18,7 @@ void set_disc_view(const Program& program, const CameraView& view, const PointSi
     axis("view_forward", {view.forward.x, view.forward.y, view.forward.z}, view.origin.w);
     axis("view_origin", {view.origin.x, view.origin.y, view.origin.z},
          view.projection == kOrthographic ? 1.0f : 0.0f);
+    program.set_block("view_shift", std::array{view.right.w, view.up.w});
     program.set("view_width", view.width);
     program.set("view_height", view.height);
     program.set("point_scale", size.scale);

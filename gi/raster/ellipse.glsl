@@ -14,7 +14,7 @@ Ellipse project(Disc disc) {
     vec2 scale = pixels_per_tangent();
     vec2 place = disc.centre.xy / view_scale(disc.centre.z), tangent = ray_slope(place);
     Ellipse e;
-    e.centre = place * scale + 0.5 * vec2(view_width, view_height) - 0.5;
+    e.centre = place * scale + view_middle() - 0.5;
     float facing = dot(disc.normal, vec3(tangent, 1.0));
     if (abs(facing) < 1e-4) facing = 1e-4;
     vec2 step = view_scale(disc.centre.z) / scale;  // m a pixel at the centre's depth

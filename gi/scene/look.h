@@ -67,7 +67,9 @@ struct Look {
     std::bitset<256> hidden_classes;  ///< neither drawn nor blocking light
     double point_size = 1;            ///< scales the surfels' radii for the camera only, .05 to 20
     double point_pixels = 0;          ///< if over 0: the diameter of every point, pixels
+    uint32_t outliers = 1;      ///< how strictly points are left out that are on no surface, 0 (none) to 3
     bool single_discs = false;  ///< draws each pixel as its nearest disc, not blended with those around it
+    bool open_holes = false;    ///< leaves out the surfels that fill holes of the scans
     Unlit unlit;
     Backdrop backdrop;
     Clip clip;
@@ -76,7 +78,8 @@ struct Look {
     bool operator==(const Look&) const = default;
 };
 
-/// Returns whether both looks give every point the same colour; otherwise points have to be coloured again.
+/// Returns whether both looks show the same points in the same colours; otherwise points have to be packed
+/// again.
 bool same_colours(const Look& a, const Look& b);
 
 }  // namespace lucarne::gi

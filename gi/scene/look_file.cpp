@@ -142,7 +142,7 @@ bool has_range(ColourBy by) {
 
 bool same_colours(const Look& a, const Look& b) {
     return a.colour == b.colour && a.attribute == b.attribute && a.map == b.map && a.reversed == b.reversed &&
-           a.range == b.range && a.hidden_classes == b.hidden_classes;
+           a.range == b.range && a.hidden_classes == b.hidden_classes && a.outliers == b.outliers;
 }
 
 Result<Look> read_look(JsonObject object) {
@@ -150,7 +150,10 @@ Result<Look> read_look(JsonObject object) {
     LUCARNE_TRY(read_colours(object, look));
     LUCARNE_ASSIGN(look.point_size, object.number("point_size", kSize, look.point_size));
     LUCARNE_ASSIGN(look.point_pixels, object.number("point_pixels", kPixels, look.point_pixels));
+    LUCARNE_ASSIGN(const int64_t outliers, object.integer("outliers", 0, 3, look.outliers));
+    look.outliers = static_cast<uint32_t>(outliers);
     LUCARNE_ASSIGN(look.single_discs, object.boolean("single_discs", false));
+    LUCARNE_ASSIGN(look.open_holes, object.boolean("open_holes", false));
     LUCARNE_ASSIGN(const size_t shading,
                    object.choice("shading", list(shading_names()), static_cast<size_t>(look.unlit.shading)));
     look.unlit.shading = static_cast<Shading>(shading);
@@ -189,7 +192,9 @@ json write_look(const Look& look) {
         if (look.hidden_classes[number]) written["hidden_classes"].push_back(number);
     put("point_size", look.point_size, plain.point_size);
     put("point_pixels", look.point_pixels, plain.point_pixels);
+    put("outliers", look.outliers, plain.outliers);
     put("single_discs", look.single_discs, plain.single_discs);
+    put("open_holes", look.open_holes, plain.open_holes);
     if (look.unlit.shading != plain.unlit.shading)
         written["shading"] = shading_names()[static_cast<size_t>(look.unlit.shading)];
     put("shading_strength", look.unlit.strength, plain.unlit.strength);

@@ -16,18 +16,32 @@ namespace lucarne::gi {
 // direction `forward`, and the ray through (x, y) starts at
 //   origin + right * (2 (x + .5) / width - 1) - up * (2 (y + .5) / height - 1);
 // There `right` and `up` carry half the width and half the height of the view, m.
+// Averages of frames are antialiased by rays that do not pass through the middles of their pixels: right.w
+// and up.w are added to x and y, so they move all rays to the right and down by these parts of a pixel.
 LUCARNE_CONST uint kPerspective = 0u, kOrthographic = 1u;
 
 LUCARNE_STRUCT(CameraView) {
     vec4 origin;   // xyz: metres, relative to the local origin; w: near plane (m)
     vec4 forward;  // unit
-    vec4 right;    // unit * tan(half horizontal field), or half the width
-    vec4 up;       // unit * tan(half vertical field), or half the height
+    vec4 right;    // unit * tan(half horizontal field), or half the width; w: shift to the right, pixels
+    vec4 up;       // unit * tan(half vertical field), or half the height; w: shift down, pixels
     uint width, height, projection, pad0;
 #ifdef __cplusplus
     bool operator==(const CameraView&) const = default;
 #endif
 };
+
+// Returns where the ray through the picture point `at` (pixels, middles of pixels at .5) crosses the plane of
+// the picture, along `right` and -`up`, -1 to 1 from edge to edge.
+LUCARNE_FN vec2 view_ndc(CameraView view, vec2 at) {
+    vec2 shifted = at + vec2(view.right.w, view.up.w);
+    return 2.0f * shifted / vec2(float(view.width), float(view.height)) - 1.0f;
+}
+// Returns the picture point of a ray, the inverse of view_ndc().
+LUCARNE_FN vec2 view_pixel(CameraView view, vec2 ndc) {
+    vec2 shifted = (0.5f * ndc + 0.5f) * vec2(float(view.width), float(view.height));
+    return shifted - vec2(view.right.w, view.up.w);
+}
 
 #ifdef __cplusplus
 static_assert(sizeof(CameraView) == 80);

@@ -7,7 +7,7 @@ bool is_parallel(CameraView view) { return view.projection == kOrthographic; }
 // Returns the offset of the picture point `at` (pixels, pixel centres at .5) from the middle of the picture, along
 // `right` and `up`.
 vec3 view_across(CameraView view, vec2 at) {
-    vec2 ndc = 2.0 * at / vec2(view.width, view.height) - 1.0;
+    vec2 ndc = view_ndc(view, at);
     return view.right.xyz * ndc.x - view.up.xyz * ndc.y;
 }
 // Returns the ray through the picture point `at`, scaled so that dot(ray, forward) = 1.
@@ -28,7 +28,7 @@ vec2 view_place(CameraView view, vec3 position, out float depth) {
     vec2 ndc = vec2(dot(offset, view.right.xyz) / dot(view.right.xyz, view.right.xyz),
                     -dot(offset, view.up.xyz) / dot(view.up.xyz, view.up.xyz));
     if (!is_parallel(view)) ndc /= depth;
-    return (0.5 * ndc + 0.5) * vec2(view.width, view.height);
+    return view_pixel(view, ndc);
 }
 // Returns the height of a pixel at a depth, m.
 float pixel_height(CameraView view, float depth) {

@@ -157,20 +157,63 @@ uint32_t SurfelPool::capacity() const {
     return capacity_;
 }
 
+/// What a cut consists of, on the host.
+struct SurfelPool::CutParts {
+    std::vector<CutItem> items;
+    std::vector<CutBlock> blocks;
+    std::vector<CutNode> nodes;
+    uint64_t fingerprint = 0, surfels = 0, clipped = 0;
+};
+
+/// Adds synthetic surfels: cubes whose surfels all have shares of their own and no levels of detail. They
+/// come after all points, and no run of CutPoints has their ids.
+void SurfelPool::add_filling(const octree::Filling& filling, uint32_t first, double unit,
+                             const glm::dvec3& local_origin, const Clip& clip, CutParts& parts) const {
+    for (uint32_t i = 0; i < filling.nodes.size(); ++i) {
+        const auto resident = resident_.find(first + i);
+        if (resident == resident_.end()) continue;
+        const octree::Cube own = filling.header.root.of(filling.nodes[i].key);
+        const octree::Cube cube{own.min * filling.scale, own.size * filling.scale};
+        CutItem item{};
+        item.origin = glm::vec3((cube.min - local_origin) * unit);
+        item.size = static_cast<float>(cube.size * unit);
+        item.count = resident->second.count;
+        for (int& child : item.child) child = kCoarseOctant;
+        const Kept seen = clip.active() ? kept(clip, cube) : Kept::all;
+        item.clip = seen == Kept::some;  // its index is set by make_cut
+        const uint32_t drawn = seen == Kept::none ? 0 : item.count;
+        const double mean = filling.nodes[i].area_floor[0] * filling.scale * filling.scale * unit * unit;
+        const auto whole = static_cast<float>(std::min(mean * item.count, double{item.size * item.size}));
+        for (uint32_t at = 0; at < drawn; at += kBlockSurfels) {
+            const uint32_t count = std::min(drawn - at, kBlockSurfels);
+            const auto lod = [&](uint32_t points) {
+                return area_code(std::max(whole / static_cast<float>(std::max(points, 1u)), 1e-18f));
+            };
+            parts.blocks.push_back(
+                {static_cast<uint32_t>(parts.items.size()),
+                 resident->second.pages[at / kPageSurfels] * kPageSurfels + at % kPageSurfels, count,
+                 lod(at) | lod(at + count) << 16});
+        }
+        parts.fingerprint = mix64(parts.fingerprint, resident->second.content);
+        if (drawn)
+            parts.nodes.push_back(
+                {first + i, mix64(resident->second.content, hash(std::span<const CutItem>(&item, 1)))});
+        parts.items.push_back(item);
+    }
+}
+
 Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& source,
                                   std::span<const CutEntry> entries, const glm::dvec3& local_origin,
-                                  DeviceCut& cut, const Clip& clip) const {
+                                  DeviceCut& cut, const Clip& clip,
+                                  std::span<const octree::Filling> fillings) const {
     const auto nodes = source.nodes();
     const double unit = source.header().metres_per_unit;
     std::vector<CutEntry> sorted(entries.begin(), entries.end());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
     std::unordered_map<uint32_t, uint32_t> item_of;  // node -> item; parents come before their children
-    std::vector<CutItem> items;
-    std::vector<CutBlock> blocks;
+    CutParts parts;
+    auto& [items, blocks, cut_nodes, fingerprint, surfels, clipped] = parts;
     const auto cut_points = std::make_shared<CutPoints>();
-    uint64_t surfels = 0, clipped = 0;
-    cut.fingerprint_ = 0;
-    cut.nodes_.clear();
     for (const CutEntry& entry : sorted) {
         const auto resident = resident_.find(entry.node);
         if (entry.node >= nodes.size() || resident == resident_.end() || item_of.contains(entry.node))
@@ -189,7 +232,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         CutItem item{};
         item.origin = glm::vec3((cube.min - local_origin) * unit);
         item.size = static_cast<float>(cube.size * unit);
-        cut.fingerprint_ = mix64(cut.fingerprint_, resident->second.content);
+        fingerprint = mix64(fingerprint, resident->second.content);
         item.count = std::min(entry.count, resident->second.count);
         // The floor never exceeds the parent's: where few points of a node stand among many of its
         // ancestors, the ancestors' points must not grow.
@@ -217,11 +260,16 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
         CutItem own = item;
         for (int& child : own.child) child = std::min(child, 0);
         if (drawn)
-            cut.nodes_.push_back(
+            cut_nodes.push_back(
                 {entry.node, mix64(resident->second.content, hash(std::span<const CutItem>(&own, 1)))});
         surfels += drawn;
         clipped += item.count - drawn;
         items.push_back(item);
+    }
+    uint32_t first_filled = kFirstFilled;
+    for (const octree::Filling& filling : fillings) {
+        add_filling(filling, first_filled, unit, local_origin, clip, parts);
+        first_filled += static_cast<uint32_t>(filling.nodes.size());
     }
     assert(surfels <= capacity_);
     cut.clip_ = device_clip(clip, local_origin, unit);
@@ -230,12 +278,13 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     const size_t item_bytes = items.size() * sizeof(CutItem);
     LUCARNE_TRY(device.reserve(cut.items_, item_bytes + cut.clip_.shapes.size() * sizeof(ClipShape), "cut"));
     LUCARNE_TRY(device.reserve(cut.blocks_buffer_, blocks.size() * sizeof(CutBlock), "cut"));
-    cut.fingerprint_ = mix64(cut.fingerprint_, hash(std::span<const CutItem>(items)));
+    cut.fingerprint_ = mix64(fingerprint, hash(std::span<const CutItem>(items)));
     cut.fingerprint_ = mix64(cut.fingerprint_, hash(std::span<const ClipShape>(cut.clip_.shapes)));
     cut.items_.upload_all(items);
     cut.items_.upload(item_bytes, std::as_bytes(std::span(cut.clip_.shapes)));
     cut.blocks_buffer_.upload_all(blocks);
     cut.pool_ = &buffer_;
+    cut.nodes_ = std::move(cut_nodes);
     cut.host_items_ = std::move(items);
     cut.clipped_ = static_cast<uint32_t>(clipped);
     cut.surfels_ = static_cast<uint32_t>(surfels);

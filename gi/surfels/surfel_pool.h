@@ -44,7 +44,12 @@ struct PointPlace {
     bool operator==(const PointPlace&) const = default;
 };
 
-/// Maps the surfels of a cut to points of the source. It stays valid when the cut is gone.
+/// The pool's number of the first node of the fillings (octree::Filling); those of a source's nodes are
+/// smaller.
+inline constexpr uint32_t kFirstFilled = 0x80000000u;
+
+/// Maps the surfels of a cut to points of the source. Synthetic surfels are no points. It stays valid when
+/// the cut is gone.
 class CutPoints {
  public:
     /// Returns the point of an id in a G-buffer drawn from the cut; none for kNoSurfel and ids without a
@@ -109,9 +114,11 @@ class SurfelPool {
     /// Builds a cut from resident nodes. `entries` must contain the ancestors of every entry; entries that
     /// are not resident are left out with their descendants. `local_origin` is in world units; everything on
     /// the device is in metres relative to it. Surfels that `clip` removes do not exist for readers of the
-    /// cut.
+    /// cut. `fillings` are drawn whole as far as they are resident: their nodes, one after the other, are
+    /// loaded as kFirstFilled and the following numbers.
     Result<void> make_cut(Device& device, const octree::NodeSource& source, std::span<const CutEntry> entries,
-                          const glm::dvec3& local_origin, DeviceCut& cut, const Clip& clip = {}) const;
+                          const glm::dvec3& local_origin, DeviceCut& cut, const Clip& clip = {},
+                          std::span<const octree::Filling> fillings = {}) const;
 
     /// Decodes the cut's surfels with their footprints on the host, by the same rules, in the order of their
     /// ids without the gaps. The reference engine traces them.
@@ -123,6 +130,9 @@ class SurfelPool {
         uint32_t count = 0;    ///< surfels
         uint64_t content = 0;  ///< hash of the surfels
     };
+    struct CutParts;
+    void add_filling(const octree::Filling& filling, uint32_t first, double unit,
+                     const glm::dvec3& local_origin, const Clip& clip, CutParts& parts) const;
     void upload(const Resident& node, std::span<const PackedSurfel> surfels);
 
     Buffer buffer_;

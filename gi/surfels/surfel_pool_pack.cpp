@@ -8,6 +8,7 @@
 #include "gi/shared/surfel_code.h"
 #include "gi/surfels/baked_light.h"
 #include "gi/surfels/colouring.h"
+#include "gi/surfels/outliers.h"
 #include "gi/surfels/point_colours.h"
 #include "gi/surfels/surfel_pool.h"
 #include "octree/tree/attributes.h"
@@ -51,8 +52,12 @@ class Packer {
         const bool has_normal = n != glm::vec3(0.0f);
         surfel.c = has_normal ? encode_octahedral(n) : 0u;
         if (has_normal) surfel.d |= kSurfelHasNormal;
+        if (!hidden && surfel_is_stray(surfel.b, surfel.d)) outliers_.push_back(packed_);
+        ++packed_;
         return surfel;
     }
+    /// The packed records, by their numbers, that the converter found to be outliers.
+    const std::vector<uint32_t>& outliers() const { return outliers_; }
 
  private:
     const Attribute* find(std::string_view name, uint32_t components) const {
@@ -122,6 +127,8 @@ class Packer {
     const BakedLight* const baked_;
     PointColours colours_;
     const Attribute *area_, *classification_, *scan_;
+    uint32_t packed_ = 0;
+    std::vector<uint32_t> outliers_;
 };
 
 /// The shares of a node add up to its surface. Where a hostile file claims more than a node can hold, all
@@ -148,6 +155,7 @@ std::vector<PackedSurfel> pack_surfels(const octree::SourceHeader& header, const
     std::vector<PackedSurfel> surfels(std::min<size_t>(data.count, data.records.size() / stride));
     Packer packer(header, node, data, scene, first_scan, baked);
     for (size_t i = 0; i < surfels.size(); ++i) surfels[i] = packer.pack(data.records.data() + i * stride);
+    choose_outliers(scene.look.outliers, packer.outliers(), surfels);
     limit_areas(surfels);
     return surfels;
 }

@@ -29,6 +29,8 @@ constexpr std::array kEntries = {
           "a cathedral nave, 12 x 30 x 15 m: columns, rib vaults, open windows, tiles, coloured cloth",
           build_nave},
     Entry{"two-rooms", "two sealed rooms with an open door and a closed door between them", build_two_rooms},
+    Entry{"house", "two rooms with thick walls and a roof: a window, a shut door with an opening above it",
+          build_house},
     Entry{"statue", "a smooth closed body on a plinth, seen from outside", build_statue},
     Entry{"ring", "a metal ring of 70 cm that stands on a floor before a wall", build_ring},
     Entry{"paraboloid", "a metal mirror of 1.2 m before a wall, focal length 1.2 m", build_paraboloid},

@@ -22,6 +22,7 @@ SceneModel build_cornell();
 SceneModel build_furnace();
 SceneModel build_nave();
 SceneModel build_two_rooms();
+SceneModel build_house();
 SceneModel build_statue();
 SceneModel build_ring();
 SceneModel build_paraboloid();

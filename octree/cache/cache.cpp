@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "octree/cache/file.h"
+#include "octree/tree/filling.h"
 
 namespace lucarne::octree {
 
@@ -153,6 +154,16 @@ Result<void> CacheFile::check_payloads() {
     ranges.reserve(nodes_.size() + 2);
     ranges.emplace_back(block_.directory_offset, block_.directory_offset + block_.directory_bytes);
     ranges.emplace_back(block_.metadata_offset, block_.metadata_offset + block_.metadata_bytes);
+    if (header_.filling && header_.filling->points > 0) {
+        const FillingSection& filling = *header_.filling;
+        const uint64_t records = filling.points * filling.schema.stride;
+        if (records > codec::kMostRecordBytes ||
+            (filling.codec == format::kCodecRaw ? filling.bytes != records : filling.bytes >= records))
+            return damaged(*file_, "it states a wrong size of its synthetic surfels");
+        if (!inside(filling.offset, filling.bytes, block_.file_bytes))
+            return damaged(*file_, "its synthetic surfels lie outside the file");
+        ranges.emplace_back(filling.offset, filling.offset + filling.bytes);
+    }
     for (size_t i = 0; i < nodes_.size(); ++i) {
         const uint64_t bytes = nodes_[i].payload_bytes;
         const uint64_t records = uint64_t{nodes_[i].count} * reader_.stride(payloads_[i].layout);
@@ -173,12 +184,15 @@ Result<void> CacheFile::check_payloads() {
 Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride) {
     const bool raw = payload.codec == format::kCodecRaw;
-    LUCARNE_ASSIGN(auto bytes, read_checked(file, payload.offset, info.payload_bytes, payload.checksum,
-                                            fmt::format("node {}", node), raw ? 0 : codec::kReadAhead));
+    LUCARNE_ASSIGN(auto bytes,
+                   read_checked(file, payload.offset, info.payload_bytes, payload.checksum,
+                                node == kNoNode ? "its synthetic surfels" : fmt::format("node {}", node),
+                                raw ? 0 : codec::kReadAhead));
     if (raw) return NodeData{info.count, std::move(bytes)};
     NodeData data{info.count, std::vector<std::byte>(size_t{info.count} * stride)};
     if (!decoders.decode(std::span(bytes).first(info.payload_bytes), data.records))
-        return damaged(file, fmt::format("the points of node {} do not decode", node));
+        return damaged(file, node == kNoNode ? "its synthetic surfels do not decode"
+                                             : fmt::format("the points of node {} do not decode", node));
     return data;
 }
 
@@ -207,6 +221,23 @@ Result<NodeData> PayloadReader::load(const ByteSource& file, uint32_t node, cons
 
 Result<NodeData> CacheFile::load(uint32_t node) const {
     return reader_.load(*file_, node, nodes_[node], payloads_[node]);
+}
+
+Result<NodeData> CacheFile::load_filling() const {
+    if (!header_.filling || header_.filling->points == 0) return NodeData{};
+    const FillingSection& filling = *header_.filling;
+    codec::DecoderPool decoders(filling.schema);
+    const NodeInfo info{.count = static_cast<uint32_t>(filling.points),
+                        .payload_bytes = static_cast<uint32_t>(filling.bytes)};
+    return load_payload(*file_, kNoNode, info, {filling.offset, filling.checksum, filling.codec, 0}, decoders,
+                        filling.schema.stride);
+}
+
+Result<std::vector<Filling>> CacheFile::fillings() const {
+    LUCARNE_ASSIGN(NodeData data, load_filling());
+    std::vector<Filling> fillings;
+    if (data.count > 0) fillings.push_back(grouped_filling(header_, data));
+    return fillings;
 }
 
 Entry CacheFile::entry(uint32_t node) const {

@@ -23,8 +23,8 @@ struct StoredPayload {
     uint64_t offset = 0, checksum = 0;
     uint8_t codec = format::kCodecRaw, layout = 0;
 };
-/// Reads, checks and decodes a node's points, in the layout in which they are stored. The node's sizes must
-/// have been checked against the file.
+/// Reads, checks and decodes a node's points (kNoNode: synthetic surfels, which errors call so), in the
+/// layout in which they are stored. The node's sizes must have been checked against the file.
 Result<NodeData> load_payload(const ByteSource& file, uint32_t node, const NodeInfo& info,
                               const StoredPayload& payload, codec::DecoderPool& decoders, uint32_t stride);
 
@@ -58,7 +58,11 @@ class CacheFile final : public NodeSource {
     const SourceHeader& header() const override { return header_; }
     std::span<const NodeInfo> nodes() const override { return nodes_; }
     Result<NodeData> load(uint32_t node) const override;
+    Result<std::vector<Filling>> fillings() const override;
 
+    /// Loads the records of all synthetic surfels, in the schema of header().filling; empty if there are
+    /// none.
+    Result<NodeData> load_filling() const;
     /// Returns a node's directory entry.
     format::Entry entry(uint32_t node) const;
     const ByteSource& file() const { return *file_; }

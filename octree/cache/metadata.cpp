@@ -167,6 +167,37 @@ std::vector<StationColour> colours_of(const json& value, size_t scans) {
     return colours;
 }
 
+json filling_json(const FillingSection& filling) {
+    json result{{"points", filling.points}};
+    if (filling.points == 0) return result;
+    result["schema"] = schema_json(filling.schema);
+    result["offset"] = filling.offset;
+    result["bytes"] = filling.bytes;
+    result["codec"] = filling.codec;
+    result["checksum"] = filling.checksum;
+    return result;
+}
+
+uint64_t unsigned_of(const json& value) {
+    require(value.is_number_unsigned(), "a number that is not negative is expected");
+    return value.get<uint64_t>();
+}
+
+FillingSection filling_of(const json& value) {
+    FillingSection filling;
+    filling.points = unsigned_of(value.at("points"));
+    require(filling.points <= kMostFilled, "more synthetic surfels than a cache can have");
+    if (filling.points == 0) return filling;
+    filling.schema = schema_of(value.at("schema"));
+    require(filling.schema.position == io::PositionType::i32_scaled,
+            "synthetic surfels with an impossible position");
+    filling.offset = unsigned_of(value.at("offset"));
+    filling.bytes = unsigned_of(value.at("bytes"));
+    filling.checksum = unsigned_of(value.at("checksum"));
+    filling.codec = static_cast<uint8_t>(index_of(value.at("codec"), format::kCodecColumns + 1));
+    return filling;
+}
+
 json root_json(const Cube& root) {
     json result{{"min", vector_json(root.min)}, {"size", root.size}};
     if (root.doublings)
@@ -219,6 +250,7 @@ std::string metadata_text(const SourceHeader& header) {
     if (!header.options.empty()) root["options"] = header.options;
     if (!header.layouts.empty()) root["layouts"] = std::move(layouts);
     for (const auto& colour : header.station_colours) root["station_colours"].push_back(colour_json(colour));
+    if (header.filling) root["filling"] = filling_json(*header.filling);
     // File names are bytes and not always UTF-8. Invalid sequences become U+FFFD instead of an exception.
     return root.dump(1, ' ', false, json::error_handler_t::replace);
 }
@@ -248,6 +280,7 @@ Result<SourceHeader> parse_metadata(const std::string& file, std::string_view te
         for (const auto& scan : root.at("scans")) header.scans.push_back(scan_of(scan));
         if (root.contains("station_colours"))
             header.station_colours = colours_of(root.at("station_colours"), header.scans.size());
+        if (root.contains("filling")) header.filling = filling_of(root.at("filling"));
         return header;
     } catch (const std::exception& error) {
         return rejected(file, fmt::format("its metadata is damaged ({})", error.what()),

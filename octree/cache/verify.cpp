@@ -45,6 +45,22 @@ Result<void> check_points(const CacheFile& cache, uint32_t index, glm::dvec3& le
     return {};
 }
 
+/// Checks that the synthetic surfels can be read and lie in the root cube.
+Result<void> check_filling(const CacheFile& cache) {
+    LUCARNE_ASSIGN(const NodeData data, cache.load_filling());
+    if (data.count == 0) return {};
+    const auto& schema = cache.header().filling->schema;
+    const Cube& root = cache.header().root;
+    const glm::dvec3 least = root.min - 1e-6 * root.size, most = root.min + (1 + 1e-6) * root.size;
+    for (size_t i = 0; i < data.count; ++i) {
+        const auto p = io::position_of(schema, &data.records[i * schema.stride]);
+        if (!(glm::all(glm::greaterThanEqual(p, least)) && glm::all(glm::lessThanEqual(p, most))))
+            return rejected(cache.file().path().string(),
+                            fmt::format("synthetic surfel {} lies outside the root cube", i));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
@@ -62,6 +78,7 @@ Result<VerifyReport> verify_cache(std::shared_ptr<const ByteSource> file,
         report.depth = std::max(report.depth, nodes[i].key.level);
         progress(nodes[i].payload_bytes);
     }
+    LUCARNE_TRY(check_filling(*cache));
     if (report.points && (least != cache->header().min || most != cache->header().max))
         return rejected(name, "its stored bounds differ from those of its points");
     report.nodes = nodes.size();

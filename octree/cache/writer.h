@@ -34,6 +34,12 @@ class CacheWriter {
     /// Visits the coarsest of the nodes added so far: the root, further whole levels that have `most` points
     /// at the most, and of the next level as many nodes, evenly spaced. `header` is that of the new state.
     Result<void> visit_coarsest(const SourceHeader& header, uint64_t most, const NodeVisit& visit);
+    /// Takes a node's cube, its points or the first of them, and the least surface share of a point where no
+    /// others are drawn (NodeInfo::area_floor at that prefix; 0 where all points of a cube are visited).
+    using EvenVisit = std::function<void(const Cube& cube, const NodeData& data, float floor)>;
+    /// Visits an even subsample of at most about `most` points: the coarsest levels, and of the last one the
+    /// same share of every node.
+    Result<void> visit_even(const SourceHeader& header, uint64_t most, const EvenVisit& visit);
     /// Writes directory, metadata and superblocks, syncs, and gives a new file its name.
     Result<void> finish(const SourceHeader& header);
     /// Call when an update has failed: cuts off what it wrote, unless the switch may have happened.

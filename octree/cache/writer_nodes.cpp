@@ -3,11 +3,13 @@
 
 #include "octree/cache/file.h"
 #include "octree/cache/writer.h"
+#include "octree/tree/footprint.h"
 
 namespace lucarne::octree {
 namespace {
 
 constexpr uint64_t kMostVisited = 4096;  // nodes, where they have few points
+constexpr uint64_t kMostEven = 16384;    // nodes of an even subsample
 
 /// The file that is being written.
 class Unfinished final : public ByteSource {
@@ -73,6 +75,45 @@ Result<void> CacheWriter::visit_coarsest(const SourceHeader& header, uint64_t mo
         const StoredPayload payload{entry.payload_offset, entry.checksum, entry.codec, entry.layout};
         LUCARNE_ASSIGN(const NodeData data, reader.load(file, 0, info, payload));
         if (!visit(header.root.of(entry.key), data)) break;
+    }
+    return {};
+}
+
+Result<void> CacheWriter::visit_even(const SourceHeader& header, uint64_t most, const EvenVisit& visit) {
+    std::array<uint64_t, kMostLevel + 1> points{}, nodes{};
+    LUCARNE_TRY(each_entry([&](const format::Entry& entry) {
+        points[entry.key.level] += entry.count;
+        ++nodes[entry.key.level];
+    }));
+    std::array<double, kMostLevel + 1> share{};
+    uint64_t left_points = most, left_nodes = kMostEven;
+    size_t last = 0;
+    for (size_t level = 0; level <= kMostLevel && nodes[level] && nodes[level] <= left_nodes; ++level) {
+        share[level] = std::min(1.0, static_cast<double>(left_points) / static_cast<double>(points[level]));
+        last = level;
+        if (points[level] > left_points) break;
+        left_points -= points[level];
+        left_nodes -= nodes[level];
+    }
+    std::vector<format::Entry> chosen;
+    LUCARNE_TRY(each_entry([&](const format::Entry& entry) {
+        if (share[entry.key.level] > 0 && entry.count > 0) chosen.push_back(entry);
+    }));
+    const Unfinished file(end_,
+                          [this](uint64_t offset, std::span<std::byte> out) { return read_at(offset, out); });
+    LUCARNE_ASSIGN(const PayloadReader reader, PayloadReader::create(file.path().string(), header));
+    for (const format::Entry& entry : chosen) {
+        const NodeInfo info{.key = entry.key, .count = entry.count, .payload_bytes = entry.payload_bytes};
+        const StoredPayload payload{entry.payload_offset, entry.checksum, entry.codec, entry.layout};
+        LUCARNE_ASSIGN(NodeData data, reader.load(file, 0, info, payload));
+        const double part = share[entry.key.level];
+        data.count = static_cast<uint32_t>(part * data.count);
+        data.records.resize(size_t{data.count} * header.schema.stride);
+        const float floors[4] = {entry.area_floor[0], entry.area_floor[1], entry.area_floor[2],
+                                 entry.area_floor[3]};
+        const bool thinned = entry.key.level == last && (part < 1 || entry.child_mask != 0);
+        visit(header.root.of(entry.key), data,
+              thinned ? floor_at_prefix(floors, static_cast<float>(part)) : 0.0f);
     }
     return {};
 }

@@ -21,6 +21,7 @@
 #include "octree/convert/nodes/in_order.h"
 #include "octree/convert/scans/early_count.h"
 #include "octree/convert/scans/scan_stage.h"
+#include "octree/holes/hole_survey.h"
 
 namespace lucarne::octree {
 namespace {
@@ -225,6 +226,11 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     header.schema = loader.schema();
     LUCARNE_ASSIGN(header.station_colours,
                    timed(report, "colours", [&] { return survey_colours(writer, header); }));
+    if (options.fill) {
+        LUCARNE_ASSIGN(header.filling,
+                       timed(report, "holes", [&] { return fill_holes(writer, header, options.memory); }));
+        report.filled = header.filling->points;
+    }
     LUCARNE_TRY(timed(report, "write", [&] { return writer.finish(header); }));
     work.done();
     report.points = facts.points;

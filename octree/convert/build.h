@@ -33,6 +33,7 @@ struct BuildOptions {
     std::string read_options;  ///< how the inputs were opened (io::options_text); stored in the cache
     uint32_t neighbours = 16;  ///< number of neighbours for normals and areas
     NeighbourSearch neighbour_search = NeighbourSearch::leaf;
+    bool fill = true;                   ///< look for holes, and store surfels that fill them (octree/holes)
     BuildListener* listener = nullptr;  ///< told about the progress (build_listener.h); outlives the build
 };
 
@@ -47,6 +48,7 @@ struct BuildReport {
     uint64_t dropped = 0;
     std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
+    uint64_t filled = 0;  ///< synthetic surfels in holes
     std::vector<StageTime> stages;
 };
 

@@ -29,6 +29,17 @@ class Copier {
         LUCARNE_ASSIGN(entry.payload_offset, writer_.append(payload_));
         return writer_.add(entry);
     }
+    /// Copies the synthetic surfels and updates where they are.
+    Result<void> copy(FillingSection& filling) {
+        payload_.resize(filling.bytes);
+        if (filling.points == 0) return {};
+        LUCARNE_TRY(cache_.file().read_at(filling.offset, payload_));
+        if (format::checksum(payload_) != filling.checksum)
+            return rejected(cache_.file().path().string(),
+                            "its synthetic surfels do not match their checksum", "convert the scan again");
+        LUCARNE_ASSIGN(filling.offset, writer_.append(payload_));
+        return {};
+    }
 
  private:
     const CacheFile& cache_;
@@ -40,6 +51,7 @@ class Copier {
 uint64_t live_bytes(const CacheFile& cache) {
     const auto& block = cache.superblock();
     uint64_t bytes = format::kFirstPayload + block.metadata_bytes + block.directory_bytes;
+    if (cache.header().filling) bytes += cache.header().filling->bytes;
     for (const NodeInfo& node : cache.nodes()) bytes += node.payload_bytes;
     return bytes;
 }
@@ -50,7 +62,9 @@ Result<CompactReport> compact(const OpenedCache& opened, const std::filesystem::
     Copier copier(*opened.cache, writer);
     LUCARNE_TRY(copier.below(0));
     LUCARNE_TRY(copier.copy(0));
-    LUCARNE_TRY(writer.finish(opened.cache->header()));
+    SourceHeader header = opened.cache->header();
+    if (header.filling) LUCARNE_TRY(copier.copy(*header.filling));
+    LUCARNE_TRY(writer.finish(header));
     return CompactReport{opened.cache->file().size(), writer.bytes()};
 }
 

@@ -12,6 +12,7 @@
 #include "octree/convert/nodes/assembler.h"
 #include "octree/convert/nodes/in_order.h"
 #include "octree/edit/edit_plan.h"
+#include "octree/holes/hole_survey.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/radix_sort.h"
 
@@ -281,6 +282,10 @@ Result<EditReport> Rewrite::run(CacheWriter& writer) {
     // Points that are deleted leave the others' colours as they were; new ones are compared with the old.
     if (change_.added) {
         LUCARNE_ASSIGN(header.station_colours, survey_colours(writer, header));
+    }
+    // The holes are others now.
+    if (header.filling) {
+        LUCARNE_ASSIGN(header.filling, fill_holes(writer, header, options_.memory));
     }
     LUCARNE_TRY(writer.finish(header));
     report_.points = change_.header.points;

@@ -14,13 +14,13 @@
 #include "octree/cache/cache.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/chunks/record_loader.h"
-#include "octree/convert/chunks/station_ids.h"
 #include "octree/convert/nodes/build_listener.h"
 #include "octree/growing/quick_surface.h"
 #include "octree/growing/sample.h"
 #include "octree/growing/tree_top.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/radix_sort.h"
+#include "octree/tree/station_ids.h"
 
 namespace lucarne::octree {
 namespace {

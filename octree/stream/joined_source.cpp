@@ -47,6 +47,18 @@ class JoinedSource final : public NodeSource {
         const Part& part = part_with(node);
         return part.source->load(node - part.first_node);
     }
+    Result<std::vector<Filling>> fillings() const override {
+        std::vector<Filling> all;
+        for (const Part& part : parts_) {
+            LUCARNE_ASSIGN(auto own, part.source->fillings());
+            for (Filling& filling : own) {
+                filling.part = static_cast<uint32_t>(&part - parts_.data());
+                filling.scale = part.scale;
+                all.push_back(std::move(filling));
+            }
+        }
+        return all;
+    }
 
  private:
     struct Part {

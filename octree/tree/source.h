@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,18 @@ struct NodeData {
     std::vector<std::byte> records;
 };
 
+/// The most surfels that fill the holes of a cache.
+inline constexpr uint64_t kMostFilled = 1 << 17;
+
+/// Where a cache stores the surfels that fill holes of its scans (octree/holes), as a payload like a node's.
+struct FillingSection {
+    io::Schema schema;
+    uint64_t points = 0;  ///< 0: no hole was found, and nothing is stored
+    uint64_t offset = 0, bytes = 0, checksum = 0;
+    uint8_t codec = 0;
+    bool operator==(const FillingSection&) const = default;
+};
+
 /// Describes a source as a whole.
 struct SourceHeader {
     io::Schema schema;
@@ -55,6 +68,8 @@ struct SourceHeader {
     double metres_per_unit = 1.0;
     std::vector<io::ScanInfo> scans;
     std::vector<StationColour> station_colours;  ///< sorted by scan and station
+    /// Set if holes were looked for.
+    std::optional<FillingSection> filling;
     std::string options;  ///< how the scans were read where it differs from the default: io::options_text
 };
 
@@ -65,6 +80,16 @@ struct SourcePart {
     uint32_t index = 0;
     double scale = 1.0;       ///< the part's unit in the source's
     uint32_t first_scan = 0;  ///< index of header.scans[0] among the source's scans
+};
+
+/// Surfels that nothing measured. They fill holes of a part's scans; they are drawn, and are no points of the
+/// source. Grouped by cubes of its root.
+struct Filling {
+    SourceHeader header;            ///< schema, root and unit of the surfels' records
+    std::vector<NodeInfo> nodes;    ///< cubes that contain surfels; not a tree
+    std::vector<NodeData> records;  ///< of each node; any prefix is an even subsample
+    uint32_t part = 0;
+    double scale = 1.0;  ///< the part's unit in the source's
 };
 
 /// Hands out octree nodes: a cache, a COPC file, a growing build, or several sources joined. Thread-safe. The
@@ -95,6 +120,8 @@ class NodeSource {
     virtual uint64_t directory_bytes() const { return nodes().size_bytes(); }
     /// Loads and checks one node; blocks. Errors: unreadable, truncated, checksum.
     virtual Result<NodeData> load(uint32_t node) const = 0;
+    /// Loads what fills the holes of the parts; nothing for parts without holes. Errors: as of load().
+    virtual Result<std::vector<Filling>> fillings() const { return std::vector<Filling>{}; }
 };
 
 }  // namespace lucarne::octree

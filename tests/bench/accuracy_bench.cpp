@@ -47,7 +47,7 @@ std::string samples(const BenchRun& run, uint64_t full) {
     return fmt::format(" --samples {}", run.count(full));
 }
 std::string seconds(const BenchRun& run, double full) {
-    return fmt::format(" --seconds {}", run.seconds(full));
+    return fmt::format(" --no-antialiasing --seconds {}", run.seconds(full));  // as its truth
 }
 
 double brightest(const std::vector<glm::vec4>& picture) {
@@ -139,8 +139,9 @@ Result<void> soft_lights(Scan& scan, const std::string& scene, const std::string
         const std::string only = common + "--only-bounce " + bounce + " ";
         LUCARNE_ASSIGN(const auto truth, scan.truth("soft", only + samples(run, 512)));
         for (const uint64_t count : run.cases<uint64_t>({1, run.count(16)})) {
-            LUCARNE_ASSIGN(const auto picture,
-                           scan.picture("soft-vpl", fmt::format("{} --frames {}", only, count)));
+            LUCARNE_ASSIGN(
+                const auto picture,
+                scan.picture("soft-vpl", fmt::format("{} --no-antialiasing --frames {}", only, count)));
             LUCARNE_TRY(judge(fmt::format("{}, bounce {}, {} frames", scene, bounce, count), picture, truth,
                               rel_mse, .03));
         }
@@ -243,6 +244,21 @@ Result<void> nave(const BenchRun& run) {
     return soft_lights(scan, "nave-sky", "nave", run, .03);
 }
 
+/// Measures a room that gets its light from a sunlit one, over a shut door: what leaks through walls shows
+/// here.
+Result<void> dark_room(const BenchRun& run) {
+    LUCARNE_ASSIGN(const Scan scan, Scan::create("house", run.points(1'000'000), run.folder, ""));
+    for (const std::string& camera : run.cases<std::string>({"dark", "daylight"})) {
+        const std::string common = run.picture(96, "high") + "--bounces 3 --camera " + camera + " ";
+        LUCARNE_ASSIGN(const auto truth, scan.truth(camera, common + samples(run, 1024)));
+        LUCARNE_ASSIGN(const auto picture, scan.picture(camera + "-vpl", common + "--frames 2"));
+        row("house, " + camera + ", bounces 0 to 3, high, 2 frames", "mean",
+            gi::mean_luminance(picture) / gi::mean_luminance(truth.whole) - 1, camera == "dark" ? .1 : .03,
+            true);
+    }
+    return {};
+}
+
 /// Measures one bounce in an entirely glossy Cornell box, averaged for a minute. A path tracer hits lobes by
 /// chance; the picture is small, so that the reference can have many paths a pixel.
 Result<void> glossy(const BenchRun& run) {
@@ -283,6 +299,7 @@ Result<void> measure(const BenchRun& run) {
     LUCARNE_TRY(invariance(*device, run));
     LUCARNE_TRY(equal_time(run));
     LUCARNE_TRY(glossy(run));
+    LUCARNE_TRY(dark_room(run));
     return nave(run);
 }
 

@@ -10,12 +10,16 @@
 
 namespace lucarne::bench {
 
-/// Returns the surfels of an input at full detail; positions in metres from the origin.
+/// Returns the surfels of an input at full detail, those that fill holes included; positions in metres from
+/// the origin.
 inline Result<std::vector<gi::Surfel>> all_surfels(gi::Device& device, const std::string& input) {
     LUCARNE_ASSIGN(const auto source, viewer::open_input(input));
     const octree::Cut cut = octree::full_cut(*source);
     uint64_t room = 0;
     for (const auto& node : cut.nodes) room += node.count + gi::SurfelPool::kPageSurfels;
+    LUCARNE_ASSIGN(const auto fillings, source->fillings());
+    for (const octree::Filling& filling : fillings)
+        for (const auto& node : filling.nodes) room += node.count + gi::SurfelPool::kPageSurfels;
     if (room > 100'000'000) return failed(input, "is too large to be held whole");
     LUCARNE_ASSIGN(auto pool, gi::SurfelPool::create(device, static_cast<uint32_t>(room)));
     gi::Scene scene;
@@ -29,8 +33,16 @@ inline Result<std::vector<gi::Surfel>> all_surfels(gi::Device& device, const std
         if (!fits) return failed(input, "does not fit the pool");
         entries.push_back({node.node, node.count});
     }
+    uint32_t number = gi::kFirstFilled;
+    for (const octree::Filling& filling : fillings)
+        for (size_t i = 0; i < filling.nodes.size(); ++i) {
+            LUCARNE_ASSIGN(const bool fits,
+                           pool.load(number++, gi::pack_surfels(filling.header, filling.nodes[i],
+                                                                filling.records[i], scene)));
+            if (!fits) return failed(input, "does not fit the pool");
+        }
     gi::DeviceCut drawn;
-    LUCARNE_TRY(pool.make_cut(device, *source, entries, glm::dvec3(0.0), drawn));
+    LUCARNE_TRY(pool.make_cut(device, *source, entries, glm::dvec3(0.0), drawn, {}, fillings));
     return pool.download(drawn);
 }
 

@@ -232,8 +232,9 @@ Result<void> figure_13(const BenchRun& run) {
         for (const glm::vec4& pixel : truth.whole) mask.push_back(gi::luminance(pixel) > limit);
         const Spot right = spot_within(truth.whole, mask, kSide / 4);
         for (const uint64_t frames : run.cases<uint64_t>({1, run.count(16)})) {
-            LUCARNE_ASSIGN(const auto picture, scan.picture(fmt::format("frames-{}", frames),
-                                                            common + fmt::format("--frames {}", frames)));
+            LUCARNE_ASSIGN(const auto picture,
+                           scan.picture(fmt::format("frames-{}", frames),
+                                        common + fmt::format("--no-antialiasing --frames {}", frames)));
             const auto means = coarse(picture, kSide);
             judge(fmt::format("{}, {} frame{}", scene, frames, frames == 1 ? "" : "s"), means, truth);
             const Spot spot = spot_within(means, mask, kSide / 4);
@@ -257,7 +258,8 @@ Result<void> figure_14(Scan& scan, const BenchRun& run) {
     LUCARNE_ASSIGN(const auto high, scan.picture("high", common + "high"));
     judge("1024 VPLs, one frame", high, truth);
     LUCARNE_ASSIGN(const auto averaged,
-                   scan.picture("averaged", common + fmt::format("high --seconds {}", run.seconds(30))));
+                   scan.picture("averaged", common + fmt::format("high --no-antialiasing --seconds {}",
+                                                                 run.seconds(30))));
     judge("1024 VPLs, averaged for 30 s", averaged, truth);
     for (const std::string& preset : run.cases<std::string>({"interactive", "high"}))
         LUCARNE_TRY(scan.render("fig-14-" + preset + ".png", run.picture(512, preset) + "--bounces 2"));

@@ -110,15 +110,11 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
     for (const auto& stage : report.stages)
         stages.push_back(
             {{"name", stage.name}, {"wall_seconds", stage.wall_seconds}, {"cpu_seconds", stage.cpu_seconds}});
-    const nlohmann::json root{{"points", report.points},
-                              {"dropped", report.dropped},
-                              {"nodes", report.nodes},
-                              {"chunks", report.chunks},
-                              {"bytes", report.bytes},
-                              {"stages", std::move(stages)},
-                              {"left_out", losses_json(summary.losses)},
-                              {"inputs", summary.inputs},
-                              {"rejected", aside.json()}};
+    const nlohmann::json root{{"points", report.points},     {"dropped", report.dropped},
+                              {"nodes", report.nodes},       {"chunks", report.chunks},
+                              {"bytes", report.bytes},       {"filled", report.filled},
+                              {"stages", std::move(stages)}, {"left_out", losses_json(summary.losses)},
+                              {"inputs", summary.inputs},    {"rejected", aside.json()}};
     return write_file(path, json_text(root), overwrite);
 }
 
@@ -193,6 +189,9 @@ Result<void> convert(ConvertOptions options) {
         cpu += stage.cpu_seconds;
         wall += stage.wall_seconds;
     }
+    if (report.filled > 0)
+        log::info("{} fill holes of the scan; they are drawn, but never exported",
+                  counted(report.filled, "synthetic surfels"));
     const Summary summary(build.inputs, report.inputs);
     log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
               counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes),
@@ -250,6 +249,9 @@ void add_convert(CommandLine& line) {
                                  "How neighbours are found: leaf is fast; flann is PCL's default kd-tree, "
                                  "for comparison")
         .show_default("leaf");
+    command.flag(
+        "--no-fill", [options] { options->build.fill = false; },
+        "Do not fill the holes of the scan (below tripods, behind furniture) with synthetic surfels");
     command.flag(
         "--resume", [options] { options->build.resume = octree::Resume::go_on; },
         "Continue after the last finished stage of an interrupted conversion; if this one fails, "

@@ -70,6 +70,7 @@ Json describe_octree(const octree::NodeSource& cache, const char* kind) {
                    {"metres_per_unit", header.metres_per_unit},
                    {"attributes", attributes_json(header.schema)},
                    {"scans", std::move(scans)}};
+    if (header.filling) described["synthetic_surfels"] = header.filling->points;
     for (const auto& colour : header.station_colours) {
         Json& station = described["station_colours"].emplace_back();
         station["scan"] = colour.scan;

@@ -36,7 +36,7 @@ struct RenderOptions {
     uint32_t frames = 1;
     double seconds = 0;
     PictureFinish finish;
-    bool first = false, layers = false, no_overlay = false, overwrite = false;
+    bool first = false, layers = false, no_overlay = false, aliased = false, overwrite = false;
 };
 
 enum class PictureKind { png, exr };
@@ -56,6 +56,7 @@ struct Rendered {
     uint32_t frames = 0;
     double seconds = 0;
     double variance = 0;  ///< variance of the mean luminance, if the engine estimates its noise
+    io::Image gbuffer;    ///< of the first frame, whose rays pass through the middles of the pixels
 };
 
 double engine_stat(const FrameStats& stats, std::string_view name) {
@@ -76,6 +77,8 @@ Result<Rendered> render_frames(Pipeline& pipeline, FrameRequest request, const R
     }
     while (rendered.frames < options.frames || rendered.seconds < options.seconds) {
         LUCARNE_ASSIGN(rendered.last, pipeline.render(request));
+        if (!options.gbuffer.empty() && rendered.frames == 0)
+            rendered.gbuffer = gi::gbuffer_image(pipeline.gbuffer());
         const double error = engine_stat(rendered.last, "standard error");
         rendered.variance += error * error;
         rendered.seconds += rendered.last.seconds;
@@ -119,7 +122,7 @@ Result<void> write_picture(const RenderOptions& options, PictureKind kind, const
     if (kind == PictureKind::png)
         return io::write_png(options.output, finished_picture(pipeline, camera, options.finish),
                              options.overwrite);
-    if (options.finish.transparent) clear_where_nothing_is(pipeline, radiance);
+    if (options.finish.transparent) radiance.pixels = transparent_radiance(pipeline);
     return io::write_exr(options.output, radiance, options.overwrite, options.finish.transparent);
 }
 
@@ -185,6 +188,8 @@ Result<void> render(RenderOptions options) {
     request.size = drawing.size;
     request.wait = true;
     request.accumulate = options.frames > 1 || options.seconds > 0;
+    request.transparent = options.finish.transparent;
+    request.antialiased = !options.aliased;
 
     LUCARNE_ASSIGN(const auto pipeline,
                    open_pipeline(*device, source, options.drawing, drawing, std::move(scene)));
@@ -195,8 +200,7 @@ Result<void> render(RenderOptions options) {
     const double mean = gi::mean_luminance(picture.pixels);
     LUCARNE_TRY(write_picture(options, kind, *pipeline, request.camera, std::move(picture)));
     if (!options.gbuffer.empty())
-        LUCARNE_TRY(
-            io::write_exr(options.gbuffer, gi::gbuffer_image(pipeline->gbuffer()), options.overwrite, true));
+        LUCARNE_TRY(io::write_exr(options.gbuffer, rendered.gbuffer, options.overwrite, true));
     if (options.layers) LUCARNE_TRY(write_layers(options, *pipeline, drawing.size));
     if (!options.json.empty()) {
         LUCARNE_TRY(write_file(options.json, json_text(report(rendered, *pipeline, drawing, mean)),
@@ -230,6 +234,9 @@ void add_render(CommandLine& line) {
     command.add("--seconds", options->seconds, "Least time to go on averaging, seconds")
         .range(0.0, 1e6)
         .type_name("S");
+    command.flag("--no-antialiasing", options->aliased,
+                 "Look through the middles of the pixels in all averaged frames, for comparisons with single "
+                 "frames");
     command.add("--json", options->json, "Write figures of the picture as JSON").type_name("FILE");
     command
         .add("--gbuffer", options->gbuffer,

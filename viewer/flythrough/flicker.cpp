@@ -23,10 +23,10 @@ glm::dvec3 wide(const glm::vec4& v) {
 /// Returns the point that a pixel shows, in metres relative to the local origin.
 glm::dvec3 point_at(const SeenFrame& frame, size_t index) {
     const gi::CameraView& c = frame.camera;
-    const double x = 2 * (static_cast<double>(index % c.width) + 0.5) / c.width - 1;
-    const double y = 2 * (static_cast<double>(index / c.width) + 0.5) / c.height - 1;
+    const glm::vec2 pixel(static_cast<float>(index % c.width), static_cast<float>(index / c.width));
+    const glm::dvec2 ndc(gi::view_ndc(c, pixel + 0.5f));
     return wide(c.origin) +
-           double{frame.texels[index].depth} * (wide(c.forward) + wide(c.right) * x - wide(c.up) * y);
+           double{frame.texels[index].depth} * (wide(c.forward) + wide(c.right) * ndc.x - wide(c.up) * ndc.y);
 }
 
 /// Returns the pixel that a point falls into.

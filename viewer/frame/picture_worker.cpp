@@ -119,9 +119,9 @@ std::optional<glm::dvec3> Picture::pick(const glm::dvec2& place) const {
             best = at;
         }
     if (!best) return std::nullopt;
-    const double u = 2 * (best->x + 0.5) / width - 1, v = 2 * (best->y + 0.5) / height - 1;
+    const glm::vec2 ndc = gi::view_ndc(camera, glm::vec2(*best) + 0.5f);
     const auto wide = [](const glm::vec4& vector) { return glm::dvec3(vector.x, vector.y, vector.z); };
-    const glm::dvec3 across = wide(camera.right) * u - wide(camera.up) * v;
+    const glm::dvec3 across = wide(camera.right) * double{ndc.x} - wide(camera.up) * double{ndc.y};
     const double along = depth[static_cast<size_t>(best->y) * size.width + best->x];
     // `across` is where an orthographic ray starts, or where a perspective ray is at a depth of 1.
     const double apart = camera.projection == gi::kOrthographic ? 1 : along;

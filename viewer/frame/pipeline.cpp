@@ -38,6 +38,8 @@ constexpr double kAhead = 0.5;      // s of the camera's motion that are loaded 
 // Share of the device's memory for surfels. The shadow maps hold the light cut's surfels a second time;
 // pictures and maps take the rest.
 constexpr double kPoolShare = 0.375;
+constexpr double kFilledShare = 0.25;    // of the pool: the most that synthetic surfels take
+constexpr uint64_t kPointsOfFilled = 4;  // for each synthetic surfel a cut has at least so many points
 constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // enough for some nodes of usual size
 
 uint64_t pages(uint64_t surfels) {
@@ -64,6 +66,10 @@ struct Pipeline::State {
     Result<void> take_arrivals(bool wait);
     Result<void> apply(std::span<const Stream::Event> events);
     uint64_t pool_surfels() const;
+    void take_fillings();
+    Result<void> load_fillings();
+    uint64_t filled_bytes() const;
+    uint64_t filled_count() const;  ///< of all synthetic surfels
     Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
     Result<void> build_cuts();
     Result<void> draw(const FrameRequest& request);
@@ -84,6 +90,8 @@ struct Pipeline::State {
     gi::ShownValues values;
     std::optional<gi::BakedLight> baked;  ///< of the source, once it was needed
     gi::SurfelPool pool;
+    /// The synthetic surfels of the source. They are always resident, or left out.
+    std::vector<octree::Filling> fillings;
     uint64_t bytes_loaded = 0;
     std::string lost_node;  // why the first unreadable node of the source cannot be read
 
@@ -119,6 +127,7 @@ uint64_t Pipeline::State::pool_surfels() const {
         whole += pool_bytes(node.count);
         largest = std::max(largest, pool_bytes(node.count));
     }
+    whole += filled_bytes();
     // Room for recoloured nodes that arrive before the old ones are freed.
     whole += (options.load_threads + 1) * largest;
     const auto share = static_cast<uint64_t>(kPoolShare * static_cast<double>(options.device_memory));
@@ -131,6 +140,44 @@ void Pipeline::State::empty_pool() {
     if (!source) return;
     for (uint32_t node = 0; node < source->nodes().size(); ++node)
         if (pool.holds(node)) pool.evict(node);
+    for (uint32_t node = gi::kFirstFilled; pool.holds(node); ++node) pool.evict(node);
+}
+
+/// Bytes of the pool that the synthetic surfels take.
+uint64_t Pipeline::State::filled_bytes() const {
+    uint64_t bytes = 0;
+    for (const octree::Filling& filling : fillings)
+        for (const octree::NodeInfo& node : filling.nodes) bytes += pool_bytes(node.count);
+    return bytes;
+}
+
+uint64_t Pipeline::State::filled_count() const {
+    uint64_t count = 0;
+    for (const octree::Filling& filling : fillings)
+        for (const octree::NodeInfo& node : filling.nodes) count += node.count;
+    return count;
+}
+
+/// Loads the source's synthetic surfels, for load_fillings(). Without them there are holes, but a picture.
+void Pipeline::State::take_fillings() {
+    fillings.clear();
+    auto loaded = source->fillings();
+    if (loaded)
+        fillings = std::move(*loaded);
+    else
+        log::warn("{}; holes of the scan stay open", loaded.error().line());
+}
+
+/// Packs the synthetic surfels for the device.
+Result<void> Pipeline::State::load_fillings() {
+    uint32_t number = gi::kFirstFilled;
+    for (const octree::Filling& filling : fillings)
+        for (uint32_t node = 0; node < filling.nodes.size(); ++node) {
+            LUCARNE_ASSIGN(const bool fits, pool.load(number++, preparation->pack(filling, node)));
+            if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
+        }
+    cuts_stale = true;
+    return {};
 }
 
 Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSource> from) {
@@ -144,6 +191,7 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
     lost_node.clear();
     baked.reset();
     bounds = octree::robust_bounds(*source);
+    take_fillings();
     const uint64_t capacity = pool_surfels();
     if (capacity > pool.capacity()) {
         pool = {};
@@ -158,8 +206,13 @@ Result<void> Pipeline::State::take_source(std::shared_ptr<const octree::NodeSour
 /// costs the same pages in both.
 void Pipeline::State::start_stream() {
     empty_pool();
+    if (static_cast<double>(filled_bytes()) >
+        kFilledShare * static_cast<double>(pool_bytes(pool.capacity()))) {
+        log::warn("there is too little device memory to fill the holes of the scan");
+        fillings.clear();
+    }
     octree::ResidencyOptions how;
-    how.memory = pool_bytes(pool.capacity());
+    how.memory = pool_bytes(pool.capacity()) - filled_bytes();
     how.transit = options.memory - source->directory_bytes();
     how.threads = options.load_threads;
     how.cost = [](const octree::NodeInfo& node) { return pool_bytes(node.count); };
@@ -187,6 +240,7 @@ Result<void> Pipeline::State::colour_anew() {
         LUCARNE_ASSIGN(baked, gi::BakedLight::measured(*source));
     }
     preparation->set_scene(shown, baked ? &*baked : nullptr);
+    LUCARNE_TRY(load_fillings());
     std::vector<uint32_t> all(source->nodes().size());
     std::iota(all.begin(), all.end(), 0u);
     residency->renew(all);
@@ -202,8 +256,8 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              budgets,
                              glm::distance(bounds[0], bounds[1]),
                              &scene.look.clip};
-    chosen = chooser.choose(
-        purpose, {pool_bytes(pool.capacity()), [](const auto& node) { return pool_bytes(node.count); }});
+    chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()) - filled_bytes(),
+                                      [](const auto& node) { return pool_bytes(node.count); }});
     local = local_frame(request.camera.position, source->header().metres_per_unit);
     camera = camera_view(request.camera, request.size, local);
     cuts_stale = true;
@@ -266,7 +320,11 @@ Result<void> Pipeline::State::build_cut(const octree::Cut& cut, const gi::Clip& 
     std::vector<gi::CutEntry> entries;
     entries.reserve(cut.nodes.size());
     for (const auto& node : cut.nodes) entries.push_back({node.node, node.count});
-    return pool.make_cut(device, *source, entries, local.origin, target, clip);
+    // A cut of few points, as a cap asks for, stays small: the synthetic surfels have no levels of detail.
+    const std::span<const octree::Filling> filled(fillings);
+    const bool small = kPointsOfFilled * filled_count() > cut.points;
+    return pool.make_cut(device, *source, entries, local.origin, target, clip,
+                         scene.look.open_holes || small ? filled.first(0) : filled);
 }
 
 Result<void> Pipeline::State::build_cuts() {
@@ -339,9 +397,12 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
         presentation.restart();
     }
     if (!request.accumulate || !presentation.averaged()) presentation.restart();
+    const bool shifted = request.accumulate && request.antialiased;
+    shift_rays(camera, shifted ? presentation.accumulated() : 0);
     LUCARNE_TRY(draw(request));
     times.begin("tone map");
-    LUCARNE_TRY(presentation.finish(*engine, other.get(), scene, gbuffer, request.accumulate));
+    LUCARNE_TRY(
+        presentation.finish(*engine, other.get(), scene, gbuffer, {request.accumulate, request.transparent}));
     times.end();
     return {};
 }
@@ -452,6 +513,16 @@ std::vector<std::vector<glm::vec4>> Pipeline::layers() const {
 }
 const gi::Buffer& Pipeline::radiance() const {
     return state_->presentation.radiance();
+}
+std::vector<glm::vec4> Pipeline::points_radiance() const {
+    const Presentation& presentation = state_->presentation;
+    const gi::GBuffer& gbuffer = state_->gbuffer;
+    const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
+    auto radiance = presentation.points_radiance().download_all<glm::vec4>(pixels);
+    if (presentation.averaged()) return radiance;
+    const auto texels = gbuffer.texels.download_all<gi::GBufferTexel>(pixels);
+    for (size_t i = 0; i < pixels; ++i) radiance[i].w = texels[i].depth > 0 ? 1.0f : 0.0f;
+    return radiance;
 }
 
 Result<void> Pipeline::set_engine(std::string_view name) {

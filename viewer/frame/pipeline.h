@@ -40,6 +40,8 @@ struct FrameRequest {
     ImageSize size{1280, 720};
     bool wait = false;             ///< loads complete cuts first: the same pixels on every run
     bool accumulate = false;       ///< averages with earlier frames as long as nothing drawn changes
+    bool antialiased = true;       ///< shifts the rays of averaged frames; false: all of them as in the first
+    bool transparent = false;      ///< keeps the points' light apart from the background in averages
     bool moving = false;           ///< a frame of a motion: the engine may reuse data of earlier frames
     Progress* progress = nullptr;  ///< counts pixels, for slow engines (EngineInfo)
 };
@@ -113,9 +115,13 @@ class Pipeline {
     /// row 0 on top.
     const gi::Buffer& radiance() const;
     const gi::Buffer& picture() const;
+    /// The radiance without the background, in pixels that show a point; with the share of the pixel that
+    /// shows points in w. Averages need FrameRequest::transparent for that.
+    std::vector<glm::vec4> points_radiance() const;
     /// Returns the engine's further data of the pixels, see Engine::layers().
     std::vector<std::vector<glm::vec4>> layers() const;
-    /// The last frame's G-buffer and the meaning of its coordinates, for picking and tools.
+    /// The last frame's G-buffer and the meaning of its coordinates, for picking and tools. In averages the
+    /// rays of each frame pass through their pixels in another place, the camera's shift.
     const gi::GBuffer& gbuffer() const;
     std::shared_ptr<const gi::CutPoints> points() const;  ///< maps the G-buffer's ids to points
     const gi::CameraView& camera() const;

@@ -45,15 +45,23 @@ void SurfelPreparation::set_scene(const gi::Scene& scene, const gi::BakedLight* 
     parts_ = std::move(parts);
 }
 
+std::shared_ptr<const std::vector<SurfelPreparation::OfPart>> SurfelPreparation::parts() const {
+    const std::lock_guard lock(mutex_);
+    return parts_;
+}
+
 PackedNode SurfelPreparation::pack(uint32_t node, const octree::NodeData& data) const {
-    std::shared_ptr<const std::vector<OfPart>> parts;
-    {
-        const std::lock_guard lock(mutex_);
-        parts = parts_;
-    }
+    const auto all = parts();
     const octree::SourcePart part = source_->part_of(node);
-    const OfPart& own = (*parts)[part.index];
+    const OfPart& own = (*all)[part.index];
     return gi::pack_surfels(part.header, source_->nodes()[node], data, own.scene, part.first_scan,
+                            own.baked ? &*own.baked : nullptr);
+}
+
+PackedNode SurfelPreparation::pack(const octree::Filling& filling, uint32_t node) const {
+    const auto all = parts();
+    const OfPart& own = (*all)[filling.part];
+    return gi::pack_surfels(filling.header, filling.nodes[node], filling.records[node], own.scene, 0,
                             own.baked ? &*own.baked : nullptr);
 }
 

@@ -26,8 +26,13 @@ class SurfelPreparation {
     void set_scene(const gi::Scene& scene, const gi::BakedLight* baked = nullptr);
     /// Packs a loaded node. Thread-safe.
     PackedNode pack(uint32_t node, const octree::NodeData& data) const;
+    /// Packs the synthetic surfels of a filling's node. Thread-safe.
+    PackedNode pack(const octree::Filling& filling, uint32_t node) const;
 
  private:
+    struct OfPart;
+    std::shared_ptr<const std::vector<OfPart>> parts() const;
+
     std::shared_ptr<const octree::NodeSource> source_;
     mutable std::mutex mutex_;
     struct OfPart {

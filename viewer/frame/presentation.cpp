@@ -8,11 +8,12 @@
 namespace lucarne::viewer {
 
 Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
-                                  const gi::GBuffer& gbuffer, bool average) {
+                                  const gi::GBuffer& gbuffer, const Averaging& averaging) {
     const uint32_t pixels = gbuffer.width * gbuffer.height;
     ++accumulated_;
-    averaged_ = average;
-    if (averaged_) LUCARNE_TRY(add_to_average(own_, pixels));
+    averaged_ = averaging.on;
+    points_apart_ = averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
+    if (averaged_) LUCARNE_TRY(add_to_average(own_, gbuffer));
     exposure_ev_ = 0;  // an unlit engine's colours are for the screen already
     if (!engine.info().unlit) {
         if (scene.exposure_ev) {
@@ -23,17 +24,22 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     }
     LUCARNE_TRY(show(engine, scene, pixels, own_));
     if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
-    return gi::draw_backdrop(device_, gbuffer, scene.look.backdrop, own_.picture);
+    return gi::draw_backdrop(device_, gbuffer, radiance(), averaged_, scene.look.backdrop, own_.picture);
 }
 
-Result<void> Presentation::add_to_average(Images& images, uint32_t pixels) {
-    LUCARNE_TRY(device_.reserve(images.mean, pixels * sizeof(glm::vec4), "the picture's average"));
-    return gi::accumulate(device_, images.sample, pixels, accumulated_, images.mean);
+Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbuffer) {
+    const auto add = [&](bool points_only, gi::Buffer& mean) -> Result<void> {
+        const size_t bytes = size_t{gbuffer.width} * gbuffer.height * sizeof(glm::vec4);
+        LUCARNE_TRY(device_.reserve(mean, bytes, "the picture's average"));
+        return gi::accumulate(device_, images.sample, gbuffer, accumulated_, points_only, mean);
+    };
+    LUCARNE_TRY(add(false, images.mean));
+    return points_apart_ ? add(true, images.points) : Result<void>();
 }
 
 Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels,
                                 Images& images) {
-    const gi::Buffer& radiance = images.radiance(averaged_);
+    const gi::Buffer& radiance = images.points_radiance(averaged_, points_apart_);
     const bool unlit = lit_by.info().unlit;
     if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
         return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_ev_),
@@ -47,7 +53,7 @@ Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& sce
                                    const gi::GBuffer& gbuffer) {
     using Show = gi::Comparison::Show;
     const uint32_t pixels = gbuffer.width * gbuffer.height;
-    if (averaged_) LUCARNE_TRY(add_to_average(other_, pixels));
+    if (averaged_) LUCARNE_TRY(add_to_average(other_, gbuffer));
     const gi::Comparison& how = *scene.comparison;
     if (how.show != Show::split)
         return gi::difference(device_, radiance(), other_.radiance(averaged_), pixels,

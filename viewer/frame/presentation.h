@@ -25,16 +25,23 @@ class Presentation {
     /// The buffer to which the picture's engine (or the compared one) writes its radiance.
     gi::Buffer& sample(bool compared) { return compared ? other_.sample : own_.sample; }
 
+    struct Averaging {
+        bool on = false;            ///< show the mean of this frame and the frames since restart()
+        bool points_apart = false;  ///< average the points' light apart from the background
+    };
     /// Finishes one frame, whose radiance is in sample(). `other`: the engine to compare with, or null.
-    /// `average`: show the mean of this frame and the frames since restart(). Errors: no device memory.
+    /// Errors: no device memory.
     Result<void> finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
-                        const gi::GBuffer& gbuffer, bool average);
+                        const gi::GBuffer& gbuffer, const Averaging& averaging);
 
     /// Frees the memory of the second engine's pictures.
     void forget_comparison() { other_ = {}; }
 
-    /// The last picture's radiance, vec4 a pixel, row 0 on top.
+    /// The last picture's radiance, vec4 a pixel, row 0 on top. In an average w is the share of the frames
+    /// that show a point in the pixel.
     const gi::Buffer& radiance() const { return averaged_ ? own_.mean : own_.sample; }
+    /// The same without the background, if the points' light was averaged apart; otherwise radiance().
+    const gi::Buffer& points_radiance() const { return own_.points_radiance(averaged_, points_apart_); }
     /// The last picture, RGBA8 a pixel.
     const gi::Buffer& picture() const { return own_.picture; }
     /// The exposure of the last picture in stops.
@@ -43,17 +50,21 @@ class Presentation {
  private:
     struct Images {
         gi::Buffer sample, mean, picture;  ///< radiance of this frame and of the average; RGBA8 picture
+        gi::Buffer points;                 ///< average of the points' light alone
         const gi::Buffer& radiance(bool averaged) const { return averaged ? mean : sample; }
+        const gi::Buffer& points_radiance(bool averaged, bool apart) const {
+            return averaged && apart ? points : radiance(averaged);
+        }
     };
 
-    Result<void> add_to_average(Images& images, uint32_t pixels);
+    Result<void> add_to_average(Images& images, const gi::GBuffer& gbuffer);
     Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels, Images& images);
     Result<void> compare(const gi::Engine& other, const gi::Scene& scene, const gi::GBuffer& gbuffer);
 
     gi::Device& device_;
     Images own_, other_;  ///< of the picture's engine and of the compared engine
     uint32_t accumulated_ = 0;
-    bool averaged_ = false;
+    bool averaged_ = false, points_apart_ = false;
     double exposure_ev_ = 0;
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace lucarne::viewer {
@@ -80,6 +82,16 @@ gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const 
     result.width = size.width;
     result.height = size.height;
     return result;
+}
+
+void shift_rays(gi::CameraView& view, uint32_t frame) {
+    // Multiples of irrational numbers cover a pixel evenly after any number of frames (a Kronecker sequence).
+    // Not the plastic number, by which lights are sampled (gi/lighting/light_samples.cpp), nor powers of two,
+    // by which interleaved pixels and halves of paths alternate: the average would mix up the two.
+    const glm::dvec2 at =
+        glm::fract(0.5 + static_cast<double>(frame) * glm::dvec2(std::numbers::sqrt2, std::numbers::sqrt3));
+    view.right.w = static_cast<float>(at.x - 0.5);
+    view.up.w = static_cast<float>(at.y - 0.5);
 }
 
 gi::Light device_light(const gi::SceneLight& from, const LocalFrame& frame) {

@@ -28,6 +28,9 @@ LocalFrame local_frame(const glm::dvec3& position, double metres_per_unit);
 
 /// Converts a scene's camera for engines.
 gi::CameraView camera_view(const gi::SceneCamera& camera, ImageSize size, const LocalFrame& frame);
+/// Shifts the rays of a camera's view to where they pass through their pixels in a frame of an average, so
+/// that the average is that over the pixels' areas. Frame 0: the middles of the pixels.
+void shift_rays(gi::CameraView& view, uint32_t frame);
 /// Converts it for choosing nodes, in world units.
 octree::View octree_view(const gi::SceneCamera& camera, ImageSize size);
 

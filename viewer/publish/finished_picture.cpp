@@ -27,16 +27,6 @@ void draw_overlay(const Pipeline& pipeline, const gi::SceneCamera& camera, io::I
     draw_marks(figure_scale(pipeline.scene(), pipeline.exposure_ev(), view), scale, picture);
 }
 
-/// Calls `nothing` with the number of each pixel that shows no point.
-template <class Nothing>
-void where_nothing_is(const Pipeline& pipeline, const Nothing& nothing) {
-    const gi::GBuffer& gbuffer = pipeline.gbuffer();
-    const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
-    const auto texels = gbuffer.texels.download_all<gi::GBufferTexel>(pixels);
-    for (size_t i = 0; i < pixels; ++i)
-        if (!(texels[i].depth > 0)) nothing(i);
-}
-
 }  // namespace
 
 io::Image8 finished_picture(const Pipeline& pipeline, const gi::SceneCamera& camera,
@@ -45,19 +35,22 @@ io::Image8 finished_picture(const Pipeline& pipeline, const gi::SceneCamera& cam
     const size_t pixels = size_t{size.width} * size.height;
     io::Image8 picture = without_alpha(pipeline.picture().download_all<std::byte>(pixels * 4), size);
     if (finish.transparent) {
-        picture.alpha.assign(pixels, 255);
-        where_nothing_is(pipeline, [&](size_t i) {
-            picture.alpha[i] = 0;
+        const auto radiance = pipeline.points_radiance();
+        picture.alpha.resize(pixels);
+        for (size_t i = 0; i < pixels; ++i) {
+            picture.alpha[i] = static_cast<uint8_t>(radiance[i].w * 255 + 0.5f);
+            if (picture.alpha[i] > 0) continue;
             std::fill_n(picture.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, uint8_t{0});
-        });
+        }
     }
     if (finish.overlays) draw_overlay(pipeline, camera, picture);
     return picture;
 }
 
-void clear_where_nothing_is(const Pipeline& pipeline, io::Image& radiance) {
-    for (glm::vec4& pixel : radiance.pixels) pixel.w = 1;
-    where_nothing_is(pipeline, [&](size_t i) { radiance.pixels[i] = glm::vec4(0); });
+std::vector<glm::vec4> transparent_radiance(const Pipeline& pipeline) {
+    auto radiance = pipeline.points_radiance();
+    for (glm::vec4& pixel : radiance) pixel = glm::vec4(glm::vec3(pixel) * pixel.w, pixel.w);
+    return radiance;
 }
 
 }  // namespace lucarne::viewer

@@ -75,6 +75,7 @@ Result<std::string> RenderWorker::State::still(Pipeline& pipeline, const RenderO
     request.size = order.size;
     request.wait = true;
     request.accumulate = what.frames > 1;
+    request.transparent = what.finish.transparent;
     for (uint32_t frame = 0; frame < what.frames; ++frame) {
         LUCARNE_TRY(pipeline.render(request));
         LUCARNE_TRY(frame_done());

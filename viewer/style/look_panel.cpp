@@ -79,14 +79,31 @@ bool edit_colours(const Styling& model, gi::Look& look) {
     return edit_range(model, look) || changed;
 }
 
+/// How strictly outliers are left out.
+bool edit_outliers(gi::Look& look) {
+    constexpr const char* kNames[] = {"all drawn", "without those found", "strict", "very strict"};
+    int strictness = static_cast<int>(std::min<uint32_t>(look.outliers, 3));
+    if (!ImGui::SliderInt("outliers", &strictness, 0, 3, kNames[strictness], ImGuiSliderFlags_AlwaysClamp))
+        return false;
+    look.outliers = static_cast<uint32_t>(strictness);
+    return true;
+}
+
 bool edit_points(gi::Look& look) {
+    bool changed = edit_outliers(look);
     bool fixed = look.point_pixels > 0;
-    bool changed = ImGui::Checkbox("points of a fixed size", &fixed);
-    if (changed) look.point_pixels = fixed ? 3 : 0;
+    const bool switched = ImGui::Checkbox("points of a fixed size", &fixed);
+    changed |= switched;
+    if (switched) look.point_pixels = fixed ? 3 : 0;
     if (fixed) return slider("size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
     bool blended = !look.single_discs;
     if (ImGui::Checkbox("blended surfaces", &blended)) {
         look.single_discs = !blended;
+        changed = true;
+    }
+    bool filled = !look.open_holes;
+    if (ImGui::Checkbox("filled holes", &filled)) {
+        look.open_holes = !filled;
         changed = true;
     }
     return slider("size", look.point_size, 0.1f, 5, "%.2f of the points' own",

@@ -8,7 +8,8 @@
 namespace lucarne::gi::reference {
 
 void PathSums::add(const PathSums& other) {
-    exact = other.exact;
+    exact += other.exact;
+    frames += other.frames;
     for (int half = 0; half < 2; ++half) {
         halves[half] += other.halves[half];
         paths[half] += other.paths[half];
@@ -19,11 +20,12 @@ void PathSums::add(const PathSums& other) {
 
 glm::vec3 PathSums::radiance() const {
     const auto all = static_cast<double>(std::max<uint64_t>(paths[0] + paths[1], 1));
-    return glm::vec3(exact + (halves[0] + halves[1]) / all);
+    return glm::vec3(exact / static_cast<double>(frames) + (halves[0] + halves[1]) / all);
 }
 
 glm::vec3 PathSums::half_radiance(int half) const {
-    return paths[half] ? glm::vec3(exact + halves[half] / static_cast<double>(paths[half])) : radiance();
+    if (!paths[half]) return radiance();
+    return glm::vec3(exact / static_cast<double>(frames) + halves[half] / static_cast<double>(paths[half]));
 }
 
 float PathSums::variance() const {

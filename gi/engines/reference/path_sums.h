@@ -10,9 +10,10 @@ namespace lucarne::gi::reference {
 /// The light that the paths of one start have gathered, in two halves that share no path: every other path
 /// goes to the second half. Sums of several frames add up.
 struct PathSums {
-    glm::dvec3 exact{0.0};  ///< light that is not sampled: the same for every path
+    glm::dvec3 exact{0.0};  ///< light that is not sampled, summed over the frames
     glm::dvec3 halves[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
-    uint64_t paths[2] = {0, 0};
+    uint64_t paths[2] = {0, 0};  ///< also those of frames in which the pixel shows no surface
+    uint32_t frames = 1;
     double luminance = 0, squares = 0;  ///< sum and sum of squares of the luminances of the paths
 
     void add(const PathSums& other);

@@ -237,18 +237,24 @@ glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& st
 
 PathSums PathTracer::trace(const Start& start, uint64_t index) const {
     PathSums sums;
-    if (!(start.radius > 0)) return sums;
+    const uint64_t samples = std::max(settings_.samples, 1u);
+    // With one path a frame the halves alternate.
+    const auto half_of = [&](uint64_t sample) { return (settings_.frame * samples + sample) & 1; };
+    if (!(start.radius > 0)) {  // black paths: other frames of an average may show a surface here
+        for (uint64_t i = 0; anything_random() && i < std::min<uint64_t>(samples, 2); ++i)
+            sums.paths[half_of(i)] += (samples + 1 - i) / 2;
+        return sums;
+    }
     Vertex first = vertex(start);
     first.origin = before_what_hides(first.origin, start);
     // Emission and sharp light are not sampled: once is enough.
     if (counts(0)) sums.exact = glm::dvec3(first.emission + sharp_light(first));
     if (!anything_random()) return sums;
     const uint64_t key = mix64(mix64(settings_.seed, settings_.frame), index);
-    const uint64_t samples = std::max(settings_.samples, 1u);
     for (uint64_t i = 0; i < samples; ++i) {
         Random random(key, i);
         const glm::vec3 light = path(first, random);
-        const uint64_t half = (settings_.frame * samples + i) & 1;  // one path a frame: the halves alternate
+        const uint64_t half = half_of(i);
         sums.halves[half] += glm::dvec3(light);
         ++sums.paths[half];
         const double bright = luminance(light);

@@ -32,9 +32,9 @@ std::vector<Start> starts_of(const CameraView& camera, std::span<const GBufferTe
     parallel_ranges(texels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const GBufferTexel& texel = texels[i];
-            const float x = (static_cast<float>(i % camera.width) + .5f) / static_cast<float>(camera.width);
-            const float y = (static_cast<float>(i / camera.width) + .5f) / static_cast<float>(camera.height);
-            const vec3 across = right * (2 * x - 1) - up * (2 * y - 1);
+            const glm::vec2 pixel(static_cast<float>(i % camera.width), static_cast<float>(i / camera.width));
+            const glm::vec2 ndc = view_ndc(camera, pixel + .5f);
+            const vec3 across = right * ndc.x - up * ndc.y;
             const bool parallel = camera.projection == kOrthographic;
             const vec3 ray = parallel ? forward : forward + across, from = parallel ? eye + across : eye;
             Start& start = starts[i];

@@ -32,6 +32,7 @@ const uint kBindFringeSources = 13u;
 const uint kBindDiffuse = 12u;         // irradiance from the VPLs, one a pixel
 const uint kBindSpecular = 13u;        // radiance by the receiver's lobe, one a pixel
 const uint kBindViewImportance = 13u;  // of candidates for VPLs, measure.comp
+const uint kBindOpenings = 13u;        // importance of directions of the sky, openings.comp
 const uint kBindRadiance = 14u;
 const uint kBindPairs = 14u;       // pairs of surfel and map, shadow_maps/queue.glsl
 const uint kBindWeightSums = 14u;  // weight sums, redistribute.comp

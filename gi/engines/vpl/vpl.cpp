@@ -61,7 +61,8 @@ class VplEngine : public Engine {
 
  private:
     Result<void> add_direct(Frame& frame);
-    Result<void> light_indirectly(Frame& frame);
+    Result<void> look_around(Frame& frame, const Basis& basis);
+    Result<void> light_indirectly(Frame& frame, const Basis& basis);
     Result<void> seed(Frame& frame, Seeds& target);
     Basis basis_of(const Frame& frame) const;
 
@@ -73,6 +74,7 @@ class VplEngine : public Engine {
     std::vector<Bounce> bounces_;
     ShadowMaps maps_;       ///< borrows the atlas of a bounce while it is drawn or read
     Basis basis_;           ///< what bounces_ were made from
+    Basis looked_;          ///< for which the casters were decoded and the importance was measured
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
     Tiles tiles_;
@@ -122,7 +124,7 @@ Basis VplEngine::basis_of(const Frame& frame) const {
     Basis basis{scene_, cuts_, frame.index, {}};
     if (!frame.settings[kViewVpls]) return basis;
     const bool serves = frame.moving && view_importance_.serves(frame.camera);
-    basis.camera = serves ? basis_.camera : frame.camera;
+    basis.camera = serves ? looked_.camera : frame.camera;
     return basis;
 }
 
@@ -135,7 +137,8 @@ Result<void> VplEngine::seed(Frame& frame, Seeds& target) {
     LUCARNE_TRY(pass(frame, "VPL seeding",
                      [&] { return light_gbuffers_.seed(frame, materials_, count, seed, placed); }));
     if (!s[kViewVpls]) return {};
-    LUCARNE_TRY(view_importance_.measure(frame, materials_, seed, candidates_, count, maps_));
+    LUCARNE_TRY(pass(frame, "VPL importance",
+                     [&] { return view_importance_.measure(frame.gl.device, candidates_, count); }));
     target.host_lights =
         draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls], seed);
     LUCARNE_TRY(frame.gl.device.reserve(target.lights, s[kVpls] * sizeof(VplLight), "virtual point lights"));
@@ -143,15 +146,33 @@ Result<void> VplEngine::seed(Frame& frame, Seeds& target) {
     return {};
 }
 
+/// Decodes the casters and measures what matters to the camera.
+Result<void> VplEngine::look_around(Frame& frame, const Basis& basis) {
+    if (looked_ == basis) return {};
+    looked_.index = UINT64_MAX;  // invalid until everything is done
+    LUCARNE_TRY(pass(frame, "ISM casters",
+                     [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
+    sky_.directions.favour({});
+    if (frame.settings[kViewVpls]) {
+        const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+        LUCARNE_TRY(view_importance_.look(frame, materials_, seed, maps_));
+        if (!sky_.directions.dark()) {
+            LUCARNE_ASSIGN(const auto openings, view_importance_.openings(frame.gl.device));
+            sky_.directions.favour(openings);
+        }
+    }
+    looked_ = basis;
+    return {};
+}
+
 /// Sets frame.gl.radiance to the light of the requested bounces. It places VPLs on the surfaces that the
 /// lights see, draws their shadow maps and shades interleaved pixels, then redistributes the VPLs and repeats
 /// this for the next bounce. VPLs and maps are kept while nothing but the camera moves.
-Result<void> VplEngine::light_indirectly(Frame& frame) {
+Result<void> VplEngine::light_indirectly(Frame& frame, const Basis& basis) {
     const EngineSettings& s = frame.settings;
     const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
     LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s[kAtlas], s[kVpls]));
     const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
-    const Basis basis = basis_of(frame);
     const bool held = keep && basis == basis_;
     basis_.index = UINT64_MAX;  // invalid until everything is drawn
     // Each averaged frame blurs less, so that the average converges.
@@ -160,11 +181,7 @@ Result<void> VplEngine::light_indirectly(Frame& frame) {
     redistribution_.best_candidate = s[kBestCandidate];
     redistribution_.footprint_variance = footprint_variance(frame.index);
     LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
-    if (!held) {
-        LUCARNE_TRY(pass(frame, "ISM casters",
-                         [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
-        LUCARNE_TRY(seed(frame, bounces_[0].seeds));
-    }
+    if (!held) LUCARNE_TRY(seed(frame, bounces_[0].seeds));
     for (uint32_t bounce = 1; bounce <= last; ++bounce) {
         Seeds& seeds = bounces_[bounce - 1].seeds;
         Buffer& atlas = bounces_[keep ? bounce - 1 : 0].atlas;
@@ -207,13 +224,17 @@ Result<void> VplEngine::add_direct(Frame& frame) {
 }
 
 Result<void> VplEngine::render(Frame& frame) {
+    const Basis basis = basis_of(frame);
+    const bool lit = !frame.lights.empty() || !sky_.directions.dark() || emits(frame);
+    const bool favours = frame.settings[kViewVpls] && !sky_.directions.dark();
+    if (lit && (wants_indirect(frame.settings) || favours)) LUCARNE_TRY(look_around(frame, basis));
     light_gbuffers_.begin(frame, sky_.directions);
     frame.times.begin("light G-buffer");
     if (!light_gbuffers_.views().empty()) LUCARNE_TRY(light_gbuffers_.look(frame, 0));
     frame.times.end();
     indirect_ = wants_indirect(frame.settings) && (!light_gbuffers_.views().empty() || emits(frame));
     if (indirect_)
-        LUCARNE_TRY(light_indirectly(frame));
+        LUCARNE_TRY(light_indirectly(frame, basis));
     else
         frame.gl.radiance.clear(0);
     return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};

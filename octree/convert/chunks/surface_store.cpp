@@ -8,7 +8,7 @@
 
 #include "octree/cache/format.h"
 #include "octree/convert/chunks/record_bytes.h"
-#include "octree/convert/chunks/station_ids.h"
+#include "octree/tree/station_ids.h"
 
 namespace lucarne::octree {
 namespace {

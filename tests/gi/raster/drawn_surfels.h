@@ -23,11 +23,9 @@ struct Picture {
     std::vector<Surfel> surfels;  ///< as the device stores them
 
     glm::vec3 ray(uint32_t x, uint32_t y) const {
-        const float u = 2 * (static_cast<float>(x) + .5f) / static_cast<float>(view.width) - 1;
-        const float v = 2 * (static_cast<float>(y) + .5f) / static_cast<float>(view.height) - 1;
-        return glm::vec3(view.forward.x, view.forward.y, view.forward.z) +
-               u * glm::vec3(view.right.x, view.right.y, view.right.z) -
-               v * glm::vec3(view.up.x, view.up.y, view.up.z);
+        const glm::vec2 at = glm::vec2(x, y) + .5f + glm::vec2(view.right.w, view.up.w);
+        const glm::vec2 ndc = 2.0f * at / glm::vec2(view.width, view.height) - 1.0f;
+        return glm::vec3(view.forward) + ndc.x * glm::vec3(view.right) - ndc.y * glm::vec3(view.up);
     }
     glm::vec3 eye() const { return {view.origin.x, view.origin.y, view.origin.z}; }
     bool empty(size_t at) const { return ids[at] == kNoSurfel; }

@@ -6,9 +6,16 @@ namespace lucarne::gi {
 namespace {
 
 TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
-    for (const float area : {2e-4f, 0.01f, 0.3f}) {  // 2 to 150 pixels across: small and large discs
+    // 2 to 150 pixels across: small and large discs, the latter also with rays beside the middles of their
+    // pixels
+    const std::pair<float, glm::vec2> kinds[] = {
+        {2e-4f, {}}, {0.01f, {}}, {0.3f, {}}, {0.3f, {-.4f, .3f}}, {0.3f, {.5f, -.5f}}};
+    for (const auto& [area, shift] : kinds) {
         const Surfel tilted{{0.3f, 3, 0.2f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 3};
-        const Picture p = draw({tilted}, look({0, 0, 0}, {0, 1, 0}, 320, 240));
+        CameraView view = look({0, 0, 0}, {0, 1, 0}, 320, 240);
+        view.right.w = shift.x;
+        view.up.w = shift.y;
+        const Picture p = draw({tilted}, view);
         ASSERT_EQ(p.surfels.size(), 1u);
         const Surfel s = p.surfels[0];
         size_t covered = 0;

@@ -18,6 +18,7 @@ Result<Look> parse(const std::string& look) {
 constexpr const char* kWholeLook = R"({
   "colour": "attribute", "attribute": "gps_time", "map": "cool-warm", "reversed": true,
   "range": {"low": 1.5, "high": -2}, "hidden_classes": [7, 18], "point_size": 2, "point_pixels": 3,
+  "outliers": 2, "single_discs": true,
   "shading": "occlusion", "shading_strength": 0.5, "eye_dome_pixels": 3, "occlusion_reach": 6,
   "backdrop": {"top": [0.1, 0.2, 0.3], "bottom": [0, 0, 0.5]},
   "clip": {"boxes": [{"min": [0, 1, 2], "max": [3, 4, 5], "rotation": 30, "inverted": true}],
@@ -33,6 +34,7 @@ TEST(LookFile, EveryKeyIsReadAndWrittenBackTheSame) {
     EXPECT_EQ(look->map, ColourMap::cool_warm);
     EXPECT_EQ(look->range, (ValueRange{1.5, -2}));
     EXPECT_TRUE(look->hidden_classes[7] && look->hidden_classes[18] && look->hidden_classes.count() == 2);
+    EXPECT_EQ(look->outliers, 2u);
     EXPECT_EQ(look->unlit.shading, Shading::occlusion);
     EXPECT_EQ(look->backdrop.kind, Backdrop::Kind::gradient);
     ASSERT_EQ(look->clip.boxes.size(), 1u);
@@ -60,6 +62,7 @@ TEST(LookFile, MistakesNameTheirPlace) {
         {R"({"hidden_classes": [256]})", "/look/hidden_classes"},
         {R"({"hidden_classes": [1.5]})", "/look/hidden_classes"},
         {R"({"hidden_classes": 7})", "/look/hidden_classes"},
+        {R"({"outliers": 4})", "/look/outliers"},
         {R"({"point_size": 0})", "/look/point_size"},
         {R"({"range": {"low": 1}})", "high"},
         {R"({"backdrop": {"top": [2, 0, 0]}})", "/look/backdrop/top"},

@@ -111,6 +111,7 @@ class Chance {
         look["clip"]["planes"] = {{{"position", list(vector(-9, 0))}, {"normal", list(vector(1, 9))}}};
         look["backdrop"] = {{"top", list(vector(0, 1))}};
         if (coin()) look["hidden_classes"] = {below(256)};
+        if (coin()) look["outliers"] = below(4);
         return look;
     }
     nlohmann::json scene() {

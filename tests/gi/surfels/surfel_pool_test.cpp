@@ -368,6 +368,21 @@ TEST(PackSurfels, UnknownNormalAndAreaAreMarked) {
     EXPECT_EQ(surfel_own_area(packed[0].b, 16), 0.0f);
 }
 
+TEST(PackSurfels, OutliersAreDrawnAtStrictnessZeroAloneAndHiddenClassesNever) {
+    Records records;
+    records.add({101, 201, 301}, {0, 0, 0}, octree::encode_normal({0, 0, 1}), 0.01, 0, 0);
+    for (const int cls : {0, 7}) records.add({104, 201, 301}, {0, 0, 0}, octree::kNoNormal, 1e-30, cls, 0);
+    Scene scene = one_material();
+    scene.look.hidden_classes.set(7);
+    const auto usual = records.pack(scene);
+    EXPECT_FALSE(surfel_is_stray(usual[0].b, usual[0].d));
+    EXPECT_TRUE(surfel_is_stray(usual[1].b, usual[1].d));
+    scene.look.outliers = 0;
+    const auto all = records.pack(scene);
+    EXPECT_EQ(surfel_own_area(all[1].b, 16), surfel_own_area(all[0].b, 16));
+    EXPECT_TRUE(surfel_is_stray(all[2].b, all[2].d));
+}
+
 TEST(PackSurfels, FilesOwnNormalComesFirstAndNoNumberIsNoNormal) {
     Records records;
     records.header.schema.add("normal", io::ScalarType::f32, 3);

@@ -206,7 +206,7 @@ TEST(SyntheticScan, ImpossibleOptionsAreRefusedByName) {
         return source.error().line();
     };
     EXPECT_THAT(message([](auto& o) { o.scene = "moon"; }),
-                HasSubstr("cornell, furnace, nave, two-rooms, statue, ring, paraboloid"));
+                HasSubstr("cornell, furnace, nave, two-rooms, house, statue, ring, paraboloid"));
     EXPECT_THAT(message([](auto& o) { o.points = 0; }), HasSubstr("--points"));
     EXPECT_THAT(message([](auto& o) { o.noise = -1; }), HasSubstr("--noise"));
     EXPECT_THAT(message([](auto& o) { o.noise = NAN; }), HasSubstr("--noise"));

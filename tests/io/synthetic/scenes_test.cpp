@@ -121,6 +121,24 @@ TEST(SyntheticScenes, OneDoorIsOpenAndTheOtherClosed) {
     }
 }
 
+TEST(SyntheticScenes, LightReachesTheSecondRoomOfTheHouseOnlyOverTheDoor) {
+    const auto geometry = geometry_of("house");
+    Random random(9);
+    size_t through = 0;
+    for (int i = 0; i < 300'000; ++i) {
+        const dvec3 from(6.0, 3.2, 1.4), direction = random_direction(random);
+        const auto hit = geometry->cast(from, direction);
+        ASSERT_TRUE(hit);  // no ray leaves the house from here
+        if (hit->position.x >= 4.0999) continue;
+        const dvec3 at = from + direction * ((4.1 - from.x) / direction.x);
+        EXPECT_TRUE(at.y > 2.39 && at.y < 3.31 && at.z > 2.09 && at.z < 2.41) << at.y << " " << at.z;
+        ++through;
+    }
+    EXPECT_GT(through, 500u);
+    EXPECT_FALSE(geometry->cast({2, 1, 1.5}, {0, -1, 0})) << "the window is open";
+    EXPECT_TRUE(geometry->cast({3.5, 1, 1.5}, {0, -1, 0})) << "the wall beside it is not";
+}
+
 TEST(SyntheticScenes, WindowsOfTheNaveAreOpenAndItsWallsAreNot) {
     const auto geometry = geometry_of("nave");
     const dvec3 middle(0, 12.5, 9.5);

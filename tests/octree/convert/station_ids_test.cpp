@@ -1,5 +1,5 @@
 // Which station saw a point, for ids of any number type, including values that make no sense.
-#include "octree/convert/chunks/station_ids.h"
+#include "octree/tree/station_ids.h"
 
 #include <cmath>
 

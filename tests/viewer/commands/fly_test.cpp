@@ -24,9 +24,9 @@ TEST(Fly, WaitingGivesTheSamePicturesOnEveryRunAndAReport) {
     const std::string cache = make_cornell(folder);
     write(folder / "path.json", kPath);
     for (const std::string run : {"a", "b"}) {
-        const Outcome flown =
-            test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48" +
-                          " --frames-dir " + (folder / run) + " -o " + (folder / (run + ".json")));
+        const Outcome flown = test::lucarne("fly " + cache + " --path " + (folder / "path.json") +
+                                            " --wait --size 64x48 --bounces 1" + " --frames-dir " +
+                                            (folder / run) + " -o " + (folder / (run + ".json")));
         ASSERT_EQ(flown.code, 0) << flown.output;
     }
     for (int frame = 1; frame <= 3; ++frame) {
@@ -40,9 +40,9 @@ TEST(Fly, WaitingGivesTheSamePicturesOnEveryRunAndAReport) {
 
     std::filesystem::create_directory(folder.path() / "other");
     write(folder / "other/frame_00120.png", "of another flight");
-    const Outcome mixed =
-        test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --wait --size 64x48" +
-                      " --frames-dir " + (folder / "other") + " -o " + (folder / "c.json"));
+    const Outcome mixed = test::lucarne("fly " + cache + " --path " + (folder / "path.json") +
+                                        " --wait --size 64x48 --bounces 1" + " --frames-dir " +
+                                        (folder / "other") + " -o " + (folder / "c.json"));
     EXPECT_EQ(mixed.code, 1) << mixed.output;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "other/frame_00001.png")) << "two flights are mixed";
 
@@ -150,9 +150,10 @@ TEST(Fly, SeveralEnginesColdAndWarmAreOneReportAndOnePage) {
     const TemporaryFolder folder;
     const std::string cache = make_cornell(folder);
     write(folder / "path.json", kPath);
-    const std::string call = "fly " + cache + " --path " + (folder / "path.json") + " --size 48x32 --cold" +
-                             " --engine direct,vpl --frames-dir " + (folder / "frames") + " --html " +
-                             (folder / "r.html") + " -o " + (folder / "r.json");
+    const std::string call = "fly " + cache + " --path " + (folder / "path.json") +
+                             " --size 48x32 --bounces 1 --cold" + " --engine direct,vpl --frames-dir " +
+                             (folder / "frames") + " --html " + (folder / "r.html") + " -o " +
+                             (folder / "r.json");
     const Outcome flown = test::lucarne(call);
     ASSERT_EQ(flown.code, 0) << flown.output;
     const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));

@@ -317,6 +317,56 @@ TEST_F(RenderCommand, TransparentIsWhereNoPointIsAndNowhereElse) {
     EXPECT_LT(clear, cutout.size() * 9 / 10);
 }
 
+TEST_F(RenderCommand, AveragesAreThoseOverThePixelsAreasAndTheGBufferIsThatOfTheFirstFrame) {
+    const std::string view = "--clip-box=-1,-1,-1,7,7,2.75 --only-bounce 0 --gbuffer ";
+    double changes[2] = {};
+    for (const bool reference : {false, true}) {
+        const std::string what = (reference ? "--engine reference " : "--engine direct ") + view;
+        ASSERT_EQ(render("one.exr", what + at("one-seen.exr")).code, 0);
+        ASSERT_EQ(render("many.exr", what + at("many-seen.exr") + " --frames 16").code, 0);
+        ASSERT_EQ(render("fine.exr", what + at("fine-seen.exr"), "256x192").code, 0);
+        EXPECT_EQ(exr("one-seen.exr").pixels, exr("many-seen.exr").pixels);
+        const auto one = exr("one.exr"), many = exr("many.exr"), fine = exr("fine.exr");
+        double before = 0, now = 0;  // squared differences from the mean of 4 x 4 pixels of the fine picture
+        for (size_t i = 0; i < one.pixels.size(); ++i) {
+            double mean = 0;
+            for (size_t k = 0; k < 16; ++k)
+                mean += fine.pixels[(i / 64 * 4 + k / 4) * 256 + i % 64 * 4 + k % 4].y / 16;
+            before += std::pow(one.pixels[i].y - mean, 2);
+            now += std::pow(many.pixels[i].y - mean, 2);
+        }
+        EXPECT_LT(now, 0.4 * before) << what;
+        ASSERT_EQ(render("same.exr", what + at("seen.exr") + " --frames 2 --no-antialiasing").code, 0);
+        const auto same = exr("same.exr");
+        for (size_t i = 0; i < one.pixels.size(); ++i)
+            EXPECT_NEAR(same.pixels[i].y, one.pixels[i].y, 1e-3f * one.pixels[i].y) << i;
+        changes[reference] = gi::mean_luminance(many.pixels) / gi::mean_luminance(one.pixels);
+    }
+    EXPECT_NEAR(changes[0] / changes[1], 1, 0.01);
+}
+
+TEST_F(RenderCommand, OpacityOfAnAverageIsTheShareOfThePixelThatShowsPoints) {
+    // The background is mixed neither into the colours of transparent pixels nor into those over a backdrop.
+    const std::string view =
+        "--engine unlit --shading flat --colour classification --clip-box=-1,-1,-1,7,7,2.75 --frames 8 ";
+    ASSERT_EQ(render("cutout.png", view + "--transparent").code, 0);
+    ASSERT_EQ(render("white.png", view + "--background=1,1,1").code, 0);
+    const auto cutout = rgba(at("cutout.png"));
+    const auto white = io::read_png(at("white.png"));
+    ASSERT_TRUE(white);
+    size_t partly = 0;
+    for (size_t i = 0; i < cutout.size(); ++i) {
+        const int alpha = cutout[i][3];
+        if (alpha == 0) continue;
+        partly += alpha < 255;
+        for (size_t c = 0; c < 3; ++c) {
+            const double over = 255 + alpha / 255.0 * (cutout[i][c] - 255.0);
+            EXPECT_NEAR(white->bytes[3 * i + c], over, 2) << i;
+        }
+    }
+    EXPECT_GT(partly, 20u);
+}
+
 TEST_F(RenderCommand, OverlaysStandOverTransparencyAndCanBeLeftOut) {
     const std::string view = "--engine unlit --axes --transparent --clip-box=50,50,50,51,51,51 ";
     ASSERT_EQ(render("axes.png", view, "320x240").code, 0);

@@ -137,8 +137,16 @@ void add_look_options(Arguments& command, LookOptions& options) {
     command.add("--point-pixels", options.point_pixels, "Draw all points with this size, in pixels")
         .range(0.0, 64.0)
         .type_name("N");
+    command
+        .add("--outliers", options.outliers,
+             "How strictly to leave out points that lie on no surface; 0: draw all points, 1: leave out what "
+             "the converter found, 2: also discs that are far larger than their neighbours, 3: more of them")
+        .range(0, 3)
+        .type_name("N");
     command.flag("--single-discs", options.single_discs,
                  "Show in each pixel the nearest point's disc alone, not blended with those around it");
+    command.flag("--open-holes", options.open_holes,
+                 "Leave holes of the scan open that the conversion has filled");
     command
         .add("--background", options.background,
              "Background: scene, one colour, or a gradient from top to bottom (sRGB, 0 to 1)")
@@ -174,7 +182,9 @@ Result<void> apply(const LookOptions& options, gi::Look& look) {
         LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
         look.unlit.shading = static_cast<gi::Shading>(shading);
     }
+    look.outliers = options.outliers.value_or(look.outliers);
     look.single_discs |= options.single_discs;
+    look.open_holes |= options.open_holes;
     look.legend |= options.legend;
     look.axes |= options.axes;
     look.scale_bar |= options.scale_bar;

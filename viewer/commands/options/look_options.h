@@ -16,12 +16,14 @@ struct LookOptions {
     std::optional<double> point_size, point_pixels, shading_strength;
     std::vector<std::string> clip_boxes, clip_planes, clip_outside;
     std::vector<int> hidden_classes;
-    bool reversed = false, clip_casts = false, single_discs = false, legend = false, axes = false,
-         scale_bar = false;
+    std::optional<uint32_t> outliers;
+    bool reversed = false, clip_casts = false, single_discs = false, open_holes = false, legend = false,
+         axes = false, scale_bar = false;
 };
 
 /// Declares --colour --colour-map --reverse-map --range --shading --shading-strength --point-size
-/// --point-pixels --background --hide-class --clip-box --clip-outside --clip-plane --clip-casts --legend
+/// --point-pixels --outliers --single-discs --background --hide-class --clip-box --clip-outside --clip-plane
+/// --clip-casts --legend
 /// --axes --scale-bar. `options` must outlive the command.
 void add_look_options(Arguments& command, LookOptions& options);
 

@@ -19,6 +19,10 @@ layout(binding = kUnitSources) uniform usamplerBuffer source_texels;
 
 uniform uint seed, id_bits;
 
+// Texels without a surfel, and surfels of the VPL's own sheet, hide what the light would reach behind them: the rest of
+// the map stands in for them, up to this factor.
+const float kMostHidden = 2.0;
+
 shared float shared_key[64], shared_sum[64], shared_all[64], shared_found[64];
 shared uint shared_place[64];
 
@@ -62,6 +66,19 @@ Reflectance reflectance_of(uint item, PackedSurfel surfel) {
     return make_reflectance(materials[surfel_material(surfel.b)], decode_albedo(surfel.d));
 }
 
+// Returns the normal of a surfel on the side that light in a unit direction falls on.
+vec3 lit_normal(PackedSurfel surfel, vec3 direction) {
+    vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : -direction;
+    return dot(normal, direction) > 0.0 ? -normal : normal;
+}
+
+// Returns the share of a VPL's light that shading would count at a surfel which its map shows. Without it the race
+// would send light along noisy surfaces, where shading drops it.
+float share_of(uint map, uint item, PackedSurfel surfel) {
+    vec3 offset = surfel_position(item, surfel) - vpl_position(map).xyz;
+    return pair_share(vpl_normal(map).xyz, offset, lit_normal(surfel, normalize(offset)), cut_surfel_radius(item, surfel));
+}
+
 void write_light(uint map, uvec2 at, float inverse_probability) {
     mat3 frame = frame_about(vpl_normal(map).xyz);
     MapRay ray = look(map, at);
@@ -70,8 +87,7 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
     PackedSurfel surfel;
     cut_surfel(id, item, surfel);
     vec3 direction = frame * ray.direction;
-    vec3 normal = surfel_has_normal(surfel) ? surfel_normal(surfel) : -direction;
-    if (dot(normal, direction) > 0.0) normal = -normal;
+    vec3 normal = lit_normal(surfel, direction);
     Reflectance r = reflectance_of(item, surfel);
     float radius = cut_surfel_radius(item, surfel);
     vec3 flux = intensity_at(map, frame, ray) * ray.solid_angle * inverse_probability;
@@ -94,12 +110,13 @@ void main() {
         uint source = texelFetch(source_texels, int(texel_index(map, at))).x;
         uint item;
         PackedSurfel surfel;
-        bool known = flux > 0.0 && source != kNothing;
-        float weight = 0.0;
-        if (known && cut_surfel(source & ((1u << id_bits) - 1u), item, surfel))
-            weight = flux * reflected_share(reflectance_of(item, surfel));
+        float weight = 0.0, arrives = 0.0;
+        if (flux > 0.0 && source != kNothing && cut_surfel(source & ((1u << id_bits) - 1u), item, surfel)) {
+            arrives = flux * share_of(map, item, surfel);
+            weight = arrives * reflected_share(reflectance_of(item, surfel));
+        }
         all += flux;
-        found += known ? flux : 0.0;
+        found += arrives;
         sum += weight;
 #ifdef LUCARNE_BEST_CANDIDATE
         float key = weight > 0.0 ? -weight : 3e38;
@@ -123,21 +140,22 @@ void main() {
         all += shared_all[i];
         found += shared_found[i];
     }
-    weight_sums[map] = sum;
+    float hidden = found > 0.0 ? min(all / found, kMostHidden) : 0.0;
+    weight_sums[map] = sum * hidden;
     next[map] = VplLight(vec4(vec3(1e18), 0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     if (!(sum > 0.0) || best >= 3e38) return;
     uvec2 at = uvec2(place % map_side, place / map_side);
-    // 1 / probability of the winner. Texels that pull-push filled have no surfel; the other texels stand in for them.
+    // 1 / probability of the winner.
     MapRay ray = look(map, at);
     float luminous = luminance(intensity_at(map, frame, ray)) * ray.solid_angle;
     uint item;
     PackedSurfel surfel;
     cut_surfel(texelFetch(source_texels, int(texel_index(map, at))).x & ((1u << id_bits) - 1u), item, surfel);
-    float own = luminous * reflected_share(reflectance_of(item, surfel));
+    float own = luminous * share_of(map, item, surfel) * reflected_share(reflectance_of(item, surfel));
 #ifdef LUCARNE_BEST_CANDIDATE
     float scale = all / luminous;
 #else
-    float scale = sum / own * all / found;
+    float scale = sum / own * hidden;
 #endif
     write_light(map, at, scale);
 }

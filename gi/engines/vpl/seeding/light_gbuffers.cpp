@@ -10,8 +10,10 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-constexpr size_t kLeastHeld = 6;                 // views: the six of a point light
-constexpr size_t kHeldBytes = size_t{64} << 20;  // more views are held if they fit into this
+constexpr size_t kLeastHeld = 6;  // views: the six of a point light
+// More views are held if they fit into this share of the device's memory. A view that is not held is drawn
+// three times a frame.
+constexpr size_t kHeldShare = 4;
 
 }  // namespace
 
@@ -25,7 +27,8 @@ void LightGBuffers::begin(const Frame& frame, const SkyDirections& sky) {
     views_ = light_views(frame, sky);
     size_t largest = 1;
     for (const LightView& v : views_) largest = std::max(largest, size_t{v.view.width} * v.view.height);
-    const size_t fit = kHeldBytes / (largest * (sizeof(GBufferTexel) + sizeof(uint32_t)));
+    const size_t fit =
+        frame.gl.device.memory_cap() / kHeldShare / (largest * (sizeof(GBufferTexel) + sizeof(uint32_t)));
     held_.resize(std::min(views_.size(), std::max(kLeastHeld, fit)));
 }
 

@@ -14,8 +14,8 @@ namespace lucarne::gi::vpl {
 bool emits(const Frame& frame);
 
 /// Places VPLs on emissive surfels and on the G-buffers of the light views.
-/// As many G-buffers are held as fit a fixed amount of memory; with more lights, the others
-/// are drawn again whenever they are needed.
+/// As many G-buffers are held as fit a quarter of the device's memory; with more lights, the others are drawn
+/// again whenever they are needed.
 class LightGBuffers {
  public:
     /// Starts a new frame: computes its light views, `sky` being that of its environment. Held G-buffers

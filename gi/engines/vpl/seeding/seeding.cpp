@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
@@ -13,25 +16,60 @@
 namespace lucarne::gi::vpl {
 namespace {
 
-/// Removes VPLs that are not wholly in the light (seed.comp) and gives their flux to the others, so that the
-/// sum stays the flux that lands.
-void clear_rims(std::span<VplLight> lights) {
-    double all = 0, clear = 0;
-    for (const VplLight& l : lights) {
-        all += luminance(glm::vec3(l.flux));
-        if (l.flux.w >= 1) clear += luminance(glm::vec3(l.flux));
+// VPLs before and after one on the curve of Halton points (halton.h): its neighbours in the light's view.
+constexpr size_t kNeighbours = 256;
+constexpr float kSameSurface = 0.7f;  // least cosine between normals
+
+bool clear(const VplLight& light) {
+    return light.flux.w >= 1;
+}
+
+double power(const VplLight& light) {
+    return luminance(glm::vec3(light.flux));
+}
+
+/// Returns the nearest clear VPL around index `i` whose surface faces the same way; null if there is none.
+VplLight* nearest_clear(std::span<VplLight> lights, size_t i) {
+    VplLight* nearest = nullptr;
+    float least = INFINITY;
+    const size_t end = std::min(i + kNeighbours + 1, lights.size());
+    for (size_t k = i > kNeighbours ? i - kNeighbours : 0; k < end; ++k) {
+        VplLight& other = lights[k];
+        if (!clear(other) || !(power(other) > 0)) continue;
+        if (glm::dot(glm::vec3(other.normal), glm::vec3(lights[i].normal)) < kSameSurface) continue;
+        const glm::vec3 offset(other.position - lights[i].position);
+        const float distance2 = glm::dot(offset, offset);
+        if (distance2 < least) least = distance2, nearest = &other;
     }
-    const float scale = clear > 0 ? static_cast<float>(all / clear) : 0.0f;
-    for (VplLight& l : lights) {
-        if (l.flux.w < 1) {
+    return nearest;
+}
+
+/// Removes VPLs that are not wholly in the light (seed.comp) and gives their flux to the nearest VPL of the
+/// same surface, else to all. The sum stays the flux that lands, and so does the light of each patch: sun
+/// through a window lights a patch with a long border, while roofs have hardly any.
+void clear_rims(std::span<VplLight> lights) {
+    std::vector<double> gifts(lights.size());  // W
+    double all = 0, homeless = 0;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        all += power(lights[i]);
+        if (clear(lights[i]) || !(power(lights[i]) > 0)) continue;
+        if (const VplLight* heir = nearest_clear(lights, i))
+            gifts[static_cast<size_t>(heir - lights.data())] += power(lights[i]);
+        else
+            homeless += power(lights[i]);
+    }
+    const double shared = all > homeless ? all / (all - homeless) : 0.0;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        VplLight& l = lights[i];
+        if (!clear(l)) {
             l = kDeadLight;
             continue;
         }
-        for (glm::vec4* flux : {&l.flux, &l.diffuse}) {
-            flux->x *= scale;
-            flux->y *= scale;
-            flux->z *= scale;
-        }
+        const double own = power(l), grown = own > 0 ? 1 + gifts[i] / own : 1.0;
+        l.position.w *= static_cast<float>(grown);
+        for (glm::vec4* flux : {&l.flux, &l.diffuse})
+            for (int channel = 0; channel < 3; ++channel)
+                (*flux)[channel] *= static_cast<float>(grown * shared);
     }
 }
 

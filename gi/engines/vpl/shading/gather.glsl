@@ -86,14 +86,20 @@ float separate_share(vec2 heights, float distance_m, float radius, float cosine)
            clamp((rise - mix(0.035, 0.1, opposite)) / mix(0.07, 0.1, opposite), 0.0, 1.0);
 }
 
-// Returns cos cos' / d^2 of two points, 1/m^2; `offset` leads from the VPL to the receiver. Returns 0 if they lie in
-// one plane, and for dead VPLs.
+// The same for a VPL and a point on a surface with this normal and radius of its surfel; `offset` leads from the VPL to
+// the point. 0 if one of them does not face the other, and for dead VPLs.
+float pair_share(vec3 light_normal, vec3 offset, vec3 normal, float radius) {
+    vec2 heights = vec2(-dot(normal, offset), dot(light_normal, offset));
+    if (!(min(heights.x, heights.y) > kRimPush * radius)) return 0.0;
+    return separate_share(heights, length(offset), radius, dot(light_normal, normal));
+}
+
+// Returns cos cos' / d^2 of two points times their pair_share, 1/m^2; `offset` leads from the VPL to the receiver.
 float point_geometry(vec3 light_normal, vec3 offset, Receiver receiver) {
-    float cosines = -dot(receiver.normal, offset);
-    float light_cosine = dot(light_normal, offset);
-    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return 0.0;
+    float share = pair_share(light_normal, offset, receiver.normal, receiver.radius);
+    if (!(share > 0.0)) return 0.0;
     float distance2 = dot(offset, offset);
-    return cosines * light_cosine / (distance2 * distance2);
+    return share * -dot(receiver.normal, offset) * dot(light_normal, offset) / (distance2 * distance2);
 }
 
 #ifdef LUCARNE_GLOSSY
@@ -128,13 +134,10 @@ Arriving from_vpl(uint i, Receiver receiver) {
     vec4 position = vpl_position(i);
     vec4 light_normal = vpl_normal(i);
     vec3 offset = receiver.position - position.xyz;
-    float cosines = -dot(receiver.normal, offset);
-    float light_cosine = dot(light_normal.xyz, offset);
-    if (!(min(cosines, light_cosine) > kRimPush * receiver.radius)) return result;  // also for dead VPLs
+    float share = pair_share(light_normal.xyz, offset, receiver.normal, receiver.radius);
+    if (!(share > 0.0)) return result;
     result.any = true;
     float r2 = max(position.w / kPi, 1e-12);
-    float share = separate_share(vec2(cosines, light_cosine), length(offset), receiver.radius,
-                                 dot(light_normal.xyz, receiver.normal));
     float form_factor = share * disc_form_factor(receiver.normal, light_normal.xyz, offset, r2) / (kPi * r2);
 #ifdef LUCARNE_GLOSSY
     result.light = with_lobes(i, receiver, light_normal.xyz, offset, form_factor);

@@ -29,21 +29,21 @@ void main() {
     vec3 position = texel_position(camera, pixel, texel);
     vec3 normal = texel_normal(texel);
     float sigma_z = float(n) * pixel_height(camera, texel.depth);
-    uint candidates = 0u, missing = 0u;
+    uvec2 joint = uvec2(0u);
+    int last = n > 1 ? 3 : 0;
     for (int i = 0; i < n * n; ++i) {
-        bool found = false;
         int j = 0;
         do {
             ivec2 at = window_pixel(ivec2(pixel), n, i, j);
             bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(camera.width, camera.height)));
             uint other = inside ? uint(at.y) * camera.width + uint(at.x) : index;
-            found = inside && alike(position, normal, sigma_z, uvec2(at), camera_texel(other));
-            if (found) candidates |= uint(j) << 2 * i;
+            if (inside && alike(position, normal, sigma_z, uvec2(at), camera_texel(other)))
+                joint[i >> 3] |= 1u << (4 * (i & 7) + j);
             ++j;
-        } while (!found && j < 4);
-        if (!found) missing |= 1u << i;
+        } while (j <= last);
     }
-    joints[index] = uvec2(candidates, missing);
+    joints[index] = joint;
+    uint missing = missing_tiles(n, joint);
     if (tiles_lacking(n, missing) > 0) {
         uint place = atomicAdd(isolated.count, 1u);
         isolated_pixels[place] = index;

@@ -23,7 +23,8 @@ void main() {
     if (texel.depth > 0.0) {
         int n = int(interleave);
         uvec2 joint = joints[index];
-        int lacking = tiles_lacking(n, joint.y);
+        uint missing = missing_tiles(n, joint);
+        int lacking = tiles_lacking(n, missing);
         // The light that shade_isolated.comp added for isolated pixels; 0 for all others.
         vec3 irradiance = texelFetch(own_diffuse, int(index)).xyz;
         vec3 specular = vec3(0.0);
@@ -31,15 +32,27 @@ void main() {
         specular = texelFetch(own_specular, int(index)).xyz;
 #endif
         for (int i = 0; i < n * n; ++i) {
-            ivec2 at = window_pixel(ivec2(pixel), n, i, int(joint.x >> 2 * i & 3u));
-            if ((joint.y >> i & 1u) != 0u) continue;
-            int other = at.y * int(camera.width) + at.x;
-            irradiance += texelFetch(diffuse_tiles, other).xyz;
+            uint candidates = candidates_of(joint, i);
+            vec3 tile_irradiance = vec3(0.0), tile_specular = vec3(0.0);
+            float weights = 0.0;
+            while (candidates != 0u) {
+                int j = findLSB(candidates);
+                candidates &= candidates - 1u;
+                ivec2 at = window_pixel(ivec2(pixel), n, i, j);
+                int other = at.y * int(camera.width) + at.x;
+                float weight = candidate_weight(n, i, j);
+                weights += weight;
+                tile_irradiance += weight * texelFetch(diffuse_tiles, other).xyz;
 #ifdef LUCARNE_GLOSSY
-            specular += texelFetch(specular_tiles, other).xyz;
+                tile_specular += weight * texelFetch(specular_tiles, other).xyz;
 #endif
+            }
+            if (weights > 0.0) {
+                irradiance += tile_irradiance / weights;
+                specular += tile_specular / weights;
+            }
         }
-        float tiles = float(n * n - bitCount(joint.y) + lacking);
+        float tiles = float(n * n - bitCount(missing) + lacking);
         Receiver receiver = pixel_receiver(pixel, texel);
         irradiance /= tiles;
 #ifdef LUCARNE_HISTORY

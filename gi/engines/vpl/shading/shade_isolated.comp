@@ -17,7 +17,7 @@ void shade(uint index) {
     uvec2 pixel = uvec2(index % camera.width, index / camera.width);
     Receiver receiver = pixel_receiver(pixel, camera_texel(index));
     int n = int(interleave);
-    uint missing = joints[index].y;
+    uint missing = missing_tiles(n, joints[index]);
     int lacking = tiles_lacking(n, missing);
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     do {

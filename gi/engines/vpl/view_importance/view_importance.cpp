@@ -6,6 +6,8 @@
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
+#include "gi/engines/vpl/view_importance/openings.h"
+#include "gi/lighting/sky_grid.h"
 #include "gi/raster/uniforms.h"
 #include "gi/shared/luminance.h"
 #include "io/core/random.h"
@@ -14,8 +16,27 @@ namespace lucarne::gi::vpl {
 namespace {
 
 constexpr uint32_t kCells = 8;  // importons along a side of the picture
+constexpr uint32_t kImportons = kCells * kCells;
 constexpr uint32_t kMapSide = 64;
+constexpr uint64_t kPlacing = 8192;    // stream of random numbers
 constexpr double kByLightAlone = 0.1;  // share of the VPLs
+
+Result<AtlasLayout> importon_layout() {
+    return atlas_layout(kCells * kMapSide, kImportons);
+}
+
+/// Returns the sums of openings.comp, each shared out among its cell and the eight around it: places between
+/// the importons see an opening in directions between theirs.
+std::vector<float> spread(const std::vector<uint32_t>& sums) {
+    std::vector<float> shares(kSkyCells);
+    for (uint32_t cell = 0; cell < kSkyCells; ++cell)
+        for (uint32_t step = 0; step < 9; ++step) {
+            const uint32_t row = std::clamp(cell / kSkyColumns + step / 3, 1u, kSkyRows) - 1;
+            const uint32_t column = (cell + kSkyColumns - 1 + step % 3) % kSkyColumns;
+            shares[row * kSkyColumns + column] += static_cast<float>(sums[cell]) / (9 * kOpeningSteps);
+        }
+    return shares;
+}
 
 /// Returns the light that leaves a candidate, W/sr along its normal, lobes counted like diffuse light.
 double leaving(const VplLight& light) {
@@ -42,55 +63,77 @@ bool ViewImportance::serves(const CameraView& camera) const {
            glm::dot(glm::vec3(camera.forward), glm::vec3(camera_.forward)) >= kTurned;
 }
 
-Result<void> ViewImportance::add(Frame& frame, const Seeds& importons, const Seeds& candidates,
-                                 uint32_t count, bool sources, ShadowMaps& maps) {
-    Device& device = frame.gl.device;
-    LUCARNE_ASSIGN(const Program* gather, device.program("gi/engines/vpl/view_importance/measure.comp"));
-    LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(kCells * kMapSide, kCells * kCells));
-    LUCARNE_TRY(
-        draw_shadow_maps(device, *frame.gl.cuts.light, importons, layout, sources, frame.times, maps));
-    importons.lights.bind_texels(kUnitLights, TexelView::four_words);
-    maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
-    candidates.lights.bind(kBindLights);
-    sums_.bind(kBindViewImportance);
-    set_layout(*gather, layout);
-    gather->set("footprint_variance", footprint_variance(0));
-    gather->set("candidate_count", count);
-    gather->set("importon_count", layout.maps);
-    gather->dispatch(count);
-    return {};
+/// Draws the shadow maps of importons. `sources` requests which surfel each texel shows.
+Result<void> ViewImportance::draw(Frame& frame, Importons& importons, bool sources, ShadowMaps& maps) {
+    LUCARNE_ASSIGN(const AtlasLayout layout, importon_layout());
+    std::swap(maps.atlas, importons.atlas);
+    const auto drawn = draw_shadow_maps(frame.gl.device, *frame.gl.cuts.light, importons.seeds, layout,
+                                        sources, frame.times, maps);
+    std::swap(maps.atlas, importons.atlas);
+    return drawn;
 }
 
-Result<void> ViewImportance::measure(Frame& frame, const Buffer& materials, uint64_t seed,
-                                     const Seeds& candidates, uint32_t count, ShadowMaps& maps) {
+Result<void> ViewImportance::look(Frame& frame, const Buffer& materials, uint64_t seed, ShadowMaps& maps) {
     Device& device = frame.gl.device;
     LUCARNE_ASSIGN(const Program* place, device.program("gi/engines/vpl/view_importance/importons.comp"));
-    constexpr uint32_t kImportons = kCells * kCells;
-    LUCARNE_TRY(device.reserve(importons_.lights, kImportons * sizeof(VplLight), "importons"));
-    LUCARNE_TRY(device.reserve(sums_, count * sizeof(float), "importance of VPLs"));
-    sums_.clear(0);
+    Buffer& lights = first_.seeds.lights;
+    LUCARNE_TRY(device.reserve(lights, kImportons * sizeof(VplLight), "importons"));
     materials.bind(kBindMaterials);
     frame.gl.gbuffer.texels.bind(kBindGBuffer);
-    importons_.lights.bind(kBindLights);
+    lights.bind(kBindLights);
     set(*place, "camera", frame.camera);
-    Random random(seed, count);
+    Random random(seed, kPlacing);
     const float x = static_cast<float>(random.uniform()), y = static_cast<float>(random.uniform());
     place->set("cells", kCells);
     place->set_block("shift", std::array{x, y});
     place->dispatch(kImportons);
-    std::swap(maps.atlas, atlas_);
-    const auto both = [&]() -> Result<void> {
-        LUCARNE_TRY(add(frame, importons_, candidates, count, true, maps));
-        redistribution_.footprint_variance = footprint_variance(0);
-        LUCARNE_TRY(redistribute(device, *frame.gl.cuts.light, maps, materials, false,
-                                 static_cast<uint32_t>(seed), importons_, redistribution_, second_));
-        return add(frame, second_, candidates, count, false, maps);
-    }();
-    std::swap(maps.atlas, atlas_);
-    LUCARNE_TRY(both);
-    importance_ = sums_.download_all<float>(count);
+    LUCARNE_TRY(draw(frame, first_, true, maps));
+    redistribution_.footprint_variance = footprint_variance(0);
+    std::swap(maps.atlas, first_.atlas);
+    const auto fallen =
+        redistribute(device, *frame.gl.cuts.light, maps, materials, false, static_cast<uint32_t>(seed),
+                     first_.seeds, redistribution_, second_.seeds);
+    std::swap(maps.atlas, first_.atlas);
+    LUCARNE_TRY(fallen);
+    LUCARNE_TRY(draw(frame, second_, false, maps));
     camera_ = frame.camera;
-    distance_ = median_distance(frame.camera, importons_.lights.download_all<VplLight>(kImportons));
+    distance_ = median_distance(frame.camera, lights.download_all<VplLight>(kImportons));
+    return {};
+}
+
+Result<std::vector<float>> ViewImportance::openings(Device& device) {
+    LUCARNE_ASSIGN(const Program* sum, device.program("gi/engines/vpl/view_importance/openings.comp"));
+    LUCARNE_ASSIGN(const AtlasLayout layout, importon_layout());
+    LUCARNE_TRY(device.reserve(openings_, kSkyCells * sizeof(uint32_t), "openings to the sky"));
+    openings_.clear(0);
+    for (const Importons* importons : {&first_, &second_}) {
+        importons->seeds.lights.bind(kBindLights);
+        importons->atlas.bind(kBindAtlas);
+        openings_.bind(kBindOpenings);
+        set_layout(*sum, layout);
+        sum->set("map_count", layout.maps);
+        sum->dispatch(static_cast<uint32_t>(layout.texels()));
+    }
+    return spread(openings_.download_all<uint32_t>(kSkyCells));
+}
+
+Result<void> ViewImportance::measure(Device& device, const Seeds& candidates, uint32_t count) {
+    LUCARNE_ASSIGN(const Program* gather, device.program("gi/engines/vpl/view_importance/measure.comp"));
+    LUCARNE_ASSIGN(const AtlasLayout layout, importon_layout());
+    LUCARNE_TRY(device.reserve(sums_, count * sizeof(float), "importance of VPLs"));
+    sums_.clear(0);
+    for (const Importons* importons : {&first_, &second_}) {
+        importons->seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
+        importons->atlas.bind_texels(kUnitAtlas, TexelView::one_word);
+        candidates.lights.bind(kBindLights);
+        sums_.bind(kBindViewImportance);
+        set_layout(*gather, layout);
+        gather->set("footprint_variance", footprint_variance(0));
+        gather->set("candidate_count", count);
+        gather->set("importon_count", layout.maps);
+        gather->dispatch(count);
+    }
+    importance_ = sums_.download_all<float>(count);
     return {};
 }
 

@@ -23,24 +23,35 @@ constexpr uint32_t candidates_for(uint32_t vpls) {
 /// and each is kept with a probability in proportion to what it adds to a few points that the camera sees, by
 /// one bounce and by two (Georgiev & Slusallek 2010, "Simple and robust iterative importance sampling of
 /// virtual point lights"). The sum stays unbiased.
+///
+/// The same points tell from where the sky reaches them, so that a room is not lit by the few directions of
+/// the whole sky that happen to pass its windows.
 class ViewImportance {
  public:
-    /// Measures the importance of `count` candidates. `maps` has decoded casters and lends its scratch
-    /// buffers. Errors: no device memory, a shader that fails.
-    Result<void> measure(Frame& frame, const Buffer& materials, uint64_t seed, const Seeds& candidates,
-                         uint32_t count, ShadowMaps& maps);
+    /// Places importons for the camera of the frame and draws their shadow maps. `maps` has decoded casters
+    /// and lends its scratch buffers. Errors: no device memory, a shader that fails.
+    Result<void> look(Frame& frame, const Buffer& materials, uint64_t seed, ShadowMaps& maps);
+    /// Returns how much light from each cell of the sky's grid (gi/lighting/sky_grid.h) adds to the picture,
+    /// by at most one bounce. Errors as above.
+    Result<std::vector<float>> openings(Device& device);
+    /// Measures the importance of `count` candidates. Errors as above.
+    Result<void> measure(Device& device, const Seeds& candidates, uint32_t count);
     /// The importance of each candidate.
     const std::vector<float>& importance() const { return importance_; }
     /// Returns whether a moving camera still sees about what it saw when the importance was measured.
     bool serves(const CameraView& camera) const;
 
  private:
-    Result<void> add(Frame& frame, const Seeds& importons, const Seeds& candidates, uint32_t count,
-                     bool sources, ShadowMaps& maps);
+    /// Importons and their shadow maps.
+    struct Importons {
+        Seeds seeds;
+        Buffer atlas;
+    };
+    Result<void> draw(Frame& frame, Importons& importons, bool sources, ShadowMaps& maps);
 
-    Seeds importons_, second_;
+    Importons first_, second_;  ///< on what the camera sees, and where their importance falls
     Redistribution redistribution_;
-    Buffer sums_, atlas_;
+    Buffer sums_, openings_;
     std::vector<float> importance_;
     CameraView camera_{};
     float distance_ = 0;  ///< from the camera to what it sees, m

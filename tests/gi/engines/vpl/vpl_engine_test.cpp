@@ -219,6 +219,27 @@ TEST_F(VplEngineTest, lightPassesAnOpenDoorAndNoClosedOne) {
     EXPECT_LT(closed, 5e-4 * mean(lit));
 }
 
+// A quarter of what the sun lights in the room lies within a disc's radius of the border of the patch of
+// light.
+TEST_F(VplEngineTest, theSunThroughASkylightLightsTheRoomAsInTheReference) {
+    AnalyticScene scene;
+    scene.surfels = scenes::closed_box(2, 60, kWhite);
+    add_rectangle(scene.surfels, 2.2f * kZ, 2.0f * kX, 2.0f * kY, 60,
+                  kWhite);  // the roof, which takes most light
+    std::erase_if(scene.surfels, [](const Surfel& s) {
+        return s.position.z > 1.99f && std::abs(s.position.x - 1) < .25f && std::abs(s.position.y - 1) < .25f;
+    });
+    Light sun{};
+    sun.kind = kDirectionalLight;
+    sun.direction = glm::vec4(glm::normalize(glm::vec3(.1f, .2f, -1)), 0);
+    sun.strength = glm::vec4(100, 100, 100, 0);
+    scene.lights = {sun};
+    scene.camera = look(glm::vec3(.2f, .2f, 1), glm::vec3(2, 1.4f, 1.2f), .8f, 32);
+    scene.settings.set(kOnlyBounce, 1);
+    // Edges of openings are about a texel of the light's view too wide.
+    EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .1);  // .86 when roofs shared the border
+}
+
 TEST_F(VplEngineTest, surfelsWithoutNormalsGiveAFinitePicture) {
     AnalyticScene scene = box_with_a_block();
     const float nan = std::numeric_limits<float>::quiet_NaN();

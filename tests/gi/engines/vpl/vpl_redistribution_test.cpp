@@ -5,6 +5,7 @@
 
 #include "gi/engines/vpl/redistribution/redistribution.h"
 #include "gi/lighting/direct_light.h"
+#include "io/core/random.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
@@ -21,8 +22,8 @@ class VplRedistribution : public OnDevice {
     struct Step {
         std::vector<VplLight> before, after;
     };
-    /// With a lobe, VPLs reflect by the lobe alone.
-    Step redistributed(uint32_t seed, bool best_candidate = false, float specular = 0) {
+    /// With a lobe, VPLs reflect by the lobe alone. `noise` moves the floor's surfels up and tilts them, m.
+    Step redistributed(uint32_t seed, bool best_candidate = false, float specular = 0, float noise = 0) {
         constexpr uint32_t kCount = 256;
         Step step;
         for (uint32_t i = 0; i < kCount; ++i) {
@@ -36,7 +37,15 @@ class VplRedistribution : public OnDevice {
             light.incident = glm::vec4(kIncident, specular);
             step.before.push_back(light);
         }
-        const SurfelCloud cloud(scenes::closed_box(kRoomSide, 150, glm::vec3(kAlbedo)));
+        std::vector<Surfel> box = scenes::closed_box(kRoomSide, 150, glm::vec3(kAlbedo));
+        Random random(7);
+        for (Surfel& s : box) {
+            if (s.normal.z < .9f) continue;
+            const auto any = [&] { return static_cast<float>(2 * random.uniform() - 1); };
+            s.position.z += noise * (1 + any());
+            s.normal = glm::normalize(s.normal + glm::vec3(any(), any(), 0) * noise / s.radius);
+        }
+        const SurfelCloud cloud(box);
         auto loaded = load_cloud(*device, cloud);
         EXPECT_TRUE(loaded);
         const std::vector<Material> white = {{glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)}};
@@ -89,6 +98,21 @@ TEST_F(VplRedistribution, newLightsStandOnTheWallsAndFaceInward) {
         on_the_floor += p.z < 1e-3f;
     }
     EXPECT_EQ(on_the_floor, 0u);  // points of a plane do not see each other
+}
+
+// Shading drops light between points of one noisy surface, so light that the race sent there would be lost.
+TEST_F(VplRedistribution, newLightsDoNotStandOnTheirOwnNoisyFloor) {
+    const Step step = redistributed(1, false, 0, .008f);
+    size_t on_the_floor = 0, alive = 0;
+    double returned = 0;
+    for (const VplLight& l : step.after) {
+        alive += glm::vec3(l.normal) != glm::vec3(0);
+        on_the_floor += l.position.z < .05f;
+        returned += 3.14159265 * l.diffuse.x / kAlbedo;
+    }
+    EXPECT_LE(on_the_floor, 8u);  // some stand low on the walls
+    EXPECT_EQ(alive, step.before.size());
+    EXPECT_NEAR(returned / (kAlbedo * sum_of_flux(step.before)), 1, .06);
 }
 
 TEST_F(VplRedistribution, theLightOfALobeLandsWhereTheLobePoints) {

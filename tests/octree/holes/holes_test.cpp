@@ -1,0 +1,242 @@
+#include "octree/holes/holes.h"
+
+#include <chrono>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "tests/octree/holes/hole_truth.h"
+#include "tests/octree/holes/room_scans.h"
+
+namespace lucarne::octree {
+namespace {
+
+using namespace testing;
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+/// The room of the tests: 6 x 5 x 3 m. Walls 0 to 5 are floor, ceiling, and x = 0, x = 6, y = 0, y = 5.
+std::vector<Wall> room() {
+    std::vector<Wall> walls;
+    add_box(walls, glm::vec3(0), {6, 5, 3}, true);
+    return walls;
+}
+
+/// Replaces the wall x = 6 by four around an opening.
+void open_wall(std::vector<Wall>& walls, float y0, float y1, float z0, float z1) {
+    walls[3] = {{6, 0, 0}, 3.0f * kZ, y0 * kY};
+    walls.push_back({{6, y1, 0}, 3.0f * kZ, (5 - y1) * kY});
+    walls.push_back({{6, y0, z1}, (3 - z1) * kZ, (y1 - y0) * kY});
+    if (z0 > 0) walls.push_back({{6, y0, 0}, z0 * kZ, (y1 - y0) * kY});
+}
+
+ptrdiff_t count(const std::vector<FillPoint>& points, const std::function<bool(const FillPoint&)>& which) {
+    return std::count_if(points.begin(), points.end(), which);
+}
+
+/// Even points on a rectangle of the plane z = 0, without those in `missing`; no station is known.
+HoleSample floor_without(float side, const std::function<bool(const glm::vec2&)>& missing) {
+    HoleSample sample;
+    Random random(1);
+    constexpr float kSpacing = 0.02f;
+    for (float x = 0; x < side; x += kSpacing)
+        for (float y = 0; y < side; y += kSpacing) {
+            const glm::vec2 at(x + kSpacing * random.uniform(), y + kSpacing * random.uniform());
+            if (!missing(at))
+                sample.points.push_back({.position = {at, 0},
+                                         .normal = kZ,
+                                         .colour = {at.x / side, 0.5f, 0.25f},
+                                         .area = kSpacing * kSpacing});
+        }
+    return sample;
+}
+
+TEST(Holes, TheDiscBelowATripodIsFilled) {
+    const std::vector<Wall> walls = room();
+    const std::vector<glm::vec3> stations{{2, 2, 1.7f}};
+    const auto points = find_holes(scan_walls(walls, stations));
+    ASSERT_FALSE(points.empty());
+    const float expected = unseen_area(walls, stations, 0);
+    EXPECT_GT(expected, 3);
+    EXPECT_NEAR(filled_area(points), expected, 0.05 * expected);
+    EXPECT_EQ(count(points,
+                    [&](const FillPoint& point) {
+                        const float away = glm::length(glm::vec2(point.position) - glm::vec2(stations[0]));
+                        return std::abs(point.position.z) > 0.01f || away > 1.7f * 0.62f + 0.1f ||
+                               point.normal.z < 0.99f || point.colour.x > 0.01f;  // the floor is black
+                    }),
+              0);
+}
+
+/// The block's shadow covers floor and wall up to their corner, where no points are.
+TEST(Holes, ACornerInAShadowIsFilled) {
+    std::vector<Wall> walls = room();
+    add_box(walls, {4.8f, 2, 0}, {5.3f, 3, 1.2f}, false);
+    const std::vector<glm::vec3> stations{{1.5f, 2.5f, 1.6f}, {2, 0.8f, 1.6f}};
+    const auto points = find_holes(scan_walls(walls, stations));
+    float on_floor = 0, on_wall = 0;
+    int off = 0;
+    for (const FillPoint& point : points) {
+        if (distance_to(walls, point.position) > 0.02f) {
+            ++off;
+            std::printf("%g %g %g, n %g %g %g\n", point.position.x, point.position.y, point.position.z,
+                        point.normal.x, point.normal.y, point.normal.z);
+        }
+        if (point.position.x > 4 && point.normal.z > 0.9f) on_floor += point.area;
+        if (point.normal.x < -0.9f && point.position.x > 5.9f) on_wall += point.area;
+    }
+    EXPECT_EQ(off, 0);
+    const float wall = unseen_area(walls, stations, 3);
+    EXPECT_GT(wall, 0.3f);
+    EXPECT_NEAR(on_wall, wall, 0.1f * wall);
+    // The floor below the block is hidden, too; it may be filled or not.
+    const float floor =
+        unseen_area(walls, {stations[0] + glm::vec3(0), stations[1]}, 0) - unseen_area(room(), stations, 0);
+    EXPECT_GT(floor, 0.8f);
+    EXPECT_GT(on_floor, 0.9f * (floor - 0.5f));
+    EXPECT_LT(on_floor, 1.1f * floor);
+}
+
+TEST(Holes, AWindowThatAStationLooksThroughStaysOpen) {
+    for (const bool garden : {true, false}) {
+        std::vector<Wall> walls = room();
+        open_wall(walls, 1.5f, 3, 0.9f, 2.2f);
+        if (garden) walls.push_back({{12, -5, -1}, 6.0f * kZ, 15.0f * kY});
+        const std::vector<glm::vec3> stations{{2, 2, 1.7f}};
+        const auto points = find_holes(scan_walls(walls, stations));
+        ASSERT_FALSE(points.empty()) << "the floor below the tripod";
+        EXPECT_EQ(count(points, [](const FillPoint& point) { return std::abs(point.position.z) > 0.02f; }), 0)
+            << garden;
+    }
+}
+
+/// Through the door one sees the floor of the next room, but not the floor behind the wall beside it.
+TEST(Holes, ADoorStaysOpen) {
+    std::vector<Wall> walls = room();
+    open_wall(walls, 2, 3, 0, 2.1f);
+    add_box(walls, {6.2f, 0, 0}, {10, 5, 3}, true);
+    open_wall(walls, 2, 3, 0, 2.1f);
+    walls[8 + 2] = {{6.2f, 0, 0}, 2.0f * kY, 3.0f * kZ};
+    walls.push_back({{6.2f, 3, 0}, 2.0f * kY, 3.0f * kZ});
+    walls.push_back({{6.2f, 2, 2.1f}, kY, 0.9f * kZ});
+    const auto points = find_holes(scan_walls(walls, {{2, 2, 1.7f}, {8, 3, 1.6f}}));
+    ASSERT_FALSE(points.empty());
+    EXPECT_EQ(count(points,
+                    [](const FillPoint& point) {
+                        return point.position.x > 5.9f && point.position.x < 6.3f &&
+                               point.position.y > 2.1f && point.position.y < 2.9f &&
+                               point.position.z > 0.1f && point.position.z < 2;
+                    }),
+              0);
+}
+
+TEST(Holes, TheBorderOfATerrainIsNoHole) {
+    const std::vector<Wall> walls{{{-10, -10, 0}, 20.0f * kX, 20.0f * kY}};
+    const std::vector<glm::vec3> stations{{1, 0, 1.7f}};
+    const auto points = find_holes(scan_walls(walls, stations));
+    const float expected = unseen_area({{{-1, -2, 0}, 4.0f * kX, 4.0f * kY}}, stations, 0);
+    EXPECT_NEAR(filled_area(points), expected, 0.08f * expected);  // cells of 7 cm
+}
+
+TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
+    const glm::vec2 centre(4, 4);
+    const auto disc = [&](float radius) {
+        return [=](const glm::vec2& at) { return glm::length(at - centre) < radius; };
+    };
+    const HoleSample sample = floor_without(8, disc(0.7f));
+    const auto points = find_holes(sample);
+    EXPECT_NEAR(filled_area(points), 0.7f * 0.7f * std::numbers::pi_v<float>, 0.1f);
+    EXPECT_EQ(count(points,
+                    [&](const FillPoint& point) {
+                        return glm::length(glm::vec2(point.position) - centre) > 0.77f ||
+                               std::abs(point.colour.x - 0.5f) > 0.1f ||
+                               std::abs(point.colour.z - 0.25f) > 0.01f;
+                    }),
+              0);
+    EXPECT_FALSE(find_holes(floor_without(8, disc(1.3f))).empty()) << "below a tripod";
+    EXPECT_TRUE(find_holes(floor_without(8, disc(2.2f))).empty()) << "too large";
+    const auto hatch = [&](const glm::vec2& at) {
+        return std::abs(at.x - 4) < 0.9f && std::abs(at.y - 4) < 0.9f;
+    };
+    EXPECT_TRUE(find_holes(floor_without(8, hatch)).empty()) << "2.5 m across, and not round";
+    // Without stations normals may face the wrong side; points above tell that this is a floor.
+    HoleSample flipped = sample;
+    for (HolePoint& point : flipped.points) point.normal = -kZ;
+    flipped.points.push_back({.position = {1, 1, 2}, .normal = -kZ, .area = 4e-4f});
+    EXPECT_NEAR(filled_area(find_holes(flipped)), filled_area(points), 0.01f);
+    // A pit: something is seen below.
+    HoleSample pit = sample;
+    pit.points.push_back({.position = {4, 4, -0.5f}, .normal = kZ, .area = 4e-4f});
+    EXPECT_TRUE(find_holes(pit).empty());
+    // The same hole in a wall may be a window.
+    HoleSample wall = sample;
+    for (HolePoint& point : wall.points) {
+        std::swap(point.position.y, point.position.z);
+        point.normal = -kY;
+    }
+    EXPECT_TRUE(find_holes(wall).empty());
+    // A bay of the border.
+    EXPECT_TRUE(find_holes(floor_without(8, [](const glm::vec2& at) {
+                    return at.x < 0.9f && std::abs(at.y - 4) < 0.5f;
+                })).empty());
+}
+
+/// No input takes more than a few seconds, or more surfels than allowed.
+TEST(Holes, BadInputIsHarmless) {
+    Random random(7);
+    const auto any = [&] {
+        return glm::vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    };
+    EXPECT_TRUE(find_holes({}).empty());
+    EXPECT_TRUE(find_holes({.points = {{.normal = kZ, .area = 1}}, .stations = {}}).empty());
+    HoleSample place{.points = std::vector<HolePoint>(100000, {.normal = kZ, .area = 1e-4f}), .stations = {}};
+    EXPECT_TRUE(find_holes(place).empty()) << "all at one place";
+    HoleSample noise{.points = {}, .stations = {glm::vec3(0)}};
+    for (int i = 0; i < 300000; ++i)
+        noise.points.push_back(
+            {.position = 20.0f * any(), .normal = glm::normalize(any()), .area = 1e-3f, .station = 0});
+    EXPECT_TRUE(find_holes(noise).empty()) << "outliers";
+    for (HolePoint& point : noise.points) point.position *= 1e30f;
+    EXPECT_TRUE(find_holes(noise).empty()) << "larger than a scan can be";
+    // Normals that are all wrong, and shares from 0 to the scan's own size.
+    HoleSample wrong = scan_walls(room(), {{2, 2, 1.7f}}, 400);
+    for (HolePoint& point : wrong.points) {
+        point.normal = glm::normalize(any());
+        point.area *= static_cast<float>(std::exp2(40 * random.uniform() - 20));
+    }
+    EXPECT_LE(find_holes(wrong, {.most_points = 1000}).size(), 1000u);
+    // A ring around a hole that is larger than everything else.
+    HoleSample ring = floor_without(8, [](const glm::vec2& at) { return glm::length(at - 4.0f) < 3.9f; });
+    EXPECT_TRUE(find_holes(ring).empty());
+    ring.stations = {{4, 4, 1}};
+    EXPECT_TRUE(find_holes(ring).empty());
+}
+
+/// The surfels become coarser, or the smallest holes stay open, before there are too many.
+TEST(Holes, TheNumberOfSurfelsIsLimited) {
+    const HoleSample sample = scan_walls(room(), {{2, 2, 1.7f}});
+    const size_t all = find_holes(sample).size();
+    const auto fewer = find_holes(sample, {.most_points = all / 2});
+    EXPECT_LE(fewer.size(), all / 2);
+    EXPECT_GT(filled_area(fewer), 3);
+    EXPECT_TRUE(find_holes(sample, {.most_points = 10}).empty());
+}
+
+/// The virtual scan of the Cornell box: light that leaves one surface reaches the next.
+TEST(Holes, LightOfTheCornellBoxStaysInside) {
+    const Scan scan = scan_of("cornell", 200000);
+    NormalOptions options;
+    options.stations = scan.stations;
+    const Estimate found = estimate(scan.cloud, options);
+    const auto points = find_holes(sample_of(scan, found));
+    const HoleErrors open = hole_errors("cornell", scan, found, {}, 50000),
+                     filled = hole_errors("cornell", scan, found, points, 50000);
+    std::printf("cornell: %.2f m2 filled, %.3f m2 of it off; rays that pass %.2f %% -> %.2f %%\n",
+                filled.filled, filled.off, 100 * open.through, 100 * filled.through);
+    EXPECT_GT(filled.filled, 10);
+    EXPECT_LT(filled.off, 0.01 * filled.filled);
+    EXPECT_LT(filled.through, 0.7 * open.through);
+}
+
+}  // namespace
+}  // namespace lucarne::octree
