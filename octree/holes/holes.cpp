@@ -185,13 +185,15 @@ class HoleFinder {
         if (stations_)
             return surface >= kLeastSurface && known >= kLeastKnown && hidden >= kLeastHidden &&
                    share <= kMostOfPlane;
-        const bool floor = behind_ * grid_.plane().normal.z < -kFloor;
+        const bool floor = is_floor();
         if (floor && is_disc(component))
             return surface >= kLeastSurfaceDisc && known >= kLeastSurfaceBlind && share <= kMostOfPlane &&
                    diameter(component) <= kMostDisc;
         const float most = floor ? kMostFloorHole : kMostHole;
         return surface >= kLeastSurfaceBlind && share <= kMostOfPlaneBlind && diameter(component) <= most;
     }
+
+    bool is_floor() const { return behind_ * grid_.plane().normal.z < -kFloor; }
 
     /// Finds the side of the plane that nobody stood on, if no station is known: that with fewer points.
     /// Normals may face either side then. Returns 1 where the plane's normal points, else -1.
@@ -207,7 +209,7 @@ class HoleFinder {
     }
 
     /// Drops holes with points behind them: what is there was seen through the hole, or is the side of a
-    /// recess.
+    /// recess. A wall may have been scanned from either side, so points on both of its sides count.
     void drop_seen_behind() {
         if (components_.empty()) return;
         std::vector<uint32_t> component_of(label_.size(), UINT32_MAX);
@@ -215,7 +217,8 @@ class HoleFinder {
             for (const uint32_t cell : components_[i].cells) component_of[cell] = i;
         std::vector<bool> seen(components_.size(), false);
         for (const Voxel& voxel : voxels_.all()) {
-            const float depth = behind_ * grid_.plane().height(voxel.position);
+            const float height = grid_.plane().height(voxel.position);
+            const float depth = is_floor() ? behind_ * height : std::abs(height);
             if (depth < kBeside * grid_.cell() || depth > kLookedBehind) continue;
             const glm::ivec2 cell = grid_.cell_of(grid_.plane().flat(voxel.position));
             for (int y = cell.y - 1; y <= cell.y + 1; ++y)

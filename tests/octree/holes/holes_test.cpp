@@ -175,6 +175,21 @@ TEST(Holes, WithoutStationsOnlySmallHolesOfFloorsAreFilled) {
         point.normal = -kY;
     }
     EXPECT_TRUE(find_holes(wall).empty());
+    // A small hole of a wall is filled, unless something is seen through it, from whichever side.
+    for (const float seen_at : {0.0f, -0.6f, 0.6f}) {
+        HoleSample small = floor_without(8, disc(0.13f));
+        for (HolePoint& point : small.points) {
+            std::swap(point.position.y, point.position.z);
+            point.normal = -kY;
+        }
+        if (seen_at != 0)
+            for (int i = 0; i < 400; ++i)
+                small.points.push_back({.position = {3.5f + 0.05f * static_cast<float>(i % 20), seen_at,
+                                                     3.5f + 0.05f * static_cast<float>(i / 20)},
+                                        .normal = -kY,
+                                        .area = 25e-4f});
+        EXPECT_EQ(find_holes(small).empty(), seen_at != 0) << seen_at;
+    }
     // A bay of the border.
     EXPECT_TRUE(find_holes(floor_without(8, [](const glm::vec2& at) {
                     return at.x < 0.9f && std::abs(at.y - 4) < 0.5f;
