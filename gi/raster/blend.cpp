@@ -5,6 +5,7 @@
 
 #include "gi/raster/bindings.h"
 #include "gi/raster/blend_sums.h"
+#include "gi/raster/native/native.h"
 #include "gi/raster/queues.h"
 
 namespace lucarne::gi {
@@ -18,6 +19,8 @@ constexpr size_t kMostSumBytes = size_t{128} << 20;
 Result<void> blend(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target,
                    const PointSize& size) {
     if (size.pixels > 0) return {};
+    if (native::draws(device, cut))
+        return native::blend(cut, disc_view(view, size), target.texels, target.to_blend);
     const size_t row_bytes = view.width * raster::kSumWords * sizeof(uint32_t);
     const auto band = static_cast<uint32_t>(std::clamp<size_t>(kMostSumBytes / row_bytes, 1, view.height));
     if (target.sums.bytes() < band * row_bytes) {

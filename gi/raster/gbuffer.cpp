@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "gi/raster/bindings.h"
+#include "gi/raster/native/native.h"
 #include "gi/raster/queues.h"
 
 namespace lucarne::gi {
@@ -14,10 +15,8 @@ namespace {
 const Defines kIdPass = {{"LUCARNE_ID_PASS", "1"}};
 
 /// `places` is the number of ids of the cut, gaps included.
-Result<void> reserve(Device& device, size_t pixels, size_t places, GBuffer& target) {
+Result<void> reserve_scratch(Device& device, size_t pixels, size_t places, GBuffer& target) {
     const auto hold = [&](Buffer& buffer, size_t bytes) { return device.reserve(buffer, bytes, "G-buffer"); };
-    LUCARNE_TRY(hold(target.texels, pixels * sizeof(GBufferTexel)));
-    LUCARNE_TRY(hold(target.ids, pixels * sizeof(uint32_t)));
     LUCARNE_TRY(hold(target.keys, pixels * sizeof(uint32_t)));
     LUCARNE_TRY(hold(target.queues, sizeof(QueueHeader) + kLargeQueue * sizeof(uint32_t)));
     LUCARNE_TRY(hold(target.candidates, places * sizeof(uint32_t)));
@@ -42,7 +41,11 @@ Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& v
     const uint32_t places = cut.blocks() * kBlockSurfels;
     target.width = view.width;
     target.height = view.height;
-    LUCARNE_TRY(reserve(device, pixels, places, target));
+    LUCARNE_TRY(device.reserve(target.texels, pixels * sizeof(GBufferTexel), "G-buffer"));
+    LUCARNE_TRY(device.reserve(target.ids, pixels * sizeof(uint32_t), "G-buffer"));
+    if (native::draws(device, cut))
+        return native::rasterize(cut, disc_view(view, size), target.texels, target.ids, target.to_blend);
+    LUCARNE_TRY(reserve_scratch(device, pixels, places, target));
     LUCARNE_ASSIGN(const Program* splat, device.program("gi/raster/splat.comp"));
     LUCARNE_ASSIGN(const Program* splat_ids, device.program("gi/raster/splat.comp", kIdPass));
     LUCARNE_ASSIGN(const Program* plan, device.program("gi/raster/plan.comp"));

@@ -2,6 +2,7 @@
 
 #include "gi/device/gl/device.h"
 #include "gi/raster/disc_view.h"
+#include "gi/raster/native/tiles.h"
 #include "gi/shared/camera.h"
 #include "gi/shared/gbuffer.h"
 #include "gi/shared/light.h"
@@ -17,12 +18,14 @@ struct GBuffer {
     Buffer ids;                                    ///< uint[width * height], kNoSurfel where empty
     Buffer keys, queues, candidates, seen_blocks;  ///< scratch of rasterize()
     Buffer sums;                                   ///< scratch of blend(), zero between its calls
+    std::vector<native::PlacedBlock> to_blend;     ///< of native passes
 };
 
-/// Draws the discs of a cut by compute shaders. In each pixel the nearest intersection of its ray with a
-/// disc wins. Where discs of one surface overlap, the nearest centre wins (kRimPush); ties go to the smaller
-/// id. A disc competes at least for the pixel of its centre. The depths written are the exact depths of
-/// planes; nothing is blurred in the picture. Errors: out of device memory.
+/// Draws the discs of a cut, by compute shaders or natively (Device::native_passes()). In each pixel the
+/// nearest intersection of its ray with a disc wins. Where discs of one surface overlap, the nearest centre
+/// wins (kRimPush); ties go to the smaller id. A disc competes at least for the pixel of its centre. The
+/// depths written are the exact depths of planes; nothing is blurred in the picture. Errors: out of device
+/// memory.
 Result<void> rasterize(Device& device, const DeviceCut& cut, const CameraView& view, GBuffer& target,
                        const PointSize& size = {});
 

@@ -10,6 +10,7 @@
 
 #include "gi/shared/cut_bindings.h"
 #include "gi/shared/surfel_code.h"
+#include "gi/surfels/area_floor.h"
 #include "io/core/random.h"
 #include "octree/tree/footprint.h"
 
@@ -56,20 +57,9 @@ uint64_t hash(std::span<const T> values) {
     return XXH3_64bits(values.data(), values.size_bytes());
 }
 
-/// The same walk as surfel_area_floor() in gi/shared/cut.glsl.
-float local_floor(const std::vector<CutItem>& items, const CutItem* item, const PackedSurfel& surfel) {
-    for (uint32_t depth = 0; depth < kOctantLevels; ++depth) {
-        const int child = item->child[surfel_octant(surfel.a, surfel.b, depth)];
-        if (child == kWholeOctant) return 0.0f;
-        if (child < 0) break;
-        item = &items[static_cast<size_t>(child)];
-    }
-    return item->area_floor;
-}
-
-Surfel unpack(const std::vector<CutItem>& items, const CutItem& item, const PackedSurfel& packed) {
+Surfel unpack(std::span<const CutItem> items, const CutItem& item, const PackedSurfel& packed) {
     const float own = surfel_own_area(packed.b, item.size);
-    const float floor = local_floor(items, &item, packed);
+    const float floor = local_floor(items, item, packed.a, packed.b);
     Surfel surfel;
     surfel.position = item.origin + item.size * surfel_fractions(packed.a, packed.b);
     surfel.normal = packed.d & kSurfelHasNormal ? decode_octahedral(packed.c) : glm::vec3(0.0f);
@@ -98,6 +88,11 @@ void DeviceCut::bind() const {
     pool_->bind_texels(kUnitCutPool, TexelView::four_words);
     items_.bind_texels(kUnitCutItems, TexelView::four_words);
     blocks_buffer_.bind_texels(kUnitCutBlocks, TexelView::four_words);
+}
+
+const HostSurfels& DeviceCut::on_host(std::span<const PackedSurfel> pool) const {
+    if (!on_host_) on_host_ = host_surfels(*this, pool);
+    return *on_host_;
 }
 
 Result<SurfelPool> SurfelPool::create(Device& device, uint32_t capacity) {
@@ -291,6 +286,7 @@ Result<void> SurfelPool::make_cut(Device& device, const octree::NodeSource& sour
     cut.blocks_ = static_cast<uint32_t>(blocks.size());
     cut.host_blocks_ = std::move(blocks);
     cut.points_ = cut_points;
+    cut.on_host_.reset();
     cut.size_ = static_cast<float>(source.header().root.size * unit);
     return {};
 }

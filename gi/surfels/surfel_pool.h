@@ -13,6 +13,7 @@
 #include "gi/scene/scene.h"
 #include "gi/shared/surfel.h"
 #include "gi/surfels/cut_nodes.h"
+#include "gi/surfels/host_surfels.h"
 #include "octree/tree/source.h"
 
 namespace lucarne::gi {
@@ -77,6 +78,14 @@ class DeviceCut {
     /// The nodes that are drawn, sorted.
     std::span<const CutNode> nodes() const { return nodes_; }
     std::shared_ptr<const CutPoints> points() const { return points_; }
+    std::span<const CutItem> items() const { return host_items_; }
+    std::span<const CutBlock> block_list() const { return host_blocks_; }
+    const DeviceClip& clip() const { return clip_; }
+    /// The pool's packed surfels, which CutBlock::first counts.
+    const Buffer& pool() const { return *pool_; }
+    /// Returns radii and bounds of the surfels. They are computed when first asked for. `pool` is the pool's
+    /// mapped memory.
+    const HostSurfels& on_host(std::span<const PackedSurfel> pool) const;
     /// Binds pool, items and blocks as texels to units 0 to 2, as gi/shared/cut.glsl declares them.
     void bind() const;
 
@@ -92,6 +101,7 @@ class DeviceCut {
     uint64_t fingerprint_ = 0;
     std::vector<CutNode> nodes_;
     std::shared_ptr<const CutPoints> points_;
+    mutable std::optional<HostSurfels> on_host_;
 };
 
 /// Owns the surfels of all resident nodes, in one buffer divided into pages of kPageSurfels. The stream's

@@ -134,7 +134,7 @@ Result<void> time_passes(Device& device, std::vector<Pass>& passes) {
     for (Pass& pass : passes) {
         std::sort(pass.wall.begin(), pass.wall.end());
         std::sort(pass.cpu.begin(), pass.cpu.end());
-        fmt::print("  {:<12} median {:.1f} ms, best {:.1f} ms; processor time {:.1f} ms\n", pass.name,
+        fmt::print("  {:<20} median {:.1f} ms, best {:.1f} ms; processor time {:.1f} ms\n", pass.name,
                    pass.wall[pass.wall.size() / 2] * 1e3, pass.wall[0] * 1e3,
                    pass.cpu[pass.cpu.size() / 2] * 1e3);
     }
@@ -148,9 +148,21 @@ Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
     const SurfelCloud cloud(std::move(surfels), {{-16, -1, -1}, 64}, 1024, kThinned);
     LUCARNE_ASSIGN(const auto packed, load_cloud(*device, cloud));
     GBuffer gbuffer;
+    const bool software = device->native_passes();
     std::vector<Pass> passes;
-    passes.push_back({"visibility", [&] { return rasterize(*device, packed->cut, view, gbuffer); }, {}, {}});
-    passes.push_back({"blending", [&] { return blend(*device, packed->cut, view, gbuffer); }, {}, {}});
+    for (const bool native : {false, true}) {
+        if (native && !software) continue;
+        const std::string how = native ? ", native" : ", shaders";
+        passes.push_back({"visibility" + how,
+                          [&, native] {
+                              device->use_native_passes(native);
+                              return rasterize(*device, packed->cut, view, gbuffer);
+                          },
+                          {},
+                          {}});
+        passes.push_back(
+            {"blending" + how, [&] { return blend(*device, packed->cut, view, gbuffer); }, {}, {}});
+    }
     LUCARNE_TRY(passes[0].run());
     const auto ids = gbuffer.ids.download_all<uint32_t>(size_t{width} * height);
     const auto empty = std::count(ids.begin(), ids.end(), kNoSurfel);

@@ -68,6 +68,7 @@ struct Device::State {
     DeviceInfo info;
     uint64_t cap = UINT64_MAX, used = 0;
     bool refused = false;
+    bool native_passes = false;
     std::map<std::tuple<std::string, Defines>, CompiledProgram> programs;
     std::optional<ShaderFolder> shaders;
     std::string shader_problem, mistake;
@@ -105,6 +106,8 @@ Result<std::unique_ptr<Device>> Device::current() {
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
     info.max_texel_bytes = uint64_t{16} * static_cast<uint64_t>(texels);
     info.max_buffer_bytes = std::min(static_cast<uint64_t>(bytes), info.max_texel_bytes);
+    const char* native = std::getenv("LUCARNE_NATIVE");
+    device->use_native_passes(!native || std::string_view(native) != "0");
     if (const char* folder = std::getenv("LUCARNE_SHADERS")) device->use_shader_folder(folder);
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT);
@@ -116,6 +119,12 @@ Result<std::unique_ptr<Device>> Device::current() {
 
 const DeviceInfo& Device::info() const {
     return state_->info;
+}
+bool Device::native_passes() const {
+    return state_->native_passes;
+}
+void Device::use_native_passes(bool use) {
+    state_->native_passes = use && state_->info.software;
 }
 void Device::set_memory_cap(uint64_t bytes) {
     state_->cap = bytes;
@@ -181,7 +190,9 @@ Result<Buffer> Device::make(size_t bytes, uint64_t most, std::string_view what) 
     clear_errors();
     Buffer made;
     glCreateBuffers(1, &made.id_);
-    glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    // Buffers that the host may map could be put in slower memory, so those of GPUs are not.
+    const GLbitfield mapped = state_->info.software ? GL_MAP_READ_BIT | GL_MAP_WRITE_BIT : 0;
+    glNamedBufferStorage(made.id_, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT | mapped);
     if (glGetError() != GL_NO_ERROR) {  // `made` returns nothing to the budget: its device_ is null
         give_memory_back(bytes);
         return failed(name, fmt::format("the device has no {} MiB of memory left", bytes >> 20), kMemoryTodo);
@@ -311,6 +322,20 @@ void Buffer::download(size_t offset, std::span<std::byte> out) const {
 
 void Buffer::clear(uint32_t word) {
     if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+Result<MappedBuffer> Buffer::map() const {
+    constexpr GLbitfield kAccess = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT;
+    void* data = id_ ? glMapNamedBufferRange(id_, 0, static_cast<GLsizeiptr>(bytes_), kAccess) : nullptr;
+    if (!data) return failed("graphics device", "the driver does not map a buffer", "set LUCARNE_NATIVE=0");
+    return MappedBuffer(id_, static_cast<std::byte*>(data), bytes_);
+}
+
+MappedBuffer::MappedBuffer(MappedBuffer&& other) noexcept
+    : id_(std::exchange(other.id_, 0)), data_(other.data_), bytes_(other.bytes_) {}
+
+MappedBuffer::~MappedBuffer() {
+    if (id_) glUnmapNamedBuffer(id_);
 }
 
 }  // namespace lucarne::gi

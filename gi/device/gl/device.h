@@ -30,6 +30,26 @@ class Device;
 /// How a shader reads a buffer's words: through `usamplerBuffer`, floats through `samplerBuffer`.
 enum class TexelView : uint8_t { one_word, two_words, four_words, four_floats };
 
+/// The memory of a buffer as the host sees it, see Buffer::map(). Move-only; its destructor returns the
+/// memory to the device. Until then no command of the device may use the buffer.
+class MappedBuffer {
+ public:
+    MappedBuffer(MappedBuffer&& other) noexcept;
+    MappedBuffer& operator=(MappedBuffer&&) = delete;
+    ~MappedBuffer();
+    template <class T>
+    std::span<T> as() const {
+        return {reinterpret_cast<T*>(data_), bytes_ / sizeof(T)};
+    }
+
+ private:
+    friend class Buffer;
+    MappedBuffer(uint32_t id, std::byte* data, size_t bytes) : id_(id), data_(data), bytes_(bytes) {}
+    uint32_t id_;
+    std::byte* data_;
+    size_t bytes_;
+};
+
 /// A shader storage buffer. Move-only. Its destructor frees its memory and its share of the device's budget,
 /// so it must be destroyed before the device.
 class Buffer {
@@ -49,6 +69,9 @@ class Buffer {
     void upload(size_t offset, std::span<const std::byte> data);
     void download(size_t offset, std::span<std::byte> out) const;  ///< waits for the device
     void clear(uint32_t word);                                     ///< sets every 32-bit word
+    /// Waits for the device and gives the host access to the buffer's own memory. Only for buffers of a
+    /// device with native_passes(). Errors: the driver refuses.
+    Result<MappedBuffer> map() const;
     template <class T>
     void upload_all(const std::vector<T>& values) {
         upload(0, std::as_bytes(std::span(values)));
@@ -124,6 +147,12 @@ class Device {
     Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const;
+    /// Whether passes that are written in C++, too, run there instead of as shaders: where the device is
+    /// software and shares the host's memory. LUCARNE_NATIVE=0 turns them off for every device, for
+    /// comparisons.
+    bool native_passes() const;
+    /// Turns native passes off, or on again where the device supports them.
+    void use_native_passes(bool use);
     /// Sets how many bytes all buffers together may take; an allocation beyond that is an error.
     void set_memory_cap(uint64_t bytes);
     uint64_t memory_cap() const;

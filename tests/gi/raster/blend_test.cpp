@@ -46,7 +46,7 @@ std::vector<Surfel> two_exposures(float spacing) {
     return surfels;
 }
 
-TEST_F(BlendTest, TwoScansOfOneWallGiveOneColourWithoutChangingItsMean) {
+TEST_P(BlendTest, TwoScansOfOneWallGiveOneColourWithoutChangingItsMean) {
     for (const float spacing : {0.004f, 0.02f, 0.1f}) {  // under a pixel; small discs; large ones
         const CameraView view = look({0, 0, 0}, {0, 1, 0}, 160, 160, 0.9f);
         const Spread before = brightness(single(two_exposures(spacing), view));
@@ -57,7 +57,7 @@ TEST_F(BlendTest, TwoScansOfOneWallGiveOneColourWithoutChangingItsMean) {
     }
 }
 
-TEST_F(BlendTest, NoiseOfNormalsAndDepthsIsAveraged) {
+TEST_P(BlendTest, NoiseOfNormalsAndDepthsIsAveraged) {
     auto surfels = wall(2, 1.2f, 0.03f, kWhite, 1);
     std::mt19937 random(5);
     std::normal_distribution<float> normal;
@@ -80,7 +80,7 @@ TEST_F(BlendTest, NoiseOfNormalsAndDepthsIsAveraged) {
     EXPECT_LT(after.y, 0.8 * before.y);
 }
 
-TEST_F(BlendTest, ColumnOfCoarsePointsHasNoFacets) {
+TEST_P(BlendTest, ColumnOfCoarsePointsHasNoFacets) {
     std::vector<Surfel> surfels;
     constexpr float kRadius = 0.4f, kSpacing = 0.08f;
     std::mt19937 random(5);
@@ -107,7 +107,7 @@ TEST_F(BlendTest, ColumnOfCoarsePointsHasNoFacets) {
     EXPECT_LT(largest_step(blended(surfels, view)), 0.07);
 }
 
-TEST_F(BlendTest, ColoursAndNormalsDoNotCrossACrease) {
+TEST_P(BlendTest, ColoursAndNormalsDoNotCrossACrease) {
     auto surfels = wall(3, 1.5f, 0.02f, kWhite, 1);
     for (Surfel s : wall(0, 1.5f, 0.02f, kRed, 2)) {  // a floor that meets the wall
         s.position = {s.position.x, 1.5f + s.position.z, -0.5f};
@@ -129,7 +129,7 @@ TEST_F(BlendTest, ColoursAndNormalsDoNotCrossACrease) {
     EXPECT_GT(white, 5000u);
 }
 
-TEST_F(BlendTest, FarSideOfAThinDoorDoesNotShine) {
+TEST_P(BlendTest, FarSideOfAThinDoorDoesNotShine) {
     constexpr float kSpacing = 0.02f;
     auto surfels = wall(2, 1, kSpacing, kWhite, 1);
     for (Surfel s : wall(2.006f, 1, kSpacing, kRed, 2)) {  // nearer than the slab is thick
@@ -145,7 +145,7 @@ TEST_F(BlendTest, FarSideOfAThinDoorDoesNotShine) {
     EXPECT_EQ(mixed, 0u);
 }
 
-TEST_F(BlendTest, MaterialsDoNotMix) {
+TEST_P(BlendTest, MaterialsDoNotMix) {
     auto surfels = wall(2, 1, 0.02f, kWhite, 1);
     for (Surfel& s : surfels)
         if (s.position.x > 0) {
@@ -159,13 +159,13 @@ TEST_F(BlendTest, MaterialsDoNotMix) {
     }
 }
 
-TEST_F(BlendTest, IdsStayThoseOfTheFrontDiscs) {
+TEST_P(BlendTest, IdsStayThoseOfTheFrontDiscs) {
     const auto surfels = two_exposures(0.02f);
     const CameraView view = look({0, 0, 0}, {0.2f, 1, 0}, 120, 100);
     EXPECT_EQ(blended(surfels, view).ids, single(surfels, view).ids);
 }
 
-TEST_F(BlendTest, PointsUnderAPixelFlickerLess) {
+TEST_P(BlendTest, PointsUnderAPixelFlickerLess) {
     auto surfels = wall(2, 0.6f, 0.003f, kWhite, 1);
     std::mt19937 random(3);
     for (Surfel& s : surfels)
@@ -188,7 +188,7 @@ TEST_F(BlendTest, PointsUnderAPixelFlickerLess) {
     EXPECT_LT(flicker(true), 0.5 * flicker(false));
 }
 
-TEST_F(BlendTest, RunsGiveTheSamePixels) {
+TEST_P(BlendTest, RunsGiveTheSamePixels) {
     const auto surfels = two_exposures(0.01f);
     const CameraView view = look({0, 0, 0}, {0.2f, 1, 0}, 200, 160);
     const Picture first = blended(surfels, view);
@@ -200,7 +200,7 @@ TEST_F(BlendTest, RunsGiveTheSamePixels) {
     }
 }
 
-TEST_F(BlendTest, PictureOfManyRowsIsBlendedInBandsWithoutASeam) {
+TEST_P(BlendTest, PictureOfManyRowsIsBlendedInBandsWithoutASeam) {
     std::vector<Surfel> surfels = wall(2, 1.2f, 0.05f, kWhite, 1);
     std::mt19937 random(9);
     for (Surfel& s : surfels) s.albedo = random() % 2 ? kWhite : kDark;
@@ -217,7 +217,7 @@ TEST_F(BlendTest, PictureOfManyRowsIsBlendedInBandsWithoutASeam) {
     for (size_t row = 0; row < 4600; row += 50) EXPECT_GT(grey(row), 300u) << row;
 }
 
-TEST_F(BlendTest, HostilePilesOfDiscsGiveADefinedPicture) {
+TEST_P(BlendTest, HostilePilesOfDiscsGiveADefinedPicture) {
     // More discs in one place than the sums hold: the front disc remains.
     std::vector<Surfel> pile(300'000, {{0, 3, 0}, {0, -1, 0}, kWhite, 0, 0.01f, 0});
     pile.front().albedo = kRed;
@@ -244,6 +244,8 @@ TEST_F(BlendTest, HostilePilesOfDiscsGiveADefinedPicture) {
     for (const GBufferTexel& texel : blended({}, look({0, 0, 0}, {0, 1, 0}, 16, 16)).texels)
         EXPECT_EQ(texel.depth, 0.0f);
 }
+
+INSTANTIATE_TEST_SUITE_P(Passes, BlendTest, testing::Bool(), passes_name);
 
 }  // namespace
 }  // namespace lucarne::gi

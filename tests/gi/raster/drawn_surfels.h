@@ -32,9 +32,18 @@ struct Picture {
     bool red(size_t at) const { return !empty(at) && decode_albedo(texels[at].albedo).y < 0.1f; }
 };
 
-/// Draws surfels made by hand.
-class GBufferTest : public OnDevice {
+inline std::string passes_name(const testing::TestParamInfo<bool>& native) {
+    return native.param ? "native" : "shaders";
+}
+
+/// Draws surfels made by hand, by shaders or by native passes.
+class GBufferTest : public OnDevice, public testing::WithParamInterface<bool> {
  protected:
+    void SetUp() override {
+        OnDevice::SetUp();
+        if (GetParam() && !device->native_passes()) GTEST_SKIP() << "no native passes on this device";
+        device->use_native_passes(GetParam());
+    }
     Picture draw(std::vector<Surfel> surfels, const CameraView& view, uint32_t keep = 1024,
                  bool blended = false) {
         const SurfelCloud cloud(std::move(surfels), {{-32, -32, -32}, 64}, keep);

@@ -5,7 +5,7 @@
 namespace lucarne::gi {
 namespace {
 
-TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
+TEST_P(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
     // 2 to 150 pixels across: small and large discs, the latter also with rays beside the middles of their
     // pixels
     const std::pair<float, glm::vec2> kinds[] = {
@@ -40,20 +40,20 @@ TEST_F(GBufferTest, DiscCoversThePixelsWhoseRaysMeetItAtItsPlanesDepth) {
     }
 }
 
-TEST_F(GBufferTest, NormalsAreTurnedTowardTheViewer) {
+TEST_P(GBufferTest, NormalsAreTurnedTowardTheViewer) {
     const Surfel away{{0, 3, 0}, {0, 1, 0}, kWhite, 0, 0.1f, 0};
     const Picture p = draw({away}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
     EXPECT_LT(decode_octahedral(p.texels[32 * 64 + 32].normal).y, -0.999f);
 }
 
-TEST_F(GBufferTest, SurfelWithoutANormalFacesTheViewer) {
+TEST_P(GBufferTest, SurfelWithoutANormalFacesTheViewer) {
     const Surfel bare{{1, 3, 1}, glm::vec3(0.0f), kWhite, 0, 0.1f, 0};
     const Picture p = draw({bare}, look({0, 0, 0}, {1, 3, 1}, 64, 64));
     const glm::vec3 normal = decode_octahedral(p.texels[32 * 64 + 32].normal);
     EXPECT_GT(glm::dot(normal, -glm::normalize(bare.position)), 0.999f);
 }
 
-TEST_F(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
+TEST_P(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
     constexpr float kSpacing = 0.02f;
     const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f);
     for (const float distance : {0.5f, 2.0f, 8.0f}) {
@@ -72,7 +72,7 @@ TEST_F(GBufferTest, RedPlaneBehindAWhiteOneNeverShowsThrough) {
     }
 }
 
-TEST_F(GBufferTest, WindowInAWallStaysOpen) {
+TEST_P(GBufferTest, WindowInAWallStaysOpen) {
     constexpr float kSpacing = 0.02f, kHalf = 0.3f;
     const float radius = std::sqrt(9 * kSpacing * kSpacing / 3.14159f) * 1.05f;  // areas are exact to 9 %
     auto surfels = wall(2, 1.5f, kSpacing, kWhite, 1);
@@ -102,7 +102,7 @@ TEST_F(GBufferTest, WindowInAWallStaysOpen) {
     }
 }
 
-TEST_F(GBufferTest, DiscSeenEdgeOnKeepsThePixelOfItsCentreAtASaneDepth) {
+TEST_P(GBufferTest, DiscSeenEdgeOnKeepsThePixelOfItsCentreAtASaneDepth) {
     const Surfel edge{{0.001f, 5, 0.001f}, {0, 0, 1}, kWhite, 0, 1e-4f, 0};
     const Picture p = draw({edge}, look({0, 0, 0.001f}, {0, 1, 0.001f}, 101, 101));
     size_t covered = 0;
@@ -115,13 +115,13 @@ TEST_F(GBufferTest, DiscSeenEdgeOnKeepsThePixelOfItsCentreAtASaneDepth) {
     EXPECT_LE(covered, 2u);
 }
 
-TEST_F(GBufferTest, DiscSmallerThanAPixelTakesOnePixel) {
+TEST_P(GBufferTest, DiscSmallerThanAPixelTakesOnePixel) {
     const Surfel speck{{0.1f, 5, 0.1f}, {0, -1, 0}, kWhite, 0, 1e-8f, 0};
     const Picture p = draw({speck}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
     EXPECT_EQ(std::count_if(p.ids.begin(), p.ids.end(), [](uint32_t id) { return id != kNoSurfel; }), 1);
 }
 
-TEST_F(GBufferTest, DiscThatReachesBehindTheEyeCoversOnlyWhatIsBeforeIt) {
+TEST_P(GBufferTest, DiscThatReachesBehindTheEyeCoversOnlyWhatIsBeforeIt) {
     const Surfel floor{{0, 0, -1}, {0, 0, 1}, kWhite, 0, 50, 0};
     const Picture p = draw({floor}, look({0, 0, 0}, {0, 1, 0}, 64, 64, 1.5f));
     const float radius = p.surfels[0].radius;
@@ -133,13 +133,13 @@ TEST_F(GBufferTest, DiscThatReachesBehindTheEyeCoversOnlyWhatIsBeforeIt) {
         }
 }
 
-TEST_F(GBufferTest, SurfelsBehindTheEyeAreNotSeen) {
+TEST_P(GBufferTest, SurfelsBehindTheEyeAreNotSeen) {
     const Surfel behind{{0, -3, 0}, {0, 1, 0}, kWhite, 0, 0.1f, 0};
     const Picture p = draw({behind}, look({0, 0, 0}, {0, 1, 0}, 64, 64));
     for (size_t at = 0; at < p.ids.size(); ++at) EXPECT_TRUE(p.empty(at));
 }
 
-TEST_F(GBufferTest, PictureDoesNotDependOnTheOrderOfTheSurfels) {
+TEST_P(GBufferTest, PictureDoesNotDependOnTheOrderOfTheSurfels) {
     auto surfels = wall(2, 1.0f, 0.01f, kWhite, 1);
     const CameraView view = look({0, 0, 0}, {0.2f, 1, 0}, 200, 160);
     const Picture first = draw(surfels, view, 1u << 20);
@@ -151,7 +151,7 @@ TEST_F(GBufferTest, PictureDoesNotDependOnTheOrderOfTheSurfels) {
     EXPECT_LE(different, 3u) << "only equal keys may go to another surfel";
 }
 
-TEST_F(GBufferTest, RunsGiveTheSamePixels) {
+TEST_P(GBufferTest, RunsGiveTheSamePixels) {
     auto surfels = wall(2, 1.0f, 0.005f, kWhite, 1);
     const size_t count = surfels.size();
     for (size_t i = 0; i < count; i += 3) surfels.push_back(surfels[i]);  // ties
@@ -166,7 +166,7 @@ TEST_F(GBufferTest, RunsGiveTheSamePixels) {
     }
 }
 
-TEST_F(GBufferTest, NoSurfelsGiveAnEmptyPicture) {
+TEST_P(GBufferTest, NoSurfelsGiveAnEmptyPicture) {
     const Picture p = draw({}, look({0, 0, 0}, {0, 1, 0}, 64, 48));
     for (size_t at = 0; at < p.ids.size(); ++at) {
         ASSERT_TRUE(p.empty(at));
@@ -174,7 +174,7 @@ TEST_F(GBufferTest, NoSurfelsGiveAnEmptyPicture) {
     }
 }
 
-TEST_F(GBufferTest, ManyLargeDiscsOverflowTheirQueueWithoutHoles) {
+TEST_P(GBufferTest, ManyLargeDiscsOverflowTheirQueueWithoutHoles) {
     // More discs of over 256 pixels than the queue holds, all in one place: the nearest must win.
     std::vector<Surfel> surfels;
     for (int i = 0; i < 70000; ++i)
@@ -190,7 +190,7 @@ TEST_F(GBufferTest, ManyLargeDiscsOverflowTheirQueueWithoutHoles) {
     EXPECT_EQ(p.ids[24 * 48 + 24], 0u) << "the smallest id of those with the same key";
 }
 
-TEST_F(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
+TEST_P(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
     const Light spot{{1, 2, 3, std::cos(0.4f)}, {0, 0, -1, 1}, {1, 1, 1, 0}};
     const CameraView view = spot_view(spot, 128);
     EXPECT_NEAR(glm::length(glm::vec3(view.right.x, view.right.y, view.right.z)), std::tan(0.4f), 1e-5f);
@@ -198,7 +198,7 @@ TEST_F(GBufferTest, SpotViewSeesTheWholeConeAndNothingElse) {
     EXPECT_EQ(view.width, 128u);
 }
 
-TEST_F(GBufferTest, AnOrthographicViewDrawsAlikeAtAnyDepthAndPutsTexelsOnTheirSurface) {
+TEST_P(GBufferTest, AnOrthographicViewDrawsAlikeAtAnyDepthAndPutsTexelsOnTheirSurface) {
     CameraView view{};
     view.origin = {0, 0, 0, 0.01f};
     view.forward = {0, 1, 0, 0};
@@ -223,6 +223,8 @@ TEST_F(GBufferTest, AnOrthographicViewDrawsAlikeAtAnyDepthAndPutsTexelsOnTheirSu
     EXPECT_NEAR(covered(30, 0.03f), fine, 0.01 * fine) << "ten times as far it is as large";
     EXPECT_NEAR(covered(30, 0.3f), coarse, 0.01 * coarse);
 }
+
+INSTANTIATE_TEST_SUITE_P(Passes, GBufferTest, testing::Bool(), passes_name);
 
 }  // namespace
 }  // namespace lucarne::gi

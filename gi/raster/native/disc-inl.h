@@ -1,0 +1,292 @@
+// Surfels as discs in a view, several at a time: disc.glsl and ellipse.glsl for vectors. The operations and
+// their order are those of the shaders, and none is fused, so that every instruction set gives the same bits.
+// Included once for each instruction set (Highway's foreach_target.h).
+#if defined(LUCARNE_GI_RASTER_NATIVE_DISC_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
+#undef LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
+#else
+#define LUCARNE_GI_RASTER_NATIVE_DISC_INL_H
+#endif
+
+#include "gi/raster/disc_view.h"
+#include "gi/raster/native/large_disc.h"
+#include "gi/raster/native/tiles.h"
+#include "gi/raster/native/vectors-inl.h"
+#include "gi/shared/gbuffer.h"
+#include "gi/shared/surfel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lucarne::gi::native::HWY_NAMESPACE {
+HWY_INLINE V3 to_view(const DiscView& view, const V3& v) {
+    return {dot(v, view.right), dot(v, view.down), dot(v, view.forward)};
+}
+HWY_INLINE V3 to_world(const DiscView& view, const V3& v) {
+    const auto axis = [&](float right, float down, float forward) {
+        return add(add(mul(v.x, set(right)), mul(v.y, set(down))), mul(v.z, set(forward)));
+    };
+    return {axis(view.right.x, view.down.x, view.forward.x), axis(view.right.y, view.down.y, view.forward.y),
+            axis(view.right.z, view.down.z, view.forward.z)};
+}
+struct Packed {
+    U a, b, c, d;
+};
+HWY_INLINE Packed load_packed(const PackedSurfel* from) {
+    Packed p;
+    hn::LoadInterleaved4(Words(), reinterpret_cast<const uint32_t*>(from), p.a, p.b, p.c, p.d);
+    return p;
+}
+HWY_INLINE Mask has_normal(U flags) {
+    return hn::RebindMask(Floats(), hn::TestBit(flags, word(kSurfelHasNormal)));
+}
+
+/// `origin` and `size`: of the surfels' cubes.
+HWY_INLINE V3 surfel_position(const Packed& p, const V3& origin, F size) {
+    const auto along = [&](F corner, U steps) {
+        return add(corner, mul(size, over(add(to_float(steps), set(0.5f)), set(kFractionSteps))));
+    };
+    const U low = word(0xffffu);
+    return {along(origin.x, hn::And(p.a, low)), along(origin.y, hn::ShiftRight<16>(p.a)),
+            along(origin.z, hn::And(p.b, low))};
+}
+
+HWY_INLINE F pixels_per_tangent_x(const DiscView& view) {
+    return set(static_cast<float>(view.width) / (2.0f * view.right.w));
+}
+HWY_INLINE F pixels_per_tangent_y(const DiscView& view) {
+    return set(static_cast<float>(view.height) / (2.0f * view.down.w));
+}
+HWY_INLINE bool orthographic(const DiscView& view) {
+    return view.origin.w > 0;
+}
+HWY_INLINE F view_scale(const DiscView& view, F depth) {
+    return orthographic(view) ? set(1.0f) : depth;
+}
+
+/// Several discs, see `Disc` in disc.glsl.
+struct Discs {
+    V3 centre, normal;
+    F radius, extent, push;
+};
+
+/// Computes centres and radii. Returns which discs may be seen: before the near plane and within the sides of
+/// the view.
+HWY_INLINE Mask place_discs(const DiscView& view, const Packed& p, const V3& origin, F size, F radius,
+                            Discs& discs) {
+    V3 world = surfel_position(p, origin, size);
+    world = {sub(world.x, set(view.origin.x)), sub(world.y, set(view.origin.y)),
+             sub(world.z, set(view.origin.z))};
+    discs.centre = to_view(view, world);
+    Mask drawn = hn::Gt(radius, hn::Zero(Floats()));
+    discs.radius = mul(set(view.size.scale), radius);
+    drawn = hn::And(drawn, hn::Gt(discs.radius, hn::Zero(Floats())));
+    const F scale = view_scale(view, discs.centre.z);
+    if (view.size.pixels > 0) {
+        const F least = hn::Min(pixels_per_tangent_x(view), pixels_per_tangent_y(view));
+        discs.radius = over(mul(set(0.5f * view.size.pixels), hn::Max(scale, hn::Zero(Floats()))), least);
+    }
+    drawn = hn::And(drawn, hn::Gt(add(discs.centre.z, discs.radius), set(view.forward.w)));
+    const auto outside = [&](F along, float side) {
+        const F beyond = sub(hn::Abs(along), mul(scale, set(side)));
+        return orthographic(view) ? beyond : mul(beyond, set(1.0f / std::sqrt(1.0f + side * side)));
+    };
+    const F most = hn::Max(outside(discs.centre.x, view.right.w), outside(discs.centre.y, view.down.w));
+    return hn::And(drawn, hn::Le(most, discs.radius));
+}
+
+/// Computes what place_discs() leaves out; `normals` and `flags` are words c and d of the surfels. Returns
+/// which discs reach before the near plane.
+HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& discs) {
+    const F one = set(1.0f), zero = hn::Zero(Floats());
+    V3 toward{zero, zero, one};
+    if (!orthographic(view)) {
+        const F distance2 = dot(discs.centre, discs.centre);
+        toward =
+            choose(hn::Gt(distance2, zero), scaled(discs.centre, over(one, hn::Sqrt(distance2))), toward);
+    }
+    discs.push = mul(mul(set(kRimPush), discs.radius), toward.z);
+    discs.normal = toward;
+    if (!(view.size.pixels > 0))
+        discs.normal = choose(has_normal(flags), to_view(view, decode_octahedral(normals)), toward);
+    const F across = hn::Max(sub(one, mul(discs.normal.z, discs.normal.z)), zero);
+    discs.extent = mul(discs.radius, hn::Sqrt(across));
+    return hn::Gt(add(discs.centre.z, discs.extent), set(view.forward.w));
+}
+
+/// Discs of a larger radius, in pixels, are drawn exactly.
+inline constexpr float kSmallRadius = 8;
+HWY_INLINE Mask are_small(const DiscView& view, const Discs& discs) {
+    const F most =
+        hn::Max(mul(discs.radius, pixels_per_tangent_x(view)), mul(discs.radius, pixels_per_tangent_y(view)));
+    return hn::Le(most, mul(set(kSmallRadius), view_scale(view, discs.centre.z)));
+}
+
+/// Several small discs in the picture, see ellipse.glsl.
+struct Ellipses {
+    F x, y;
+    F xx, xy, yy;
+    F slope_x, slope_y;
+};
+
+HWY_INLINE Ellipses project(const DiscView& view, const Discs& discs) {
+    const F scale = view_scale(view, discs.centre.z);
+    const F per_x = pixels_per_tangent_x(view), per_y = pixels_per_tangent_y(view);
+    const F place_x = over(discs.centre.x, scale), place_y = over(discs.centre.y, scale);
+    const F flat = set(orthographic(view) ? 0.0f : 1.0f);
+    const F tangent_x = mul(place_x, flat), tangent_y = mul(place_y, flat);
+    Ellipses e;
+    e.x = sub(add(mul(place_x, per_x), set(0.5f * static_cast<float>(view.width) - view.shift.x)), set(0.5f));
+    e.y =
+        sub(add(mul(place_y, per_y), set(0.5f * static_cast<float>(view.height) - view.shift.y)), set(0.5f));
+    F facing = add(add(mul(discs.normal.x, tangent_x), mul(discs.normal.y, tangent_y)), discs.normal.z);
+    facing = hn::IfThenElse(hn::Lt(hn::Abs(facing), set(1e-4f)), set(1e-4f), facing);
+    const F step_x = over(scale, per_x), step_y = over(scale, per_y);
+    e.slope_x = over(mul(hn::Neg(step_x), discs.normal.x), facing);
+    e.slope_y = over(mul(hn::Neg(step_y), discs.normal.y), facing);
+    const V3 along_x{add(mul(e.slope_x, tangent_x), step_x), mul(e.slope_x, tangent_y), e.slope_x};
+    const V3 along_y{mul(e.slope_y, tangent_x), add(mul(e.slope_y, tangent_y), step_y), e.slope_y};
+    const F inverse = over(set(1.0f), hn::Max(mul(discs.radius, discs.radius), set(1e-12f)));
+    e.xx = mul(dot(along_x, along_x), inverse);
+    e.xy = mul(mul(set(2.0f), dot(along_x, along_y)), inverse);
+    e.yy = mul(dot(along_y, along_y), inverse);
+    return e;
+}
+HWY_INLINE F determinant(const Ellipses& e) {
+    return hn::Max(sub(mul(e.xx, e.yy), mul(mul(set(0.25f), e.xy), e.xy)), set(1e-12f));
+}
+
+/// The discs of a block that may touch a tile, one after the other: on average a third of the block, because
+/// its surfels lie anywhere in its node.
+struct BlockDiscs {
+    static constexpr size_t kRoom = kBlockSurfels + HWY_MAX_BYTES / 4;  // vectors may reach over the end
+    alignas(64) float x[kRoom], y[kRoom], z[kRoom], radius[kRoom];
+    alignas(64) uint32_t b[kRoom], c[kRoom], d[kRoom];  ///< words of the packed surfels
+    alignas(64) uint32_t id[kRoom];
+    size_t count;
+};
+
+HWY_INLINE void find_discs(const CutMemory& cut, const DiscView& view, const PixelRect& tile, uint32_t block,
+                           BlockDiscs& found) {
+    const Floats df;
+    const Words du;
+    const CutBlock& from = cut.blocks[block];
+    const CutItem& item = cut.items[from.item];
+    const V3 origin{set(item.origin.x), set(item.origin.y), set(item.origin.z)};
+    const F size = set(item.size);
+    // Small discs reach no farther than their spheres; the margin is for the pixel of the centre, the affine
+    // map and the width by which blending spreads discs.
+    constexpr float kReach = kSmallRadius + 3;
+    const F low_x = set(static_cast<float>(tile.x0) - kReach),
+            low_y = set(static_cast<float>(tile.y0) - kReach),
+            high_x = set(static_cast<float>(tile.x1 - 1) + kReach),
+            high_y = set(static_cast<float>(tile.y1 - 1) + kReach);
+    const F per_x = pixels_per_tangent_x(view), per_y = pixels_per_tangent_y(view);
+    const F middle_x = set(0.5f * static_cast<float>(view.width) - view.shift.x),
+            middle_y = set(0.5f * static_cast<float>(view.height) - view.shift.y);
+    const float* radii = cut.radii + size_t{block} * kBlockSurfels;
+    size_t count = 0;
+    for (uint32_t i = 0; i < from.count; i += static_cast<uint32_t>(hn::Lanes(df))) {
+        const Packed packed = load_packed(cut.pool + from.first + i);
+        Discs discs;
+        Mask near = place_discs(view, packed, origin, size, hn::LoadU(df, radii + i), discs);
+        const F inverse = orthographic(view) ? set(1.0f) : over(set(1.0f), discs.centre.z);
+        const F x = add(mul(mul(discs.centre.x, inverse), per_x), middle_x),
+                y = add(mul(mul(discs.centre.y, inverse), per_y), middle_y);
+        const Mask inside = hn::And(hn::And(hn::Gt(x, low_x), hn::Lt(x, high_x)),
+                                    hn::And(hn::Gt(y, low_y), hn::Lt(y, high_y)));
+        near = hn::And(near, hn::Or(inside, hn::Not(are_small(view, discs))));
+        const size_t more = hn::CountTrue(df, near);
+        if (more == 0) continue;
+        const auto words = hn::RebindMask(du, near);
+        const auto keep = [&](F value, float* to) { hn::StoreU(hn::Compress(value, near), df, to + count); };
+        const auto keep_words = [&](U value, uint32_t* to) {
+            hn::StoreU(hn::Compress(value, words), du, to + count);
+        };
+        keep(discs.centre.x, found.x);
+        keep(discs.centre.y, found.y);
+        keep(discs.centre.z, found.z);
+        keep(discs.radius, found.radius);
+        keep_words(packed.b, found.b);
+        keep_words(packed.c, found.c);
+        keep_words(packed.d, found.d);
+        keep_words(hn::Iota(du, block * kBlockSurfels + i), found.id);
+        count += more;
+    }
+    found.count = count;
+}
+
+/// Loads some of the discs, computes what is missing, and returns which of them are seen.
+HWY_INLINE Mask load_discs(const BlockDiscs& from, size_t at, const DiscView& view, Discs& discs) {
+    const Floats df;
+    discs.centre = {hn::LoadU(df, from.x + at), hn::LoadU(df, from.y + at), hn::LoadU(df, from.z + at)};
+    discs.radius = hn::LoadU(df, from.radius + at);
+    const Mask seen =
+        turn_discs(view, hn::LoadU(Words(), from.c + at), hn::LoadU(Words(), from.d + at), discs);
+    return hn::And(seen, hn::FirstN(df, from.count - at));
+}
+
+/// Calls draw(lane, disc) for the lanes that are large discs.
+template <class Draw>
+HWY_INLINE void each_large(uint32_t large, const Discs& discs, const Draw& draw) {
+    alignas(64) float at[9][HWY_MAX_BYTES / 4];
+    const F values[9] = {discs.centre.x, discs.centre.y, discs.centre.z, discs.normal.x, discs.normal.y,
+                         discs.normal.z, discs.radius,   discs.extent,   discs.push};
+    for (int k = 0; k < 9; ++k) hn::Store(values[k], Floats(), at[k]);
+    for (; large; large &= large - 1) {
+        const auto lane = static_cast<size_t>(std::countr_zero(large));
+        draw(lane, LargeDisc{{at[0][lane], at[1][lane], at[2][lane]},
+                             {at[3][lane], at[4][lane], at[5][lane]},
+                             at[6][lane],
+                             at[7][lane],
+                             at[8][lane]});
+    }
+}
+
+// pixel_tangent() of disc.glsl: for a row of pixels, and for columns.
+HWY_INLINE float row_tangent(const DiscView& view, int row) {
+    return (2.0f * (static_cast<float>(row) + 0.5f + view.shift.y) / static_cast<float>(view.height) - 1.0f) *
+           view.down.w;
+}
+template <class D>
+HWY_INLINE hn::Vec<D> column_tangents(D d, const DiscView& view, int column) {
+    const auto one = hn::Set(d, 1.0f);
+    const auto middle =
+        hn::Add(hn::Add(hn::Iota(d, static_cast<float>(column)), hn::Set(d, 0.5f)), hn::Set(d, view.shift.x));
+    const auto share = hn::Div(hn::Mul(hn::Set(d, 2.0f), middle), hn::Set(d, static_cast<float>(view.width)));
+    return hn::Mul(hn::Sub(share, one), hn::Set(d, view.right.w));
+}
+
+/// Where the rays of some pixels of a row meet the plane of a large disc. See disc_key() in disc.glsl.
+struct Meeting {
+    Row z;          ///< not clamped
+    Row distance2;  ///< from the disc's centre, m^2
+    Row slope;
+};
+HWY_INLINE Meeting meet(const LargeDisc& disc, const DiscView& view, float tangent_y, int column) {
+    const RowFloats df;
+    const bool flat = orthographic(view);
+    const auto row = [&](float v) { return hn::Set(df, v); };
+    const Row across = column_tangents(df, view, column);
+    const Row ray_x = flat ? hn::Zero(df) : across, ray_y = row(flat ? 0.0f : tangent_y);
+    const Row x = hn::Sub(row(disc.centre.x), flat ? across : hn::Zero(df)),
+              y = row(disc.centre.y - (flat ? tangent_y : 0.0f)), z = row(disc.centre.z);
+    const Row nx = row(disc.normal.x), ny = row(disc.normal.y), nz = row(disc.normal.z);
+    Meeting m;
+    m.slope = hn::Add(hn::Add(hn::Mul(nx, ray_x), hn::Mul(ny, ray_y)), nz);
+    const Row facing = hn::IfThenElse(hn::Lt(hn::Abs(m.slope), row(1e-12f)), row(1e-12f), m.slope);
+    m.z = hn::Div(hn::Add(hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)), hn::Mul(nz, z)), facing);
+    const Row ox = hn::Sub(hn::Mul(ray_x, m.z), x), oy = hn::Sub(hn::Mul(ray_y, m.z), y),
+              oz = hn::Sub(m.z, z);
+    m.distance2 = hn::Add(hn::Add(hn::Mul(ox, ox), hn::Mul(oy, oy)), hn::Mul(oz, oz));
+    return m;
+}
+/// Limits depths to those that the disc spans.
+HWY_INLINE Row in_disc(const LargeDisc& disc, Row z) {
+    const RowFloats df;
+    return hn::Min(hn::Max(z, hn::Set(df, disc.centre.z - disc.extent)),
+                   hn::Set(df, disc.centre.z + disc.extent));
+}
+
+}  // namespace lucarne::gi::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
