@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shadow_maps/native/splat.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
 #include "gi/engines/vpl/shadow_maps/texel.h"
 #include "gi/engines/vpl/vpl_light.h"
@@ -129,8 +130,38 @@ Result<void> splat_ranges(Device& device, const SplatPrograms& splat, std::vecto
     return {};
 }
 
+/// Draws all maps in C++.
+Result<void> splat_natively(const DeviceCut& cut, const Seeds& seeds, const ShadowMaps& target) {
+    LUCARNE_ASSIGN(const MappedBuffer casters, target.casters.map());
+    LUCARNE_ASSIGN(const MappedBuffer bounds, target.bounds.map());
+    LUCARNE_ASSIGN(const MappedBuffer lights, seeds.lights.map());
+    LUCARNE_ASSIGN(const MappedBuffer atlas, target.atlas.map());
+    LUCARNE_ASSIGN(const MappedBuffer fringe, target.fringe.map());
+    native::SplatMemory memory{.casters = casters.as<const uint32_t>().data(),
+                               .bounds = bounds.as<const float>().data(),
+                               .blocks = cut.blocks(),
+                               .lights = lights.as<const VplLight>().first(target.layout.maps),
+                               .atlas = atlas.as<uint32_t>().data(),
+                               .fringe = fringe.as<uint32_t>().data()};
+    const native::SplatLayout layout{.side = target.layout.side,
+                                     .splat_angle = target.layout.splat_angle,
+                                     .cut_size = cut.size(),
+                                     .id_bits = target.id_bits};
+    if (target.id_bits == 0) {
+        native::splat(memory, layout);
+        return {};
+    }
+    LUCARNE_ASSIGN(const MappedBuffer sources, target.sources.map());
+    LUCARNE_ASSIGN(const MappedBuffer fringe_sources, target.fringe_sources.map());
+    memory.sources = sources.as<uint32_t>().data();
+    memory.fringe_sources = fringe_sources.as<uint32_t>().data();
+    native::splat(memory, layout);
+    return {};
+}
+
 Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, ShadowMaps& target) {
     if (cut.blocks() == 0) return {};
+    if (device.native_passes()) return splat_natively(cut, seeds, target);
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/engines/vpl/shadow_maps/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/engines/vpl/shadow_maps/enter.comp"));
     LUCARNE_ASSIGN(const Program* plan, device.program("gi/engines/vpl/shadow_maps/plan.comp"));

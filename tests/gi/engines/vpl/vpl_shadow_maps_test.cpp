@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "gi/engines/vpl/shadow_maps/shadow_maps.h"
+#include "gi/raster/native/native.h"
 #include "tests/gi/engines/surfel_cloud.h"
 #include "tests/gi/engines/surfel_scenes.h"
 #include "tests/gi/on_device.h"
@@ -18,6 +19,8 @@ constexpr uint32_t kEmpty = 0xffffffffu;
 struct Maps {
     AtlasLayout layout;
     std::vector<uint32_t> texels;
+    std::vector<uint32_t> sources;  ///< empty if they were not requested
+    uint32_t id_bits = 0;
 
     uint32_t at(uint32_t map, uint32_t x, uint32_t y) const {
         return texels[(size_t{map} * layout.side + y) * layout.side + x];
@@ -54,10 +57,17 @@ VplLight upward() {
     return light;
 }
 
-class VplShadowMaps : public OnDevice {
+/// Draws maps by shaders or natively.
+class VplShadowMaps : public OnDevice, public testing::WithParamInterface<bool> {
  protected:
+    void SetUp() override {
+        OnDevice::SetUp();
+        if (GetParam() && !device->native_passes()) GTEST_SKIP() << "no native passes on this device";
+        device->use_native_passes(GetParam());
+    }
     /// Draws maps in an atlas of `atlas` texels along a side, shared by the lights.
-    Maps draw(const std::vector<Surfel>& surfels, const std::vector<VplLight>& lights, uint32_t atlas) {
+    Maps draw(const std::vector<Surfel>& surfels, const std::vector<VplLight>& lights, uint32_t atlas,
+              bool sources = false) {
         Maps maps;
         const auto layout = atlas_layout(atlas, static_cast<uint32_t>(lights.size()));
         EXPECT_TRUE(layout);
@@ -72,9 +82,11 @@ class VplShadowMaps : public OnDevice {
         PassTimes times(*device);
         ShadowMaps drawn;
         EXPECT_TRUE(decode_casters(*device, (*loaded)->cut, drawn));
-        const auto done = draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, false, times, drawn);
+        const auto done = draw_shadow_maps(*device, (*loaded)->cut, seeds, *layout, sources, times, drawn);
         EXPECT_TRUE(done) << done.error().line();
         maps.texels = drawn.atlas.download_all<uint32_t>(layout->texels());
+        if (sources) maps.sources = drawn.sources.download_all<uint32_t>(layout->texels());
+        maps.id_bits = drawn.id_bits;
         return maps;
     }
 };
@@ -87,7 +99,7 @@ std::vector<Surfel> ceiling(float z, float half, int n) {
     return surfels;
 }
 
-TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
+TEST_P(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
     // A slanted wall: depths differ by half over one splat, which a single depth per splat would get wrong
     // by as much.
     std::vector<Surfel> wall;
@@ -107,7 +119,7 @@ TEST_F(VplShadowMaps, texelsHoldTheDistanceToTheSurfacesPlane) {
     EXPECT_GT(hits, 5000u);
 }
 
-TEST_F(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
+TEST_P(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
     // The surfels are far finer than the map, so that all but a few in a hundred are left out of it.
     std::vector<Surfel> walls = ceiling(1, 3, 500);
     const auto behind = ceiling(2, 6, 500);
@@ -124,7 +136,7 @@ TEST_F(VplShadowMaps, redWallBehindAWhiteOneNeverShowsThrough) {
     EXPECT_LE(static_cast<double>(through), .001 * static_cast<double>(rays));
 }
 
-TEST_F(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
+TEST_P(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
     // A wall at height 2 with a door of 1 x 1 in its middle, ten texels wide in the map, and a far wall at 6.
     std::vector<Surfel> open = ceiling(6, 12, 500);
     for (const auto& [corner, u, v] : {std::tuple{glm::vec3(-4, -4, 2), 3.5f * kX, 8.0f * kY},
@@ -164,7 +176,7 @@ TEST_F(VplShadowMaps, openDoorStaysOpenAndAClosedOneClosed) {
     EXPECT_LT(share_through(closed, .5f), .002);
 }
 
-TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
+TEST_P(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
     // Every second VPL is dead. Its map must stay empty, whatever its neighbours in the buffer hold.
     std::vector<VplLight> lights;
     for (int i = 0; i < 16; ++i) lights.push_back(i % 2 ? kDeadLight : upward());
@@ -184,7 +196,7 @@ TEST_F(VplShadowMaps, pullPushFillsHolesAndNeverCrossesFromOneMapToAnother) {
     }
 }
 
-TEST_F(VplShadowMaps, ownSurfaceAndWhatLiesBehindItAreNotDrawn) {
+TEST_P(VplShadowMaps, ownSurfaceAndWhatLiesBehindItAreNotDrawn) {
     std::vector<Surfel> floor;
     scenes::add_rectangle(floor, glm::vec3(-2, -2, 0), 4.0f * kX, 4.0f * kY, 200, glm::vec3(.5f));
     scenes::add_rectangle(floor, glm::vec3(-2, -2, -1), 4.0f * kX, 4.0f * kY, 200, glm::vec3(.5f));
@@ -194,7 +206,7 @@ TEST_F(VplShadowMaps, ownSurfaceAndWhatLiesBehindItAreNotDrawn) {
     maps.each(0, [&](const glm::vec3& ray, uint32_t texel) { EXPECT_EQ(texel, kEmpty) << ray.z; });
 }
 
-TEST_F(VplShadowMaps, atlasesAreSharedOutAndTooManyMapsAreRefused) {
+TEST_P(VplShadowMaps, atlasesAreSharedOutAndTooManyMapsAreRefused) {
     const auto layout = atlas_layout(2048, 256);
     ASSERT_TRUE(layout);
     EXPECT_EQ(layout->side, 128u);
@@ -208,13 +220,76 @@ TEST_F(VplShadowMaps, atlasesAreSharedOutAndTooManyMapsAreRefused) {
     }
 }
 
-TEST_F(VplShadowMaps, sameMapsEveryRun) {
+TEST_P(VplShadowMaps, sameMapsEveryRun) {
     const auto room = scenes::closed_box(2, 100, glm::vec3(.5f));
     VplLight light = upward();
     light.position = {1, 1, .1f, .01f};
     const std::vector<VplLight> lights(300, light);  // more than one run of maps
     EXPECT_EQ(draw(room, lights, 256).texels, draw(room, lights, 256).texels);
 }
+
+class NativeVplShadowMaps : public VplShadowMaps {};
+
+/// A room with furniture, a wall at a low angle, surfels without normals, and VPLs all over it.
+struct Furnished {
+    std::vector<Surfel> surfels;
+    std::vector<VplLight> lights;
+};
+Furnished furnished() {
+    Furnished room;
+    scenes::add_rectangle(room.surfels, glm::vec3(-4, -4, 2), 8.0f * kY, 8.0f * kX, 250, glm::vec3(0.5f));
+    scenes::add_rectangle(room.surfels, glm::vec3(-4, -4, 0), glm::vec3(8, 0, 4), glm::vec3(0, 8, 0), 150,
+                          glm::vec3(0.5f));
+    scenes::add_rectangle(room.surfels, glm::vec3(1, -1, 0), glm::vec3(0, 0, 1), glm::vec3(0, 2, 0), 40,
+                          glm::vec3(0.5f));
+    for (size_t i = 0; i < room.surfels.size(); i += 9) room.surfels[i].normal = glm::vec3(0.0f);
+    for (int i = 0; i < 40; ++i) {
+        VplLight light = upward();
+        const float angle = 0.7f * static_cast<float>(i), out = 0.08f * static_cast<float>(i);
+        light.position = {out * std::cos(angle), out * std::sin(angle), 0.02f * static_cast<float>(i % 7),
+                          0.01f};
+        const glm::vec3 normal = glm::normalize(glm::vec3(std::sin(angle), 0.3f, std::cos(2 * angle)));
+        light.normal = {normal.x, normal.y, normal.z, 0.02f};
+        room.lights.push_back(i == 20 ? kDeadLight : light);
+    }
+    return room;
+}
+
+TEST_P(NativeVplShadowMaps, EveryInstructionSetGivesTheSameMaps) {
+    const Furnished room = furnished();
+    const Maps fastest = draw(room.surfels, room.lights, 512, true);
+    for (int set = 0; gi::native::use_instruction_set(set); ++set) {
+        const Maps maps = draw(room.surfels, room.lights, 512, true);
+        EXPECT_TRUE(maps.texels == fastest.texels && maps.sources == fastest.sources) << set;
+    }
+    gi::native::use_instruction_set(-1);
+}
+
+TEST_P(NativeVplShadowMaps, NativeMapsAreThoseOfTheShaders) {
+    const Furnished room = furnished();
+    const Maps maps = draw(room.surfels, room.lights, 512, true);
+    device->use_native_passes(false);
+    const Maps shaders = draw(room.surfels, room.lights, 512, true);
+    // Both round differently in the last bits: a texel at the rim of a disc may be taken or not, and a code
+    // may be the next one.
+    size_t drawn = 0, others = 0, other_sources = 0;
+    for (size_t i = 0; i < maps.texels.size(); ++i) {
+        const uint32_t a = maps.texels[i], b = shaders.texels[i];
+        drawn += b != kEmpty;
+        const bool same = a == b || (a != kEmpty && b != kEmpty &&
+                                     std::abs(Maps::distance(a) / Maps::distance(b) - 1) < 1e-3f);
+        others += !same;
+        const uint32_t ids = (1u << maps.id_bits) - 1;
+        other_sources += (maps.sources[i] & ids) != (shaders.sources[i] & ids);
+    }
+    EXPECT_GT(drawn, maps.texels.size() / 4);
+    EXPECT_LE(others, drawn / 200);
+    EXPECT_LE(other_sources, drawn / 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Passes, NativeVplShadowMaps, testing::Values(true));
+INSTANTIATE_TEST_SUITE_P(Passes, VplShadowMaps, testing::Bool(),
+                         [](const auto& native) { return native.param ? "native" : "shaders"; });
 
 }  // namespace
 }  // namespace lucarne::gi::vpl
