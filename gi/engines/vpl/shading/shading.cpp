@@ -1,9 +1,14 @@
 #include "gi/engines/vpl/shading/shading.h"
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/shading/isolated.h"
+#include "gi/engines/vpl/shading/native/join.h"
 #include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
@@ -18,6 +23,21 @@ void bind_pixels(const Frame& frame, const Program& program) {
     frame.gl.gbuffer.texels.bind_texels(kUnitGBuffer, TexelView::four_words);
     program.set("interleave", frame.settings[kInterleave]);
     set(program, "camera", frame.camera);
+}
+
+Result<void> join_natively(const Frame& frame, Tiles& target) {
+    std::vector<uint32_t> isolated;
+    {
+        LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
+        LUCARNE_ASSIGN(const MappedBuffer joints, target.joints.map());
+        isolated = native::join(frame.camera, texels.as<const GBufferTexel>().data(),
+                                frame.settings[kInterleave], joints.as<uint32_t>().data());
+    }
+    const auto count = static_cast<uint32_t>(isolated.size());
+    const uint32_t groups = std::min((count + kIsolatedGroup - 1) / kIsolatedGroup, kMostIsolatedGroups);
+    target.isolated.upload_all(std::vector<IsolatedHeader>{{{groups, 1, 1}, count}});
+    target.isolated.upload(sizeof(IsolatedHeader), std::as_bytes(std::span(isolated)));
+    return {};
 }
 
 }  // namespace
@@ -37,6 +57,7 @@ Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
                                         "tiles"));
     for (Buffer* light : {&target.diffuse, &target.specular, &target.own_diffuse, &target.own_specular})
         light->clear(0);
+    if (frame.gl.device.native_passes()) return join_natively(frame, target);
     target.isolated.upload_all(std::vector<IsolatedHeader>{{{0, 1, 1}, 0}});
     target.joints.bind(kBindJoints);
     target.isolated.bind(kBindIsolated);
