@@ -20,10 +20,14 @@ struct Gathered {
 };
 
 // Returns whether VPL `index` sees the receiver according to its shadow map; `normal` is that of the receiver. The
-// surface that the map holds in the direction of the receiver is a blocker if the receiver lies behind the plane of
-// that surface, and that surface in front of the plane of the receiver, both by more than the map can resolve. A
-// texel is coarse: with depths alone, slanted surfaces and the walls of a corner would shadow each other over its
-// whole width.
+// surface that the map holds in the direction of the receiver is a blocker if it lies in front of the plane of the
+// receiver and the receiver lies behind its plane. With depths alone, slanted surfaces and the walls of a corner would
+// shadow each other over the whole width of a texel.
+//   In front: by more than the error of a splat. A texel holds the distance to a plane along its own ray, so surfaces
+// of the receiver's own plane lie in that plane, however wide the texel is. More tolerance would let light pass under
+// walls: behind a wall, a floor is lit over the foot of that wall.
+//   Behind: by a texel more, and by up to two if both surfaces face the same way. Then they may be one curved or noisy
+// surface, whose plane changes within the texel.
 bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
     mat3 frame = frame_about(light_normal.xyz);
     vec3 receiver = (lifted - light_normal.xyz * light_normal.w) * frame;
@@ -31,10 +35,13 @@ bool vpl_sees(uint index, vec4 light_normal, vec3 lifted, vec3 normal) {
     uint nearest = texelFetch(atlas_texels, int(texel_index(index, at))).x;
     vec2 uv = texel_centre(at);
     float blocker_distance = map_distance(nearest);
-    vec3 blocker = map_ray(uv) * (blocker_distance / (1.0 + dot(uv, uv)));
-    float tolerance = map_tolerance(map_radius(nearest), blocker_distance);
-    return receiver.z <= 0.0 || nearest == kNothing || dot(normal * frame, blocker - receiver) <= tolerance ||
-           dot(map_normal(nearest), blocker - receiver) <= tolerance;
+    vec3 offset = map_ray(uv) * (blocker_distance / (1.0 + dot(uv, uv))) - receiver;
+    vec3 blocker_normal = map_normal(nearest);
+    vec3 receiver_normal = normal * frame;
+    float error = splat_error(map_radius(nearest), blocker_distance);
+    float texels = 1.0 + max(dot(receiver_normal, blocker_normal), 0.0);
+    return receiver.z <= 0.0 || nearest == kNothing || dot(receiver_normal, offset) <= error ||
+           dot(blocker_normal, offset) <= error + texels * texel_width(blocker_distance);
 }
 
 // Returns the form factor, times pi, from a point to a disc of squared radius r2 whose centre lies at -offset: pi

@@ -42,10 +42,17 @@ float splat_radius(float surfel_radius, float distance_m) { return max(surfel_ra
 // radius.
 const float kSheetTolerance = 0.1;
 
-// Returns the distance below which a map cannot separate two surfaces: the error of a splat plus the width of a texel
-// (2 pi sr in pi/4 side^2 texels).
+// Returns how far the disc of a splat may lie beside the surface that it stands for, m.
+float splat_error(float surfel_radius, float distance_m) {
+    return kSheetTolerance * splat_radius(surfel_radius, distance_m);
+}
+
+// Returns the width of a texel at a distance, m (a map shows 2 pi sr in pi/4 side^2 texels).
+float texel_width(float distance_m) { return sqrt(8.0) / float(map_side) * distance_m; }
+
+// Returns the distance below which a map cannot separate two surfaces: the error of a splat plus the width of a texel.
 float map_tolerance(float surfel_radius, float distance_m) {
-    return kSheetTolerance * splat_radius(surfel_radius, distance_m) + sqrt(8.0) / float(map_side) * distance_m;
+    return splat_error(surfel_radius, distance_m) + texel_width(distance_m);
 }
 
 // Returns an orthonormal frame about a unit vector (Duff et al. 2017); columns: tangent, bitangent, normal.
