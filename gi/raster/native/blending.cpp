@@ -271,13 +271,6 @@ void blend_block(const CutMemory& cut, const DiscView& view, const PixelRect& re
     }
 }
 
-/// Returns the halves that packHalf2x16() wrote, for numbers from 0 on.
-HWY_INLINE F half_value(U bits) {
-    // Moving the bits of a half to those of a float divides it by 2^112; denormal halves become normal
-    // floats.
-    return mul(hn::BitCast(Floats(), hn::ShiftLeft<13>(hn::And(bits, word(0x7fffu)))), set(0x1p112f));
-}
-
 struct Texels {
     U depth, normal, albedo, material;
 };

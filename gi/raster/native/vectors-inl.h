@@ -95,6 +95,13 @@ HWY_INLINE U encode_octahedral(const V3& n) {
     return hn::Or(hn::And(u, word(0xffffu)), hn::ShiftLeft<16>(v));
 }
 
+/// Returns the halves that packHalf2x16() wrote, for numbers from 0 on.
+HWY_INLINE F half_value(U bits) {
+    // Moving the bits of a half to those of a float divides it by 2^112; denormal halves become normal
+    // floats.
+    return mul(hn::BitCast(Floats(), hn::ShiftLeft<13>(hn::And(bits, word(0x7fffu)))), set(0x1p112f));
+}
+
 /// Returns the lanes of a mask as bits.
 HWY_INLINE uint32_t bits_of(Mask mask) {
     uint8_t bits[8] = {};

@@ -8,6 +8,7 @@
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
 #include "gi/engines/vpl/shading/isolated.h"
+#include "gi/engines/vpl/shading/native/gather.h"
 #include "gi/engines/vpl/shading/native/join.h"
 #include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
@@ -40,6 +41,31 @@ Result<void> join_natively(const Frame& frame, Tiles& target) {
     return {};
 }
 
+Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const ShadowMaps& maps,
+                            const Tiles& target) {
+    LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer lights, seeds.lights.map());
+    LUCARNE_ASSIGN(const MappedBuffer atlas, maps.atlas.map());
+    LUCARNE_ASSIGN(const MappedBuffer diffuse, target.diffuse.map());
+    LUCARNE_ASSIGN(const MappedBuffer own_diffuse, target.own_diffuse.map());
+    LUCARNE_ASSIGN(const MappedBuffer isolated, target.isolated.map());
+    LUCARNE_ASSIGN(const MappedBuffer joints, target.joints.map());
+    const native::GatherInput input{.camera = frame.camera,
+                                    .texels = texels.as<const GBufferTexel>().data(),
+                                    .lights = lights.as<const VplLight>().first(maps.layout.maps),
+                                    .atlas = atlas.as<const uint32_t>().data(),
+                                    .side = maps.layout.side,
+                                    .splat_angle = maps.layout.splat_angle};
+    const native::GatherOutput output{
+        .irradiance = diffuse.as<glm::vec4>().data(),
+        .own_irradiance = own_diffuse.as<glm::vec4>().data(),
+        .isolated = isolated.as<const uint32_t>().subspan(sizeof(IsolatedHeader) / sizeof(uint32_t),
+                                                          isolated.as<const IsolatedHeader>().front().count),
+        .joints = joints.as<const uint32_t>().data()};
+    native::gather(input, frame.settings[kInterleave], output);
+    return {};
+}
+
 }  // namespace
 
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
@@ -68,6 +94,7 @@ Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
 
 Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
                          Tiles& target) {
+    if (frame.gl.device.native_passes() && !target.glossy) return shade_natively(frame, seeds, maps, target);
     LUCARNE_ASSIGN(const Program* shade,
                    frame.gl.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
     LUCARNE_ASSIGN(const Program* shade_isolated,
