@@ -245,7 +245,7 @@ TEST_P(BlendTest, HostilePilesOfDiscsGiveADefinedPicture) {
         EXPECT_EQ(texel.depth, 0.0f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Passes, BlendTest, testing::Bool(), passes_name);
+INSTANTIATE_TEST_SUITE_P(Passes, BlendTest, ::testing::Bool(), passes_name);
 
 }  // namespace
 }  // namespace lucarne::gi

@@ -32,12 +32,12 @@ struct Picture {
     bool red(size_t at) const { return !empty(at) && decode_albedo(texels[at].albedo).y < 0.1f; }
 };
 
-inline std::string passes_name(const testing::TestParamInfo<bool>& native) {
+inline std::string passes_name(const ::testing::TestParamInfo<bool>& native) {
     return native.param ? "native" : "shaders";
 }
 
 /// Draws surfels made by hand, by shaders or by native passes.
-class GBufferTest : public OnDevice, public testing::WithParamInterface<bool> {
+class GBufferTest : public OnDevice, public ::testing::WithParamInterface<bool> {
  protected:
     void SetUp() override {
         OnDevice::SetUp();

@@ -224,7 +224,7 @@ TEST_P(GBufferTest, AnOrthographicViewDrawsAlikeAtAnyDepthAndPutsTexelsOnTheirSu
     EXPECT_NEAR(covered(30, 0.3f), coarse, 0.01 * coarse);
 }
 
-INSTANTIATE_TEST_SUITE_P(Passes, GBufferTest, testing::Bool(), passes_name);
+INSTANTIATE_TEST_SUITE_P(Passes, GBufferTest, ::testing::Bool(), passes_name);
 
 }  // namespace
 }  // namespace lucarne::gi

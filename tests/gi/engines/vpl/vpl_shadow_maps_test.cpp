@@ -58,7 +58,7 @@ VplLight upward() {
 }
 
 /// Draws maps by shaders or natively.
-class VplShadowMaps : public OnDevice, public testing::WithParamInterface<bool> {
+class VplShadowMaps : public OnDevice, public ::testing::WithParamInterface<bool> {
  protected:
     void SetUp() override {
         OnDevice::SetUp();
@@ -287,8 +287,8 @@ TEST_P(NativeVplShadowMaps, NativeMapsAreThoseOfTheShaders) {
     EXPECT_LE(other_sources, drawn / 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Passes, NativeVplShadowMaps, testing::Values(true));
-INSTANTIATE_TEST_SUITE_P(Passes, VplShadowMaps, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Passes, NativeVplShadowMaps, ::testing::Values(true));
+INSTANTIATE_TEST_SUITE_P(Passes, VplShadowMaps, ::testing::Bool(),
                          [](const auto& native) { return native.param ? "native" : "shaders"; });
 
 }  // namespace
