@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shadow_maps/native/close.h"
 #include "gi/engines/vpl/shadow_maps/native/splat.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
 #include "gi/engines/vpl/shadow_maps/texel.h"
@@ -55,6 +56,32 @@ Result<void> pull_push(Device& device, const ShadowMaps& maps) {
 
 Defines source_defines(const ShadowMaps& maps) {
     return maps.id_bits ? Defines{{"LUCARNE_SOURCES", "1"}} : Defines{};
+}
+
+/// Closes and fills all maps in C++, see close() and pull_push().
+Result<void> close_natively(ShadowMaps& maps) {
+    assert(maps.layout.levels == 1);
+    {
+        LUCARNE_ASSIGN(const MappedBuffer atlas, maps.atlas.map());
+        LUCARNE_ASSIGN(const MappedBuffer fringe, maps.fringe.map());
+        native::CloseMemory memory{.cores = atlas.as<const uint32_t>().data(),
+                                   .fringe = fringe.as<uint32_t>().data(),
+                                   .maps = maps.layout.maps,
+                                   .side = maps.layout.side,
+                                   .splat_angle = maps.layout.splat_angle};
+        if (maps.id_bits == 0) {
+            native::close_and_fill(memory);
+        } else {
+            LUCARNE_ASSIGN(const MappedBuffer sources, maps.sources.map());
+            LUCARNE_ASSIGN(const MappedBuffer fringe_sources, maps.fringe_sources.map());
+            memory.sources = sources.as<const uint32_t>().data();
+            memory.fringe_sources = fringe_sources.as<uint32_t>().data();
+            native::close_and_fill(memory);
+        }
+    }
+    std::swap(maps.atlas, maps.fringe);
+    std::swap(maps.sources, maps.fringe_sources);
+    return {};
 }
 
 /// Completes the atlas: the drawn cores, plus the fringes that close holes between them (fringe.glsl).
@@ -267,8 +294,12 @@ Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds&
     LUCARNE_TRY(splat(device, cut, seeds, target));
     times.end();
     times.begin("ISM pull-push");
-    LUCARNE_TRY(close(device, target));
-    LUCARNE_TRY(pull_push(device, target));
+    if (device.native_passes()) {
+        LUCARNE_TRY(close_natively(target));
+    } else {
+        LUCARNE_TRY(close(device, target));
+        LUCARNE_TRY(pull_push(device, target));
+    }
     times.end();
     return {};
 }
