@@ -28,14 +28,20 @@ std::array<float, 256> area_shares() {
 HostSurfels host_surfels(const DeviceCut& cut, std::span<const PackedSurfel> pool) {
     const auto items = cut.items();
     const auto blocks = cut.block_list();
-    HostSurfels made{std::vector<float>(blocks.size() * kBlockSurfels),
-                     std::vector<BlockBounds>(blocks.size())};
+    HostSurfels made;
+    made.bounds.resize(blocks.size());
+    uint32_t places = 0;
+    for (const CutBlock& block : blocks) {
+        made.first.push_back(places);
+        places += (block.count + HostSurfels::kPadding - 1) / HostSurfels::kPadding * HostSurfels::kPadding;
+    }
+    made.radii.resize(places);
     const auto shares = area_shares();
     parallel_ranges(blocks.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t at = first; at < last; ++at) {
             const CutBlock& block = blocks[at];
             const CutItem& item = items[block.item];
-            float* radii = &made.radii[at * kBlockSurfels];
+            float* radii = made.radii.data() + made.first[at];
             glm::uvec3 low(UINT32_MAX), high(0);
             float largest = 0;
             for (uint32_t i = 0; i < block.count; ++i) {

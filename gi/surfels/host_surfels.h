@@ -19,12 +19,15 @@ struct BlockBounds {
     float radius;         ///< of the largest disc, m; 0: the block has no surfel to draw
 };
 
-/// What passes in C++ read of a cut besides its packed surfels. It takes no memory until it is made.
+/// What passes in C++ read of a cut besides its packed surfels.
 struct HostSurfels {
-    /// By id: the disc's radius, m, before the look's scale. 0 for outliers, clipped surfels and the gaps
-    /// behind the last surfels of blocks.
+    /// Radii are stored block by block, each padded to a multiple of this, so that vectors may read over the
+    /// end.
+    static constexpr uint32_t kPadding = 16;
+    /// The discs' radii, m, before the look's scale. 0 for outliers, clipped surfels and paddings.
     std::vector<float> radii;
-    std::vector<BlockBounds> bounds;  ///< by block
+    std::vector<uint32_t> first;  ///< by block: the place of its first radius
+    std::vector<BlockBounds> bounds;
 };
 
 /// Computes radii and bounds. `pool` is the memory of the cut's pool.

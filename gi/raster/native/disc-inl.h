@@ -114,6 +114,7 @@ HWY_INLINE Mask turn_discs(const DiscView& view, U normals, U flags, Discs& disc
 
 /// Discs of a larger radius, in pixels, are drawn exactly.
 inline constexpr float kSmallRadius = 8;
+static_assert(HWY_MAX_BYTES / 4 <= HostSurfels::kPadding);
 HWY_INLINE Mask are_small(const DiscView& view, const Discs& discs) {
     const F most =
         hn::Max(mul(discs.radius, pixels_per_tangent_x(view)), mul(discs.radius, pixels_per_tangent_y(view)));
@@ -182,7 +183,7 @@ HWY_INLINE void find_discs(const CutMemory& cut, const DiscView& view, const Pix
     const F per_x = pixels_per_tangent_x(view), per_y = pixels_per_tangent_y(view);
     const F middle_x = set(0.5f * static_cast<float>(view.width) - view.shift.x),
             middle_y = set(0.5f * static_cast<float>(view.height) - view.shift.y);
-    const float* radii = cut.radii + size_t{block} * kBlockSurfels;
+    const float* radii = cut.radii + cut.first_radius[block];
     size_t count = 0;
     for (uint32_t i = 0; i < from.count; i += static_cast<uint32_t>(hn::Lanes(df))) {
         const Packed packed = load_packed(cut.pool + from.first + i);

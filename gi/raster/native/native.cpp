@@ -13,7 +13,9 @@ namespace lucarne::gi::native {
 namespace {
 
 CutMemory memory_of(const DeviceCut& cut, std::span<const PackedSurfel> pool) {
-    return {pool.data(), cut.items().data(), cut.block_list().data(), cut.on_host(pool).radii.data()};
+    const HostSurfels& surfels = cut.on_host(pool);
+    return {pool.data(), cut.items().data(), cut.block_list().data(), surfels.radii.data(),
+            surfels.first.data()};
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ struct CutMemory {
     const PackedSurfel* pool;
     const CutItem* items;
     const CutBlock* blocks;
-    const float* radii;  ///< HostSurfels::radii
+    const float* radii;            ///< HostSurfels::radii
+    const uint32_t* first_radius;  ///< HostSurfels::first
 };
 
 }  // namespace lucarne::gi::native

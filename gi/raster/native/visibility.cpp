@@ -224,15 +224,18 @@ void resolve_row(const CutMemory& cut, const DiscView& view, int x, int y, int c
         const auto taken = hn::Ne(id, word(kNoSurfel));
         const U place = hn::IfThenElseZero(taken, id);
         const auto block = hn::BitCast(Ints(), hn::ShiftLeft<2>(hn::ShiftRight<8>(place)));
+        const U in_block = hn::And(place, word(kBlockSurfels - 1));
+        const U radius =
+            hn::Add(gather(cut.first_radius, hn::BitCast(Ints(), hn::ShiftRight<8>(place))), in_block);
         const U item = hn::ShiftLeft<4>(gather(blocks, block));
-        const U surfel = hn::Add(gather(blocks + 1, block), hn::And(place, word(kBlockSurfels - 1)));
+        const U surfel = hn::Add(gather(blocks + 1, block), in_block);
         const auto four = hn::BitCast(Ints(), hn::ShiftLeft<2>(surfel)), cube = hn::BitCast(Ints(), item);
         const Packed packed{gather(pool, four), gather(pool + 1, four), gather(pool + 2, four),
                             gather(pool + 3, four)};
         const V3 origin{gather(items, cube), gather(items + 1, cube), gather(items + 2, cube)};
         Discs discs;
         place_discs(view, packed, origin, gather(items + 3, cube),
-                    gather(cut.radii, hn::BitCast(Ints(), place)), discs);
+                    gather(cut.radii, hn::BitCast(Ints(), radius)), discs);
         turn_discs(view, packed.c, packed.d, discs);
         const F tangent_x = column_tangents(Floats(), view, x + at);
         const V3 ray{flat ? zero : tangent_x, flat ? zero : tangent_y, one};
