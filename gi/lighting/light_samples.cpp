@@ -8,6 +8,7 @@
 
 #include "gi/bounce_options.h"
 #include "gi/gl_frame.h"
+#include "gi/lighting/area_points.h"
 #include "gi/lighting/light_options.h"
 #include "gi/shared/brdf.h"
 #include "io/core/random.h"
@@ -19,37 +20,29 @@ glm::vec3 xyz(const glm::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Evenly distributed points of a square, shifted by a vector of the seed; each frame has other points.
+/// How many samples stand in for a light in this frame, and which.
 class Strata {
  public:
     Strata(uint32_t count, const Frame& frame, uint64_t light)
-        : count_(count), frame_(static_cast<double>(frame.index)) {
-        Random random(frame.settings[kSeed], light);
-        shift_ = {random.uniform(), random.uniform()};
-    }
+        : count_(count), frame_(frame.index), seed_(frame.settings[kSeed]), light_(light) {}
     uint32_t count() const { return count_; }
+    uint64_t first() const { return frame_ * count_; }  ///< of all frames' samples, the first of this frame
+    AreaPoints area_points() const { return AreaPoints(count_, seed_, light_); }
 
-    /// The R2 sequence (Roberts 2018): multiples of powers of the plastic number on the torus. A frame
-    /// continues where the last one ended.
-    glm::dvec2 sequence(uint32_t i) const {
-        const double at = frame_ * count_ + i;
-        return on_torus(at * kPlastic);
-    }
-    /// A Fibonacci lattice, which becomes a spiral on a sphere. It is better for few points; each frame
-    /// shifts it.
+    /// Returns point `i` of a Fibonacci lattice, which becomes a spiral on a sphere, in [0, 1)^2. It is
+    /// better for few directions; each frame shifts it by the R2 sequence.
     glm::dvec2 lattice(uint32_t i) const {
-        return on_torus(frame_ * kPlastic +
-                        glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_));
+        Random random(seed_, light_);
+        glm::dvec2 shift;
+        shift.x = random.uniform();
+        shift.y = random.uniform();
+        return glm::fract(static_cast<double>(frame_) * kR2 +
+                          glm::dvec2(i * 0.6180339887498949, static_cast<double>(i) / count_) + shift);
     }
 
  private:
-    static constexpr glm::dvec2 kPlastic{0.7548776662466927, 0.5698402909980532};
-
-    glm::dvec2 on_torus(const glm::dvec2& point) const { return glm::fract(point + shift_); }
-
     uint32_t count_;
-    double frame_;
-    glm::dvec2 shift_;
+    uint64_t frame_, seed_, light_;
 };
 
 bool has_size(const Light& light) {
@@ -115,20 +108,15 @@ void add_area(const Light& area, const Strata& strata, const DeviceCut* cut,
         square_metres = 4 * half * area.extent.w;
     }
     if (!(square_metres > 0)) return;
+    const bool disc = area.kind == kDiscLight;
+    const float width = disc ? area.extent.w : glm::length(xyz(area.extent));
+    const AreaPoints points = strata.area_points();
     for (uint32_t i = 0; i < strata.count(); ++i) {
-        const glm::dvec2 point = strata.sequence(i);
-        double x = 2 * point.x - 1, y = 2 * point.y - 1;
-        float width = glm::length(xyz(area.extent));
-        if (area.kind == kDiscLight) {
-            const double r = std::sqrt(point.y), phi = 2 * M_PI * point.x;
-            x = r * std::cos(phi), y = r * std::sin(phi);
-            width = area.extent.w;
-        }
+        const glm::dvec2 square = 2.0 * points.at(strata.first() + i) - 1.0;
+        const glm::vec2 at(disc ? on_disc(square) : square);
         Light light{};
         light.kind = kCosineLight;
-        light.position = area.position + glm::vec4(u * (width * static_cast<float>(x)) +
-                                                       v * (area.extent.w * static_cast<float>(y)),
-                                                   0.0f);
+        light.position = area.position + glm::vec4(u * (width * at.x) + v * (area.extent.w * at.y), 0.0f);
         light.direction = area.direction;
         light.strength = area.strength * (square_metres / static_cast<float>(strata.count()));
         light.extent = glm::vec4(u, 0);

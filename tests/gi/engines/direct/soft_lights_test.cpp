@@ -77,6 +77,32 @@ TEST_F(SoftLights, DiscCastsTheReferencesPenumbraWhenAveraged) {
     expect_like_the_reference(*device, scene, "disc");
 }
 
+// Two points stand in for a lamp in one frame of `interactive`. Random shifts of their sequence put both at
+// one edge of the lamp with some seeds.
+TEST_F(SoftLights, FirstFramesOfALampHaveEvenSamples) {
+    AnalyticScene scene = floor_and_block();
+    scene.settings.set(kLightSamples, 8);
+    for (const Light& lamp : {scenes::rectangle_light({1.2f, 1.1f, 1.6f}, .3f * kX, .2f, -kZ, 3),
+                              scenes::disc_light({1.2f, 1.1f, 1.6f}, .3f, -kZ, 3)}) {
+        scene.lights = {lamp};
+        const auto truth = scenes::render(*device, "reference", scene);
+        ASSERT_TRUE(truth) << truth.error().line();
+        for (const int frames : {1, 2, 4}) {
+            constexpr int kSeeds = 8;
+            double error = 0;
+            for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+                scene.settings.set(kSeed, seed);
+                const auto metrics = compare_images(average(*device, scene, frames), truth->radiance);
+                ASSERT_TRUE(metrics);
+                error += metrics->rel_mse_trimmed / kSeeds;
+            }
+            std::printf("lamp %u, %d frames: relMSE %.5f\n", lamp.kind, frames, error);
+            // With random shifts: .043, .013, .009 for the rectangle and .075, .017, .012 for the disc.
+            EXPECT_LT(error, frames == 1 ? .033 : frames == 2 ? .015 : .011);
+        }
+    }
+}
+
 TEST_F(SoftLights, SunCastsTheReferencesPenumbraWhenAveraged) {
     AnalyticScene scene = floor_and_block();
     scene.lights = {scenes::wide_sun({.4f, .2f, -1}, .15f, 3)};
