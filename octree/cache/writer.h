@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/files/file.h"
@@ -59,6 +60,12 @@ class CacheWriter {
     Result<void> flush_entries();
     /// Visits the entries in the order of add().
     Result<void> each_entry(const std::function<void(const format::Entry&)>& visit);
+    /// Takes a node that was added, and its points, which may be changed. Returns whether it wants more
+    /// nodes.
+    using LoadedVisit = std::function<bool(const format::Entry& entry, NodeData& data)>;
+    /// Loads these nodes from the unfinished file, one after the other. `header` is that of the new state.
+    Result<void> load_each(const SourceHeader& header, std::span<const format::Entry> entries,
+                           const LoadedVisit& visit);
     Result<std::vector<format::Entry>> coarsest(uint64_t most);
     Result<uint64_t> write_directory();
 

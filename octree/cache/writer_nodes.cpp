@@ -65,18 +65,25 @@ Result<std::vector<format::Entry>> CacheWriter::coarsest(uint64_t most) {
     return chosen;
 }
 
-Result<void> CacheWriter::visit_coarsest(const SourceHeader& header, uint64_t most, const NodeVisit& visit) {
-    LUCARNE_ASSIGN(const auto entries, coarsest(most));
+Result<void> CacheWriter::load_each(const SourceHeader& header, std::span<const format::Entry> entries,
+                                    const LoadedVisit& visit) {
     const Unfinished file(end_,
                           [this](uint64_t offset, std::span<std::byte> out) { return read_at(offset, out); });
     LUCARNE_ASSIGN(const PayloadReader reader, PayloadReader::create(file.path().string(), header));
     for (const format::Entry& entry : entries) {
         const NodeInfo info{.key = entry.key, .count = entry.count, .payload_bytes = entry.payload_bytes};
         const StoredPayload payload{entry.payload_offset, entry.checksum, entry.codec, entry.layout};
-        LUCARNE_ASSIGN(const NodeData data, reader.load(file, 0, info, payload));
-        if (!visit(header.root.of(entry.key), data)) break;
+        LUCARNE_ASSIGN(NodeData data, reader.load(file, 0, info, payload));
+        if (!visit(entry, data)) break;
     }
     return {};
+}
+
+Result<void> CacheWriter::visit_coarsest(const SourceHeader& header, uint64_t most, const NodeVisit& visit) {
+    LUCARNE_ASSIGN(const auto entries, coarsest(most));
+    return load_each(header, entries, [&](const format::Entry& entry, NodeData& data) {
+        return visit(header.root.of(entry.key), data);
+    });
 }
 
 Result<void> CacheWriter::visit_even(const SourceHeader& header, uint64_t most, const EvenVisit& visit) {
@@ -99,13 +106,7 @@ Result<void> CacheWriter::visit_even(const SourceHeader& header, uint64_t most, 
     LUCARNE_TRY(each_entry([&](const format::Entry& entry) {
         if (share[entry.key.level] > 0 && entry.count > 0) chosen.push_back(entry);
     }));
-    const Unfinished file(end_,
-                          [this](uint64_t offset, std::span<std::byte> out) { return read_at(offset, out); });
-    LUCARNE_ASSIGN(const PayloadReader reader, PayloadReader::create(file.path().string(), header));
-    for (const format::Entry& entry : chosen) {
-        const NodeInfo info{.key = entry.key, .count = entry.count, .payload_bytes = entry.payload_bytes};
-        const StoredPayload payload{entry.payload_offset, entry.checksum, entry.codec, entry.layout};
-        LUCARNE_ASSIGN(NodeData data, reader.load(file, 0, info, payload));
+    return load_each(header, chosen, [&](const format::Entry& entry, NodeData& data) {
         const double part = share[entry.key.level];
         data.count = static_cast<uint32_t>(part * data.count);
         data.records.resize(size_t{data.count} * header.schema.stride);
@@ -114,8 +115,8 @@ Result<void> CacheWriter::visit_even(const SourceHeader& header, uint64_t most, 
         const bool thinned = entry.key.level == last && (part < 1 || entry.child_mask != 0);
         visit(header.root.of(entry.key), data,
               thinned ? floor_at_prefix(floors, static_cast<float>(part)) : 0.0f);
-    }
-    return {};
+        return true;
+    });
 }
 
 }  // namespace lucarne::octree
