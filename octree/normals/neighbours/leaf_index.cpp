@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <glm/common.hpp>
@@ -14,6 +15,12 @@ namespace lucarne::octree {
 namespace {
 
 constexpr uint32_t kLeafPoints = 24;  ///< most points in a leaf; 16 is typical
+/// A search for at most so many points gives up where it meets this share of them in nodes over leaves: in
+/// surroundings that are too crowded it then costs no more than copying the points.
+constexpr size_t kLeastOfNode = 4;
+/// Floats that are rounded, subtracted, squared and added are off by less than this share.
+constexpr double kMoreThanSquared = 1 + 1e-5;
+constexpr float kLessThanSquared = 1 - 1e-5f;
 
 /// Computes Morton codes of positions within bounds, 21 bits an axis.
 struct MortonGrid {
@@ -64,7 +71,9 @@ std::vector<uint32_t> morton_order(std::span<const glm::dvec3> points) {
 }
 
 LeafIndex::LeafIndex(const PointArrays& points) : points_(&points) {
-    const MortonGrid grid(bounds_of_all(points));
+    const Box bounds = bounds_of_all(points);
+    centre_ = (bounds.min + bounds.max) * 0.5;
+    const MortonGrid grid(bounds);
     std::vector<uint64_t> codes(points.size());
     for (size_t i = 0; i < points.size(); ++i) codes[i] = grid.code(points[i]);
     cut(0, static_cast<uint32_t>(points.size()), codes);
@@ -99,25 +108,37 @@ Box LeafIndex::bounds_of_leaf(size_t leaf) const {
     return box;
 }
 
+/// Returns a corner relative to the centre as floats, moved by more than their rounding: up, if `outward` is
+/// 1, or down, if it is -1.
+glm::vec3 LeafIndex::relative(const glm::dvec3& p, float outward) const {
+    constexpr float kRounding = 0x1p-22f;
+    const glm::vec3 v(p - centre_);
+    return v + outward * kRounding * glm::abs(v);
+}
+
 void LeafIndex::build_tree() {
-    const Box none{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    constexpr float kFar = std::numeric_limits<float>::infinity();
     size_t count = first_.size() - 1;
     do {
         std::vector<Node> level((count + kFan - 1) / kFan);
         for (size_t i = 0; i < level.size() * kFan; ++i) {
-            Box box = i < count && levels_.empty() ? bounds_of_leaf(i) : none;
-            if (i < count && !levels_.empty()) {
+            glm::vec3 low(kFar), high(-kFar);
+            if (i < count && levels_.empty()) {
+                const Box box = bounds_of_leaf(i);
+                low = relative(box.min, -1);
+                high = relative(box.max, 1);
+            } else if (i < count) {
                 const Node& node = levels_.back()[i];
                 for (int axis = 0; axis < 3; ++axis) {
-                    box.min[axis] = *std::min_element(node.low[static_cast<size_t>(axis)].begin(),
-                                                      node.low[static_cast<size_t>(axis)].end());
-                    box.max[axis] = *std::max_element(node.high[static_cast<size_t>(axis)].begin(),
-                                                      node.high[static_cast<size_t>(axis)].end());
+                    low[axis] = *std::min_element(node.low[static_cast<size_t>(axis)].begin(),
+                                                  node.low[static_cast<size_t>(axis)].end());
+                    high[axis] = *std::max_element(node.high[static_cast<size_t>(axis)].begin(),
+                                                   node.high[static_cast<size_t>(axis)].end());
                 }
             }
             for (int axis = 0; axis < 3; ++axis) {
-                level[i / kFan].low[static_cast<size_t>(axis)][i % kFan] = box.min[axis];
-                level[i / kFan].high[static_cast<size_t>(axis)][i % kFan] = box.max[axis];
+                level[i / kFan].low[static_cast<size_t>(axis)][i % kFan] = low[axis];
+                level[i / kFan].high[static_cast<size_t>(axis)][i % kFan] = high[axis];
             }
         }
         count = level.size();
@@ -126,29 +147,27 @@ void LeafIndex::build_tree() {
 }
 
 bool LeafIndex::gather(const Box& box, double radius, uint32_t offset, size_t most, Tile& tile) const {
-    const double limit2 = radius * radius;
     const glm::vec3 low(box.min - tile.origin), high(box.max - tile.origin);
-    const auto tile_limit2 = static_cast<float>(limit2) * 1.00001f;  // tolerates the rounding of floats
-    std::array<Step, kMostSteps> stack;
-    size_t waiting = 0;
-    stack[waiting++] = {0, static_cast<uint32_t>(levels_.size() - 1), 0};
-    std::array<double, kFan> distance2;
-    while (waiting > 0) {
-        const Step step = stack[--waiting];
-        distances_of(levels_[step.level][step.node], box.min, box.max, distance2);
-        // Pushed in reverse, so that the first child is visited first and the tile keeps the points' order.
-        if (step.level > 0) {
-            for (size_t i = kFan; i-- > 0;)
-                if (distance2[i] <= limit2)
-                    stack[waiting++] = {0, step.level - 1, static_cast<uint32_t>(step.node * kFan + i)};
-            continue;
+    const auto limit2 = static_cast<float>(
+        std::min(radius * radius * kMoreThanSquared, double{std::numeric_limits<float>::max()}));
+    const Vicinity vicinity{relative(box.min, -1), relative(box.max, 1), limit2};
+    std::vector<uint32_t>&nodes = tile.nodes, &children = tile.children;
+    nodes.assign(1, 0);
+    for (size_t level = levels_.size(); --level > 0;) {
+        children.resize(std::max(children.size(), (nodes.size() + 1) * kFan));
+        const size_t count =
+            children_within(levels_[level], nodes.data(), nodes.size(), vicinity, children.data());
+        if (count > most / kLeastOfNode) return false;
+        nodes.assign(children.begin(), children.begin() + static_cast<ptrdiff_t>(count));
+    }
+    std::array<uint32_t, 2 * kFan> leaves;
+    for (const uint32_t node : nodes) {
+        const size_t count = children_within(levels_[0], &node, 1, vicinity, leaves.data());
+        for (size_t i = 0, end; i < count; i = end) {
+            for (end = i + 1; end < count && leaves[end] == leaves[end - 1] + 1;) ++end;
+            tile.append(*points_, first_[leaves[i]], first_[leaves[end - 1] + 1], offset, low, high, limit2);
         }
-        for (size_t i = 0; i < kFan; ++i) {
-            const size_t leaf = step.node * kFan + i;
-            if (!(distance2[i] <= limit2) || leaf + 1 >= first_.size()) continue;
-            tile.append(*points_, first_[leaf], first_[leaf + 1], offset, low, high, tile_limit2);
-            if (tile.count > most) return false;
-        }
+        if (tile.count > most) return false;
     }
     return true;
 }
@@ -165,10 +184,11 @@ size_t LeafIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> ne
         for (; at > 0 && nearest[at - 1].distance2 > d2; --at) nearest[at] = nearest[at - 1];
         nearest[at] = {d2, index};
     };
+    const glm::vec3 low = relative(query, -1), high = relative(query, 1);
     std::array<Step, kMostSteps> stack;
     size_t waiting = 0;
     stack[waiting++] = {0, static_cast<uint32_t>(levels_.size()), 0};
-    std::array<double, kFan> distance2;
+    std::array<float, kFan> distance2;
     while (waiting > 0) {
         const Step step = stack[--waiting];
         if (step.distance2 >= worst()) continue;
@@ -179,7 +199,8 @@ size_t LeafIndex::merge_nearest(const glm::dvec3& query, std::span<Neighbour> ne
             }
             continue;
         }
-        distances_of(levels_[step.level - 1][step.node], query, query, distance2);
+        distances_of(levels_[step.level - 1][step.node], low, high, distance2);
+        for (float& d2 : distance2) d2 = d2 * kLessThanSquared - std::numeric_limits<float>::min();
         const size_t below = waiting;
         for (size_t i = kFan; i-- > 0;) {
             if (!(distance2[i] < worst())) continue;

@@ -5,7 +5,7 @@
 namespace lucarne::octree {
 
 /// Points along a Morton curve, divided at the borders of octree cells into leaves of a few points, and a
-/// tree of boxes over the leaves, eight to a node. Besides the points it holds only the boxes: 4 bytes a
+/// tree of boxes over the leaves, eight to a node. Besides the points it holds only the boxes: 2 bytes a
 /// point. A search visits whole leaves, for all queries of a leaf at once.
 class LeafIndex final : public PointIndex {
  public:
@@ -22,7 +22,7 @@ class LeafIndex final : public PointIndex {
     using Node = Boxes;  ///< bounds of the children
     /// A box of the tree that a search still has to visit: a node of `level`, or a leaf.
     struct Step {
-        double distance2;
+        float distance2;
         uint32_t level, node;
     };
     static constexpr size_t kMostSteps = 12 * kFan;  ///< enough for 8^11 leaves
@@ -30,7 +30,10 @@ class LeafIndex final : public PointIndex {
     void build_tree();
     Box bounds_of_leaf(size_t leaf) const;
 
+    glm::vec3 relative(const glm::dvec3& p, float outward) const;
+
     const PointArrays* points_;
+    glm::dvec3 centre_{0.0};  ///< boxes are relative to it
     std::vector<uint32_t> first_;
     std::vector<std::vector<Node>> levels_;  ///< the first level is over the leaves, the last is one node
 };

@@ -27,7 +27,7 @@ constexpr Words kLane{0, 1, 2, 3, 4, 5, 6, 7};
 
 namespace plain {
 #include "octree/normals/neighbours/tile_loops.inl"
-}
+}  // namespace plain
 
 #ifdef LUCARNE_HAS_WIDE
 /// For each set of eight lanes: the numbers of the lanes in it, in ascending order, four bits each.
@@ -164,6 +164,18 @@ Moments moments_of(const Patch& patch) {
     return LUCARNE_CALL(moments, patch);
 }
 
+Moments moments_of_slab(const Patch& patch, const Slab& slab, bool others) {
+    return LUCARNE_CALL(slab_moments, patch, slab, others);
+}
+
+std::array<int32_t, kLanes> counts_near(const Patch& patch, size_t first, size_t step, float limit2) {
+    return LUCARNE_CALL(near_counts, patch, first, step, limit2);
+}
+
+SectorRun flattest_run(const Patch& patch, const TangentFrame& frame, size_t least) {
+    return LUCARNE_CALL(flattest, patch, frame, least);
+}
+
 Range heights_over(const Patch& patch, const glm::vec3& normal, std::vector<float>& heights) {
     heights.resize(std::max(heights.size(), padded(patch.count)));
     return LUCARNE_CALL(heights, patch, normal, heights.data());
@@ -200,9 +212,14 @@ std::array<size_t, 4> nearest_by_quarter(const Patch& patch, const TangentFrame&
     return LUCARNE_CALL(nearest_in_quarters, patch, frame, slope2);
 }
 
-void distances_of(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
-                  std::array<double, kBoxes>& distance2) {
+void distances_of(const Boxes& boxes, const glm::vec3& low, const glm::vec3& high,
+                  std::array<float, kBoxes>& distance2) {
     LUCARNE_CALL(box_distances, boxes, low, high, distance2);
+}
+
+size_t children_within(const std::vector<Boxes>& level, const uint32_t* nodes, size_t count,
+                       const Vicinity& vicinity, uint32_t* children) {
+    return LUCARNE_CALL(near_children, level, nodes, count, vicinity, children);
 }
 
 float least_of(const Nearness& nearness) {

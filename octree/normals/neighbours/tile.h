@@ -36,7 +36,8 @@ struct Tile {
     glm::dvec3 origin{0.0};
     size_t count = 0;
     std::vector<float> x, y, z;
-    std::vector<uint32_t> index;  ///< indices of the points
+    std::vector<uint32_t> index;            ///< indices of the points
+    std::vector<uint32_t> nodes, children;  ///< scratch memory of PointIndex::gather
 
     void clear(const glm::dvec3& new_origin);
     void make_room(size_t more);  ///< for `more` points beyond `count`, and kLanes
@@ -75,6 +76,16 @@ struct Moments {
     std::array<float, 6> products{};
 };
 Moments moments_of(const Patch& patch);
+/// Sums over the points whose height over a plane through the centre is within `limit` of `level`, and over
+/// the centre itself; `others`: over all other points.
+struct Slab {
+    glm::vec3 normal;
+    float level, limit;
+};
+Moments moments_of_slab(const Patch& patch, const Slab& slab, bool others);
+/// Returns how many points of a patch are nearer than the root of `limit2` to each of eight points first,
+/// first + step, ..., themselves included. Points beyond the last one have none.
+std::array<int32_t, kLanes> counts_near(const Patch& patch, size_t first, size_t step, float limit2);
 
 /// Computes the heights over the plane through the centre, padded as the patch. Returns the lowest and the
 /// highest.
@@ -91,14 +102,24 @@ struct Gap {
 };
 Gap gap_at(const std::vector<float>& heights, size_t count, const Range& range, float middle);
 
-/// Eight boxes, one array per side.
+/// Eight boxes, one array per side. Their sides are rounded outward to floats.
 inline constexpr size_t kBoxes = 8;
 struct Boxes {
-    std::array<std::array<double, kBoxes>, 3> low, high;
+    std::array<std::array<float, kBoxes>, 3> low, high;
 };
-/// Computes the squared distances of boxes from a box.
-void distances_of(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
-                  std::array<double, kBoxes>& distance2);
+/// Computes the squared distances of boxes from a box, up to rounding.
+void distances_of(const Boxes& boxes, const glm::vec3& low, const glm::vec3& high,
+                  std::array<float, kBoxes>& distance2);
+/// A box, and how far from it boxes are looked for.
+struct Vicinity {
+    glm::vec3 low, high;
+    float limit2;
+};
+/// Writes the children of `nodes` that are in a vicinity to `children`, in the same order: child i of a node
+/// n has the number 8 n + i, and the box i of level[n]. `children` has room for eight a node. Returns their
+/// number.
+size_t children_within(const std::vector<Boxes>& level, const uint32_t* nodes, size_t count,
+                       const Vicinity& vicinity, uint32_t* children);
 
 /// Directions about a point in a plane. The first is turned by .2113 of a step, a root of the second
 /// Bernoulli polynomial. With this offset a sum over directions integrates functions with kinks at multiples
@@ -135,6 +156,18 @@ struct Slope {
 /// root of `beyond2`, or the tile's count.
 size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,
                     Nearness& nearness);
+
+/// A run of kRun sectors of kSectors about the centre of a patch: 112 degrees. A corner of three planes
+/// leaves 90.
+inline constexpr size_t kSectors = 16, kRun = 5;
+struct SectorRun {
+    Moments moments;  ///< of the points in the run, without the centre
+    /// How badly a plane fits to them and to the centre: the variance of the points' heights plus the squared
+    /// height of the centre.
+    float misfit = 0;
+};
+/// Returns the run that fits to a plane best; no points if there are fewer than `least` in every run.
+SectorRun flattest_run(const Patch& patch, const TangentFrame& frame, size_t least);
 
 /// Returns the nearest point of a patch in each quarter of the plane that is low enough over it, without the
 /// point itself; the patch's count where there is none.

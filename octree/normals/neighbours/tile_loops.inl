@@ -129,10 +129,11 @@ LUCARNE_INLINE float total(const Lanes& v) {
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-[[gnu::noinline]] Moments moments(const Patch& patch) {
+/// Sums over points, lane by lane.
+struct MomentLanes {
     Lanes sx{}, sy{}, sz{}, xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
-    for (size_t i = 0; i < patch.count; i += kLanes) {
-        const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]);
+
+    LUCARNE_INLINE void add(const Lanes& x, const Lanes& y, const Lanes& z) {
         sx += x;
         sy += y;
         sz += z;
@@ -143,9 +144,58 @@ LUCARNE_INLINE float total(const Lanes& v) {
         xz += x * z;
         yz += y * z;
     }
-    return {patch.count,
-            {total(sx), total(sy), total(sz)},
-            {total(xx), total(yy), total(zz), total(xy), total(xz), total(yz)}};
+    LUCARNE_INLINE Moments sums(size_t count) const {
+        return {count,
+                {total(sx), total(sy), total(sz)},
+                {total(xx), total(yy), total(zz), total(xy), total(xz), total(yz)}};
+    }
+};
+
+[[gnu::noinline]] Moments moments(const Patch& patch) {
+    MomentLanes lanes;
+    for (size_t i = 0; i < patch.count; i += kLanes)
+        lanes.add(load<Lanes>(&patch.x[i]), load<Lanes>(&patch.y[i]), load<Lanes>(&patch.z[i]));
+    return lanes.sums(patch.count);
+}
+
+LUCARNE_INLINE size_t total(const Words& v) {
+    size_t sum = 0;
+    for (size_t i = 0; i < kLanes; ++i) sum += static_cast<size_t>(v[i]);
+    return sum;
+}
+
+[[gnu::noinline]] Moments slab_moments(const Patch& patch, const Slab& slab, bool others) {
+    MomentLanes lanes;
+    Words counts{};
+    const Lanes none{};
+    const Words outside = (others ? -1 : 0) - Words{};
+    for (size_t i = 0; i < patch.count; i += kLanes) {
+        const Lanes x = load<Lanes>(&patch.x[i]), y = load<Lanes>(&patch.y[i]), z = load<Lanes>(&patch.z[i]);
+        const Lanes off = x * slab.normal.x + y * slab.normal.y + z * slab.normal.z - slab.level;
+        const Words in = ((off <= slab.limit) & (off >= -slab.limit)) | (load<Lanes>(&patch.distance2[i]) == 0.0f),
+                    chosen = (in ^ outside) & (kLane < static_cast<int32_t>(patch.count - i));
+        lanes.add(chosen ? x : none, chosen ? y : none, chosen ? z : none);
+        counts -= chosen;
+    }
+    return lanes.sums(total(counts));
+}
+
+[[gnu::noinline]] std::array<int32_t, kLanes> near_counts(const Patch& patch, size_t first, size_t step,
+                                                          float limit2) {
+    Lanes x{}, y{}, z{};
+    const size_t some = std::min(kLanes, (patch.count - first + step - 1) / step);
+    for (size_t lane = 0; lane < some; ++lane) {
+        const size_t i = first + lane * step;
+        x[lane] = patch.x[i], y[lane] = patch.y[i], z[lane] = patch.z[i];
+    }
+    Words counts{};
+    for (size_t i = 0; i < patch.count; ++i) {
+        const Lanes dx = x - patch.x[i], dy = y - patch.y[i], dz = z - patch.z[i];
+        counts -= dx * dx + dy * dy + dz * dz < limit2;
+    }
+    std::array<int32_t, kLanes> found;
+    store(found.data(), kLane < static_cast<int32_t>(some) ? counts : Words{});
+    return found;
 }
 
 [[gnu::noinline]] Range heights(const Patch& patch, const glm::vec3& normal, float* heights) {
@@ -230,9 +280,7 @@ LUCARNE_INLINE Lanes along(const glm::vec3& axis, const Lanes& x, const Lanes& y
         cuts.take((in | (all & valid)) & apart, u, v, in ? length2 : length2 + h * h, nearness);
     }
     cuts.apply(nearness);
-    size_t sum = 0;
-    for (size_t i = 0; i < kLanes; ++i) sum += static_cast<size_t>(here[i]);
-    return sum;
+    return total(here);
 }
 
 /// Returns the slot of the least value of all lanes; among equal ones, the first slot.
@@ -292,17 +340,35 @@ LUCARNE_INLINE size_t slot_of_least(const Lanes& least, const Words& slot) {
     return slots;
 }
 
-[[gnu::noinline]] void box_distances(const Boxes& boxes, const glm::dvec3& low, const glm::dvec3& high,
-                                     std::array<double, kBoxes>& distance2) {
-    Doubles sum{};
-    const Doubles none{};
+/// The squared distances of boxes from a box.
+LUCARNE_INLINE Lanes apart(const Boxes& boxes, const glm::vec3& low, const glm::vec3& high) {
+    Lanes sum{};
+    const Lanes none{};
     for (size_t axis = 0; axis < 3; ++axis) {
-        const Doubles under = load<Doubles>(boxes.low[axis].data()) - high[static_cast<int>(axis)],
-                      over = low[static_cast<int>(axis)] - load<Doubles>(boxes.high[axis].data());
-        const Doubles most = under > over ? under : over, apart = most > none ? most : none;
-        sum += apart * apart;
+        const Lanes under = load<Lanes>(boxes.low[axis].data()) - high[static_cast<int>(axis)],
+                    over = low[static_cast<int>(axis)] - load<Lanes>(boxes.high[axis].data());
+        const Lanes gap = greater(greater(under, over), none);
+        sum += gap * gap;
     }
-    store(distance2.data(), sum);
+    return sum;
+}
+
+[[gnu::noinline]] void box_distances(const Boxes& boxes, const glm::vec3& low, const glm::vec3& high,
+                                     std::array<float, kBoxes>& distance2) {
+    store(distance2.data(), apart(boxes, low, high));
+}
+
+[[gnu::noinline]] size_t near_children(const std::vector<Boxes>& level, const uint32_t* nodes, size_t count,
+                                       const Vicinity& vicinity, uint32_t* children) {
+    static_assert(kBoxes == kLanes);
+    size_t found = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const Lanes distance2 = apart(level[nodes[i]], vicinity.low, vicinity.high);
+        const Packer packer(distance2 <= vicinity.limit2);
+        packer.put(kLane + static_cast<int32_t>(nodes[i] * kBoxes), &children[found]);
+        found += packer.count();
+    }
+    return found;
 }
 
 [[gnu::noinline]] float least(const Nearness& nearness) {
@@ -325,3 +391,5 @@ LUCARNE_INLINE size_t slot_of_least(const Lanes& least, const Words& slot) {
     const float all = total(count);
     return all > 0 ? total(sum) / all : 0.0f;
 }
+
+#include "octree/normals/neighbours/sector_loops.inl"

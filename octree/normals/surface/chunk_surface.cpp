@@ -116,17 +116,18 @@ class SiteEstimator {
             const size_t most = std::min(kUsualWindow * (usual_ - 1), kMostNearest - 1) + 1;
             // The window was narrowed: it held too many points.
             const bool cut_short = seen < kWindow * reach;
+            further_.clear();
             if (window_.count >= most) {
-                const size_t all = window_.count;
-                further_.take_nearest(window_, most);  // the window may hold very many points
-                if (window_.count < all) seen = std::sqrt(double{further_.distance2[further_.count - 1]});
+                if (window_.count > kMostWindow * usual_ || may_stand_apart(nearest, window_)) {
+                    const size_t all = window_.count;
+                    further_.take_nearest(window_, most);  // the window may hold very many points
+                    if (window_.count < all) seen = std::sqrt(double{further_.distance2[further_.count - 1]});
+                }
             } else if (cut_short || !(fit.deviation < kPoorDeviation)) {  // or nearly isolated, or on a line
                 around.nearest(most, further_);
                 const double known = std::sqrt(double{further_.distance2[further_.count - 1]});
                 if (!around.knows(known)) return known;
                 patch = improve(fit, fitter_.fit(further_, spacing), further_, *patch);
-            } else {
-                further_.clear();
             }
             // A few points in the air together are each other's neighbours; more neighbours show that they
             // are isolated.
@@ -134,7 +135,8 @@ class SiteEstimator {
                 apart = goes_on_with(further_);
                 if (!apart) return leave_out(site);
             }
-            if (bends) side = creases_.fit(window_, fit.normal, spacing);
+            if (bends && fit.deviation < kPoorDeviation)
+                side = fit_side(window_, fit.normal, fit.variance, spacing);
             if (side && !is_better(*side, fit)) side.reset();
             if (side) {
                 patch = &window_;
@@ -199,12 +201,14 @@ class SiteEstimator {
     }
 
     /// The number of points within `times` the reach, divided by that of a sheet as sparse as the site's
-    /// neighbourhood.
+    /// neighbourhood; 0 where it is certainly not more than kCrowded.
     float crowding_at(ChunkNeighbours::Surroundings& around, double reach, double times) {
-        const double radius = around.within(times * reach, window_);
-        if (radius < times * reach) return std::numeric_limits<float>::infinity();  // too many to gather
-        return static_cast<float>(static_cast<double>(window_.count) /
-                                  (times * times * static_cast<double>(usual_)));
+        const auto view = around.around(times * reach);
+        if (view.radius < times * reach) return std::numeric_limits<float>::infinity();  // too many to gather
+        const double sheet = times * times * static_cast<double>(usual_);
+        if (static_cast<double>(view.tile.count) <= kCrowded * sheet) return 0;
+        around.within(times * reach, window_);
+        return static_cast<float>(static_cast<double>(window_.count) / sheet);
     }
 
     double leave_out(uint32_t site) {
@@ -221,8 +225,7 @@ class SiteEstimator {
 
     static bool is_better(const Side& side, const SurfaceFit& fit) {
         const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), fit.normal));
-        return fit.deviation < kPoorDeviation && side.deviation < fit.deviation &&
-               side.variance < kFlatter * fit.variance && turn > kLeastTurn;
+        return side.deviation < fit.deviation && side.variance < kFlatter * fit.variance && turn > kLeastTurn;
     }
 
     /// Takes the window around a site. Returns its radius.
@@ -285,7 +288,6 @@ class SiteEstimator {
     std::span<const double> steps_;
     ChunkSurface& surface_;
     SurfaceFitter fitter_;
-    CreaseFitter creases_;
     Patch window_, further_;
     std::vector<float> heights_;
     std::vector<uint32_t> apart_;

@@ -20,7 +20,9 @@ struct Side {
     float offset = 0;       ///< other . x = offset on that plane; x is relative to the point
 };
 
-/// Finds the side of a crease on which a point lies. Holds scratch memory: use one per thread.
+/// Finds the side of a crease on which a point lies. `normal` and `variance`: of the plane of the whole patch
+/// and of the heights over it. `spacing`: the distance between points. Returns nothing if there is no crease,
+/// or if there are too few points.
 ///
 /// Every straight or bent crease near the point leaves a sector around the point that the crease does not cut
 /// (as the sectors of an adaptive filter: Nagao and Matsuyama 1979; for points, a neighbourhood shifted away
@@ -28,18 +30,6 @@ struct Side {
 /// are fitted to all runs of kRun sectors, and the run whose points, and the point itself, lie closest to
 /// their plane wins. Its plane is fitted again to all points that lie in it. The moments of sectors add up,
 /// so all runs together cost little more than one fit.
-class CreaseFitter {
- public:
-    /// `normal`: of the plane of the whole patch. `spacing`: the distance between points. Returns nothing if
-    /// there is no crease, or if there are too few points.
-    std::optional<Side> fit(const Patch& patch, const glm::vec3& normal, float spacing);
-
- private:
-    /// Divides the patch into the points in the plane of `own` and the others.
-    void divide(const Patch& patch, const Moments& own, const Plane& plane, float limit);
-
-    Patch own_, others_;
-    std::vector<float> heights_;
-};
+std::optional<Side> fit_side(const Patch& patch, const glm::vec3& normal, float variance, float spacing);
 
 }  // namespace lucarne::octree

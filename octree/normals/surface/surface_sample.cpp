@@ -24,6 +24,9 @@ constexpr float kIsolated = 0.75f;
 /// the distance to the 8th neighbour with the neighbours' distances to their own 2nd. The ratio is about 2
 /// within a surface, 3 at its edge, and 4 along the lines of the most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
+/// An outlier has half of its neighbours denser than itself. So of kAsked of them, less than kDenser are with
+/// a chance of 1/500; within a surface, kDenser or more are with a chance of 1/40 (Poisson).
+constexpr size_t kAsked = 16, kDenser = 3;
 // The ratio of an outlier: not one of 200,000 points of a random pattern has it.
 constexpr float kSparser = 7.0f;
 /// The ratio of an outlier whose neighbours have no clear plane.
@@ -59,11 +62,16 @@ float their_reach2(const Patch& near, size_t i) {
     return second;
 }
 
-/// Whether their_reach2(near, i) is less than `limit2`.
-bool reaches_within(const Patch& near, size_t i, float limit2) {
-    size_t within = 0;  // itself included
-    for (size_t j = 1; j < near.count; ++j) within += distance2(near, i, j) < limit2;
-    return within > kTheirRank;
+/// Returns how many of eight points of a patch, from `first` on in steps of `step`, have their kTheirRank-th
+/// nearest among the neighbours nearer than the root of `limit2`. Neither the point itself, whose distance is
+/// 0, nor its being near counts.
+size_t count_denser(const Patch& near, size_t first, size_t step, float limit2) {
+    const auto counts = counts_near(near, first, step, limit2);
+    size_t denser = 0;
+    for (size_t k = 0, i = first; k < counts.size() && i < near.count; ++k, i += step)
+        denser += near.distance2[i] > 0 &&
+                  static_cast<size_t>(counts[k]) > kTheirRank + (near.distance2[i] < limit2);
+    return denser;
 }
 
 /// Whether the neighbourhood of the point is much sparser than those of its neighbours, judged by the
@@ -72,12 +80,9 @@ bool reaches_within(const Patch& near, size_t i, float limit2) {
 bool stands_apart(const Patch& near, float sparser) {
     if (near.count <= kOwnRank) return false;
     const float limit = near.distance2[kOwnRank] / (sparser * sparser);
-    bool may_be = false;
-    for (size_t i = near.count - 1; !may_be && i >= kOwnRank; i -= kOwnRank)
-        may_be = reaches_within(near, i, limit);
-    if (!may_be) return false;
+    if (count_denser(near, kOwnRank, kOwnRank, limit) == 0) return false;
     size_t denser = 0;
-    for (size_t i = 1; i < near.count; ++i) denser += reaches_within(near, i, limit);
+    for (size_t i = 1; i < near.count; i += kLanes) denser += count_denser(near, i, 1, limit);
     return 2 * denser >= near.count - 1;
 }
 
@@ -153,6 +158,14 @@ bool is_stray(const Patch& nearest, size_t usual, bool in_doubt) {
     if (near <= kOwnRank) return false;
     const bool sees_from_afar = nearest.distance2[1] > kIsolated * kIsolated * nearest.distance2[near - 1];
     return sees_from_afar || stands_apart(nearest, in_doubt ? kSparserInDoubt : kSparser);
+}
+
+bool may_stand_apart(const Patch& nearest, const Patch& window) {
+    if (nearest.count <= kOwnRank) return false;
+    const float limit = nearest.distance2[kOwnRank] / (kSparserInDoubt * kSparserInDoubt);
+    const size_t step = std::max<size_t>(1, window.count / kAsked);
+    const size_t denser = count_denser(window, 0, step, limit);
+    return denser > 0 && denser + count_denser(window, kLanes * step, step, limit) >= kDenser;
 }
 
 float share_of_neighbours(const Patch& nearest) {

@@ -55,6 +55,9 @@ class SurfaceFitter {
 /// first): either the nearest of the first `usual` is hardly nearer than the farthest, or the neighbours are
 /// much closer to each other than to the point. `in_doubt`: its normal is uncertain.
 bool is_stray(const Patch& nearest, size_t usual, bool in_doubt);
+/// Whether is_stray(), in doubt, may be true for a point with more neighbours than `nearest`: judged by a few
+/// of `window`, all points within a radius in any order. Much cheaper than finding the nearest of them.
+bool may_stand_apart(const Patch& nearest, const Patch& window);
 /// Returns the typical share of the surface of the neighbours of a point in the air. The point is drawn with
 /// it, because it has none of its own.
 float share_of_neighbours(const Patch& nearest);
