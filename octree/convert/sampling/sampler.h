@@ -38,6 +38,9 @@ class Sampler {
     void insert(uint32_t point);
     /// Returns the squared distance to some taken point nearer than the radius, infinity if there is none.
     float conflict_around(const Point& point) const;
+    float conflict_in(uint32_t first, const Point& point) const;  ///< the same in one bucket
+    static float widening(size_t taken, size_t most);
+    float wide_enough(float radius, size_t most);
     /// Takes points that fit from `from`, in order, and moves the others to the front of `rest`.
     void take(std::vector<uint32_t>& from, std::vector<uint32_t>& rest, uint8_t pass);
 
