@@ -172,6 +172,12 @@ std::array<int32_t, kLanes> counts_near(const Patch& patch, size_t first, size_t
     return LUCARNE_CALL(near_counts, patch, first, step, limit2);
 }
 
+void second_nearest(const Patch& patch, std::vector<float>& distance2) {
+    distance2.resize(padded(patch.count));
+    LUCARNE_CALL(second_least, patch, distance2.data());
+    distance2.resize(patch.count - 1);
+}
+
 SectorRun flattest_run(const Patch& patch, const TangentFrame& frame, size_t least) {
     return LUCARNE_CALL(flattest, patch, frame, least);
 }

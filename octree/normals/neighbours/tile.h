@@ -157,6 +157,10 @@ struct Slope {
 size_t cut_by_slope(const Tile& tile, const Slope& slope, const TangentFrame& frame, float beyond2,
                     Nearness& nearness);
 
+/// Computes the squared distances of all neighbours of a patch, that is of all points but the first, to their
+/// second nearest among each other.
+void second_nearest(const Patch& patch, std::vector<float>& distance2);
+
 /// A run of kRun sectors of kSectors about the centre of a patch: 112 degrees. A corner of three planes
 /// leaves 90.
 inline constexpr size_t kSectors = 16, kRun = 5;

@@ -198,6 +198,23 @@ LUCARNE_INLINE size_t total(const Words& v) {
     return found;
 }
 
+[[gnu::noinline]] void second_least(const Patch& patch, float* distance2) {
+    const Lanes most = std::numeric_limits<float>::max() - Lanes{};
+    for (size_t block = 1; block < patch.count; block += kLanes) {
+        const Lanes x = load<Lanes>(&patch.x[block]), y = load<Lanes>(&patch.y[block]),
+                    z = load<Lanes>(&patch.z[block]);
+        Lanes first = most, second = most;
+        for (size_t i = 1; i < patch.count; ++i) {
+            const Lanes dx = x - patch.x[i], dy = y - patch.y[i], dz = z - patch.z[i];
+            const Lanes all = dx * dx + dy * dy + dz * dz;
+            const Lanes d2 = kLane == static_cast<int32_t>(i) - static_cast<int32_t>(block) ? most : all;
+            second = lesser(second, greater(first, d2));
+            first = lesser(first, d2);
+        }
+        store(&distance2[block - 1], second);
+    }
+}
+
 [[gnu::noinline]] Range heights(const Patch& patch, const glm::vec3& normal, float* heights) {
     Lanes low{}, high{};
     for (size_t i = 0; i < patch.count; i += kLanes) {

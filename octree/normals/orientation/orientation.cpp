@@ -19,6 +19,7 @@ constexpr size_t kGrades = 512;    ///< steps of doubt in the counting sort of e
 constexpr float kSteep = 0.5f;     ///< squared sine of an offset's angle to a plane: 45 degrees
 constexpr float kSmooth = 0.1f;    ///< doubt up to which a single edge is trusted: 25 degrees
 constexpr size_t kVotesPerPair = 256;
+constexpr std::ptrdiff_t kAhead = 12;  ///< how many edges ahead memory is asked for
 
 bool has_normal(const glm::vec3& n) {
     return n != glm::vec3(0.0f);
@@ -95,8 +96,19 @@ ChunkOrientation orient_chunk(const ChunkNeighbours& neighbours, ChunkSurface& s
     const auto target = [&](uint32_t slot) { return surface.edges[slot / kSiteEdges][slot % kSiteEdges]; };
     const auto crease = std::find_if(sorted.slots.begin(), sorted.slots.end(),
                                      [&](uint32_t slot) { return sorted.doubt(slot) > kSmooth; });
-    for (const uint32_t slot : std::span(sorted.slots.begin(), crease))
-        forest.unite(slot / kSiteEdges, target(slot), sorted.opposite(slot));
+    // Edges of equal doubt are all over the chunk, so memory is asked for what the next ones need: first for
+    // their ends, later for the links of these.
+    const auto ahead = [&](auto at, std::ptrdiff_t steps) {
+        return *(crease - at > steps ? at + steps : at);
+    };
+    for (auto at = sorted.slots.begin(); at != crease; ++at) {
+        const uint32_t far = ahead(at, 2 * kAhead), near = ahead(at, kAhead);
+        __builtin_prefetch(&surface.edges[far / kSiteEdges][far % kSiteEdges]);
+        __builtin_prefetch(&sorted.grade[far]);
+        forest.prefetch(near / kSiteEdges);
+        forest.prefetch(target(near));
+        forest.unite(*at / kSiteEdges, target(*at), sorted.opposite(*at));
+    }
     SignVotes votes;
     for (const uint32_t slot : std::span(crease, sorted.slots.end())) {
         const auto a = forest.find(slot / kSiteEdges), b = forest.find(target(slot));

@@ -32,6 +32,7 @@ class SignedForest {
         }
         return {node, opposite};
     }
+    void prefetch(uint32_t node) const { __builtin_prefetch(&links_[node], 1); }
     /// Joins the two sets so that `a` and `b` have the same or the opposite orientation. Returns false if
     /// they were in one set. The root of the smaller number stays root.
     bool unite(uint32_t a, uint32_t b, bool opposite) {

@@ -31,12 +31,6 @@ constexpr float kLine = 0.05f;
 /// If the heights in the window have this many times the variance of those of the neighbours, the surface
 /// bends. Noise has the same in both.
 constexpr float kBend = 1.5f;
-/// The side of a crease is that much flatter (variance of heights) than all points in the window. Of noise,
-/// too, some part is flatter than the whole, but only by half.
-constexpr float kFlatter = 0.3f;
-/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
-/// degrees.
-constexpr float kLeastTurn = 0.64f;
 /// A share is at most kMostShares of those of the neighbours, except that of a sparse point in the plane of a
 /// dense patch. Only shares of more than kWide times the mean of the neighbourhood are compared.
 constexpr float kMostShares = 4, kWide = 1.5f;
@@ -135,9 +129,7 @@ class SiteEstimator {
                 apart = goes_on_with(further_);
                 if (!apart) return leave_out(site);
             }
-            if (bends && fit.deviation < kPoorDeviation)
-                side = fit_side(window_, fit.normal, fit.variance, spacing);
-            if (side && !is_better(*side, fit)) side.reset();
+            if (bends && fit.deviation < kPoorDeviation) side = fit_side(window_, fit, spacing);
             if (side) {
                 patch = &window_;
                 whole = fit.normal;
@@ -221,11 +213,6 @@ class SiteEstimator {
         if (!(other.deviation < fit.deviation)) return &old;
         fit = other;
         return &patch;
-    }
-
-    static bool is_better(const Side& side, const SurfaceFit& fit) {
-        const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), fit.normal));
-        return side.deviation < fit.deviation && side.variance < kFlatter * fit.variance && turn > kLeastTurn;
     }
 
     /// Takes the window around a site. Returns its radius.

@@ -7,7 +7,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
 
 namespace lucarne::octree {
@@ -24,9 +23,15 @@ constexpr float kInliers = 3.0f, kInSpacing = 0.05f;
 constexpr float kLeastOffset = 0.1f;  ///< in spacings: a point's cell reaches at least so far to the crease
 constexpr double kTurned = 0.91;      ///< largest |n.n'| of two planes at a crease: 24 degrees
 constexpr int kRefits = 2;
-/// A run that fits its plane and the point worse than this share of the variance of all points is not the
-/// start of a side. Of the sides that are used in the end (kFlatter), 99 of 100 begin with a flatter one.
+/// The side of a crease is that much flatter (variance of heights) than the whole. Of noise, too, some part
+/// is flatter than the whole, but only by half.
+constexpr float kFlatter = 0.3f;
+/// A run, or a first refit, that is not flatter than this is not the start of a side. Of the sides that are
+/// used in the end, 99 of 100 begin with a flatter run.
 constexpr float kFlatRun = 0.5f;
+/// Least |n.n'| of a side and the whole window: 50 degrees. Between two sides at right angles it is 45
+/// degrees.
+constexpr float kLeastTurn = 0.64f;
 
 /// The variance of heights over a plane that was fitted to `count` points.
 double variance_of(const Plane& plane, size_t count) {
@@ -43,11 +48,16 @@ glm::dvec3 middle_of(const Moments& m) {
     return glm::dvec3(m.sum[0], m.sum[1], m.sum[2]) / static_cast<double>(m.count);
 }
 
+bool is_better(const Side& side, const SurfaceFit& whole) {
+    const float turn = std::abs(glm::dot(glm::vec3(side.plane.normal), whole.normal));
+    return side.deviation < whole.deviation && side.variance < kFlatter * whole.variance && turn > kLeastTurn;
+}
+
 }  // namespace
 
-std::optional<Side> fit_side(const Patch& patch, const glm::vec3& normal, float variance, float spacing) {
-    const SectorRun run = flattest_run(patch, tangent_frame(normal), kLeastRun);
-    if (run.moments.count == 0 || run.misfit > kFlatRun * variance) return std::nullopt;
+std::optional<Side> fit_side(const Patch& patch, const SurfaceFit& whole, float spacing) {
+    const SectorRun run = flattest_run(patch, tangent_frame(whole.normal), kLeastRun);
+    if (run.moments.count == 0 || run.misfit > kFlatRun * whole.variance) return std::nullopt;
     Moments own = run.moments;
     Side side;
     side.plane = plane_of(own);
@@ -62,13 +72,15 @@ std::optional<Side> fit_side(const Patch& patch, const glm::vec3& normal, float 
             return std::nullopt;
         side.plane = plane_of(own);
         side.count = own.count;
+        side.variance = static_cast<float>(variance_of(side.plane, side.count));
+        if (side.variance > kFlatRun * whole.variance) return std::nullopt;
     }
+    side.deviation = deviation_of(side.plane, side.count);
+    if (!is_better(side, whole)) return std::nullopt;
     const Moments rest = moments_of_slab(patch, slab, true);
     const Plane other = plane_of(rest);
     if (std::abs(glm::dot(other.normal, side.plane.normal)) > kTurned) return std::nullopt;
 
-    side.variance = static_cast<float>(variance_of(side.plane, side.count));
-    side.deviation = deviation_of(side.plane, side.count);
     const float limit = limit_of(side.plane, side.count, spacing);
     const glm::dvec3 middle = middle_of(own);
     const auto level = static_cast<float>(glm::dot(side.plane.normal, middle));

@@ -6,6 +6,7 @@
 
 #include "octree/normals/neighbours/tile.h"
 #include "octree/normals/surface/plane.h"
+#include "octree/normals/surface/surface_sample.h"
 
 namespace lucarne::octree {
 
@@ -20,9 +21,9 @@ struct Side {
     float offset = 0;       ///< other . x = offset on that plane; x is relative to the point
 };
 
-/// Finds the side of a crease on which a point lies. `normal` and `variance`: of the plane of the whole patch
-/// and of the heights over it. `spacing`: the distance between points. Returns nothing if there is no crease,
-/// or if there are too few points.
+/// Finds the side of a crease on which a point lies. `whole`: the fit without creases. `spacing`: the
+/// distance between points. Returns nothing if there is no crease, if there are too few points, or if the
+/// side is not clearly flatter than the whole.
 ///
 /// Every straight or bent crease near the point leaves a sector around the point that the crease does not cut
 /// (as the sectors of an adaptive filter: Nagao and Matsuyama 1979; for points, a neighbourhood shifted away
@@ -30,6 +31,6 @@ struct Side {
 /// are fitted to all runs of kRun sectors, and the run whose points, and the point itself, lie closest to
 /// their plane wins. Its plane is fitted again to all points that lie in it. The moments of sectors add up,
 /// so all runs together cost little more than one fit.
-std::optional<Side> fit_side(const Patch& patch, const glm::vec3& normal, float variance, float spacing);
+std::optional<Side> fit_side(const Patch& patch, const SurfaceFit& whole, float spacing);
 
 }  // namespace lucarne::octree

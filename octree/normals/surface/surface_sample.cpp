@@ -1,6 +1,7 @@
 #include "octree/normals/surface/surface_sample.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,9 +25,10 @@ constexpr float kIsolated = 0.75f;
 /// the distance to the 8th neighbour with the neighbours' distances to their own 2nd. The ratio is about 2
 /// within a surface, 3 at its edge, and 4 along the lines of the most uneven scanner.
 constexpr size_t kOwnRank = 8, kTheirRank = 2;
-/// An outlier has half of its neighbours denser than itself. So of kAsked of them, less than kDenser are with
-/// a chance of 1/500; within a surface, kDenser or more are with a chance of 1/40 (Poisson).
-constexpr size_t kAsked = 16, kDenser = 3;
+/// An outlier has half of its neighbours denser than itself. They are asked in rounds of kLanes, and so many
+/// must be denser after each round: fewer are with a chance of less than 1/200 a round. Within a surface
+/// (Poisson) they are with a chance of 1/4, 1/40 and 1/800.
+constexpr std::array<size_t, 3> kDenser{1, 3, 6};
 // The ratio of an outlier: not one of 200,000 points of a random pattern has it.
 constexpr float kSparser = 7.0f;
 /// The ratio of an outlier whose neighbours have no clear plane.
@@ -42,25 +44,6 @@ constexpr size_t kCompanions = 2;
 /// Coordinates are rounded in files (LAS: millimetres), so variances below this share of the largest are not
 /// trusted.
 constexpr double kVarianceFloor = 1e-6;
-
-/// The squared distance between two points of a patch.
-float distance2(const Patch& near, size_t i, size_t j) {
-    const float x = near.x[i] - near.x[j], y = near.y[i] - near.y[j], z = near.z[i] - near.z[j];
-    return x * x + y * y + z * z;
-}
-
-/// The squared distance from a neighbour to its kTheirRank-th nearest among the neighbours, without the point
-/// itself.
-float their_reach2(const Patch& near, size_t i) {
-    static_assert(kTheirRank == 2);
-    float first = std::numeric_limits<float>::max(), second = first;
-    for (size_t j = 1; j < near.count; ++j) {
-        const float d2 = j == i ? std::numeric_limits<float>::max() : distance2(near, i, j);
-        second = std::min(second, std::max(first, d2));
-        first = std::min(first, d2);
-    }
-    return second;
-}
 
 /// Returns how many of eight points of a patch, from `first` on in steps of `step`, have their kTheirRank-th
 /// nearest among the neighbours nearer than the root of `limit2`. Neither the point itself, whose distance is
@@ -163,14 +146,20 @@ bool is_stray(const Patch& nearest, size_t usual, bool in_doubt) {
 bool may_stand_apart(const Patch& nearest, const Patch& window) {
     if (nearest.count <= kOwnRank) return false;
     const float limit = nearest.distance2[kOwnRank] / (kSparserInDoubt * kSparserInDoubt);
-    const size_t step = std::max<size_t>(1, window.count / kAsked);
-    const size_t denser = count_denser(window, 0, step, limit);
-    return denser > 0 && denser + count_denser(window, kLanes * step, step, limit) >= kDenser;
+    const size_t step = std::max<size_t>(1, window.count / (kLanes * kDenser.size()));
+    size_t denser = 0;
+    for (size_t round = 0; round < kDenser.size(); ++round) {
+        // The rounds take turns, so that each is spread over the whole window.
+        denser += count_denser(window, round * step, kDenser.size() * step, limit);
+        if (denser < kDenser[round]) return false;
+    }
+    return true;
 }
 
 float share_of_neighbours(const Patch& nearest) {
-    std::vector<float> reaches(nearest.count - 1);
-    for (size_t i = 1; i < nearest.count; ++i) reaches[i - 1] = their_reach2(nearest, i);
+    static_assert(kTheirRank == 2);
+    std::vector<float> reaches;
+    second_nearest(nearest, reaches);
     const auto median = reaches.begin() + static_cast<ptrdiff_t>((nearest.count - 1) / 2);
     std::nth_element(reaches.begin(), median, reaches.end());
     return std::numbers::pi_v<float> * *median / kTheirRank;
