@@ -27,7 +27,10 @@ std::optional<LargeBox> large_box(const LargeDisc& disc, const DiscView& view) {
     const glm::vec2 size(view.width, view.height);
     const glm::vec2 scale = size / (2.0f * glm::vec2(view.right.w, view.down.w));
     const glm::vec2 middle = 0.5f * size - view.shift;
-    const auto in_picture = [&](const glm::vec2& at) { return glm::clamp(at, glm::vec2(-1), size); };
+    const auto inside = [](float at, float end) { return at > -1 ? std::min(at, end) : -1.0f; };  // NaN: -1
+    const auto in_picture = [&](const glm::vec2& at) {
+        return glm::vec2(inside(at.x, size.x), inside(at.y, size.y));
+    };
     LargeBox box{{0, 0, static_cast<int>(view.width), static_cast<int>(view.height)}, glm::ivec2(-1)};
     if (disc.centre.z > view.forward.w) {
         const glm::vec2 place = glm::vec2(disc.centre) / (flat ? 1.0f : disc.centre.z) * scale + middle;

@@ -59,7 +59,10 @@ class Placing {
             x = x * scale_.x + middle_.x;
             y = y * scale_.y + middle_.y;
         }
-        const auto pixel = [](float at, float end) { return static_cast<int>(std::clamp(at, 0.0f, end)); };
+        // NaN becomes 0.
+        const auto pixel = [](float at, float end) {
+            return at > 0 ? static_cast<int>(std::min(at, end)) : 0;
+        };
         placed.rect = {pixel(x.x - kMargin, size_.x), pixel(y.x - kMargin, size_.y),
                        pixel(x.y + kMargin + 1, size_.x), pixel(y.y + kMargin + 1, size_.y)};
         return placed.rect.x0 < placed.rect.x1 && placed.rect.y0 < placed.rect.y1;
