@@ -2,8 +2,10 @@
 // are corrected first: the aim is to test deliberate lies, not accidents. The input is a cache without the
 // zeros after the fields of its superblocks: the first 88 bytes of the file and everything from byte 8192 on.
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "gi/scene/scene.h"
 #include "gi/surfels/surfel_pool.h"
@@ -23,8 +25,47 @@ std::span<std::byte> part(std::span<std::byte> file, uint64_t offset, uint64_t b
     return file.subspan(offset, bytes);
 }
 
+/// Returns the digits that follow `key` and a colon in `text`, from `begin` on; empty if there are none.
+std::string_view digits_after(std::string_view text, std::string_view key, size_t begin) {
+    const size_t at = text.find(key, begin);
+    if (at == std::string_view::npos) return {};
+    const size_t first = at + key.size();
+    return text.substr(first, text.find_first_not_of("0123456789", first) - first);
+}
+uint64_t number_of(std::string_view digits) {
+    uint64_t number = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return number;
+}
+
+/// Corrects the checksum of the synthetic surfels, which is a number of the metadata: appends metadata with
+/// the right one to the file. It works on the text, because metadata may be no JSON or nested a million
+/// times.
+void reseal_filling(std::string& bytes) {
+    uint64_t place[2];  // offset, bytes
+    std::memcpy(place, &bytes[48], sizeof place);
+    const auto file = std::as_writable_bytes(std::span(bytes));
+    const auto stored = part(file, place[0], place[1]);
+    const std::string text(reinterpret_cast<const char*>(stored.data()), stored.size());
+    const size_t filling = text.find("\"filling\"");
+    const auto checksum = digits_after(text, "\"checksum\":", filling);
+    if (filling == std::string::npos || checksum.empty()) return;
+    const uint64_t sum = format::checksum(part(file, number_of(digits_after(text, "\"offset\":", filling)),
+                                               number_of(digits_after(text, "\"bytes\":", filling))));
+    const size_t at = static_cast<size_t>(checksum.data() - text.data());
+    const std::string corrected =
+        text.substr(0, at) + std::to_string(sum) + text.substr(at + checksum.size());
+    if (corrected == text) return;
+    place[0] = bytes.size();
+    place[1] = corrected.size();
+    std::memcpy(&bytes[48], place, sizeof place);
+    bytes += corrected;
+}
+
 /// Corrects magic, version, size and every checksum.
-void reseal(std::span<std::byte> file) {
+void reseal(std::string& bytes) {
+    reseal_filling(bytes);
+    const auto file = std::as_writable_bytes(std::span(bytes));
     uint64_t fields[8];
     std::memcpy(fields, &file[16], sizeof fields);
     format::Superblock block{fields[0], fields[1], fields[2], 0, fields[4], fields[5], 0, file.size()};
@@ -45,6 +86,7 @@ void reseal(std::span<std::byte> file) {
 void use(const NodeSource& source) {
     const auto& header = source.header();
     const gi::Scene scene = gi::default_scene(header.min, header.max, header.metres_per_unit);
+    (void)source.fillings();
     for (uint32_t node = 0; node < source.nodes().size(); ++node) {
         const auto data = source.load(node);
         if (data) (void)gi::pack_surfels(header, source.nodes()[node], *data, scene);
@@ -65,7 +107,7 @@ bool lucarne::fuzz::run(const uint8_t* data, size_t size) {
     std::string bytes(octree::format::kFirstPayload + size - octree::kFields, '\0');
     std::memcpy(bytes.data(), data, octree::kFields);
     std::memcpy(&bytes[octree::format::kFirstPayload], data + octree::kFields, size - octree::kFields);
-    octree::reseal(std::as_writable_bytes(std::span(bytes)));
+    octree::reseal(bytes);
     const auto file = memory_source(bytes);
     (void)octree::verify_cache(file, [](uint64_t) {});
     const auto opened = octree::open_cache(file);

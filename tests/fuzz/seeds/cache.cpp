@@ -1,11 +1,18 @@
-// Makes a cache with few points and several levels in the form that fuzz_cache takes. The converter would
-// make only one node of so few points.
+// Makes caches with few points and several levels in the form that fuzz_cache takes, without and with
+// synthetic surfels. The converter would make only one node of so few points.
+#include "octree/cache/cache.h"
+
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include "octree/cache/writer.h"
+#include "octree/codec/payload.h"
+#include "octree/tree/filling.h"
 #include "tests/fuzz/seeds/seeds.h"
 
 namespace lucarne::octree {
@@ -54,7 +61,32 @@ Result<void> add_node(CacheWriter& writer, SourceHeader& whole, NodeKey key, uin
     return writer.add(entry);
 }
 
-Result<void> write(const std::filesystem::path& path) {
+/// Whether a cache has synthetic surfels, and how they are stored.
+enum class Filled { no, raw, coded };
+
+/// Appends synthetic surfels, spread over the root cube.
+Result<FillingSection> fill(CacheWriter& writer, const SourceHeader& header, bool coded) {
+    constexpr uint32_t kCount = 24;
+    FillingSection section{.schema = filling_schema(header.root), .points = kCount};
+    const uint32_t stride = section.schema.stride;
+    std::vector<std::byte> payload, records(size_t{kCount} * stride, std::byte{64});
+    for (uint32_t i = 0; i < kCount; ++i)
+        for (size_t axis = 0; axis < 3; ++axis)
+            io::store(&records[i * stride + 4 * axis],
+                      static_cast<int32_t>((i + 0.5) / kCount * 0x1p32 - 0x1p31));
+    if (coded) {
+        codec::PayloadEncoder(section.schema).encode(records, std::vector<uint8_t>(kCount, 0), payload);
+        section.codec = format::kCodecColumns;
+    } else {
+        payload = records;
+    }
+    section.bytes = payload.size();
+    section.checksum = format::checksum(payload);
+    LUCARNE_ASSIGN(section.offset, writer.append(payload));
+    return section;
+}
+
+Result<void> write(const std::filesystem::path& path, Filled filled) {
     SourceHeader whole = header();
     LUCARNE_ASSIGN(auto writer, CacheWriter::create(path, true, path.parent_path()));
     const NodeKey root, six = root.child(6);
@@ -62,6 +94,9 @@ Result<void> write(const std::filesystem::path& path) {
     LUCARNE_TRY(add_node(writer, whole, six.child(3), 0, 3, 0));
     LUCARNE_TRY(add_node(writer, whole, six, 1 << 3, 2, 3));
     LUCARNE_TRY(add_node(writer, whole, root, 1 << 1 | 1 << 6, 4, 7));
+    if (filled != Filled::no) {
+        LUCARNE_ASSIGN(whole.filling, fill(writer, whole, filled == Filled::coded));
+    }
     return writer.finish(whole);
 }
 
@@ -69,10 +104,16 @@ Result<void> write(const std::filesystem::path& path) {
 }  // namespace lucarne::octree
 
 void lucarne::fuzz::cache_seeds(const Seeds& seeds) {
-    const auto path = seeds.folder() / "levels.luc";
-    const auto written = octree::write(path);
-    if (!written) throw std::runtime_error(written.error().line());
-    std::string bytes = Seeds::taken(path);
-    bytes.erase(88, octree::format::kFirstPayload - 88);
-    seeds.add("levels", bytes);
+    using octree::Filled;
+    for (const auto& [name, filled] :
+         {std::pair{"levels", Filled::no}, {"filled", Filled::raw}, {"filled-coded", Filled::coded}}) {
+        const auto path = seeds.folder() / fmt::format("{}.luc", name);
+        const auto written = octree::write(path, filled);
+        if (!written) throw std::runtime_error(written.error().line());
+        const auto verified = octree::verify_cache(path, [](uint64_t) {});
+        if (!verified) throw std::runtime_error(verified.error().line());
+        std::string bytes = Seeds::taken(path);
+        bytes.erase(88, octree::format::kFirstPayload - 88);
+        seeds.add(name, bytes);
+    }
 }
