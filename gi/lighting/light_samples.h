@@ -7,6 +7,8 @@
 
 namespace lucarne::gi {
 
+class DeviceCut;
+
 /// A light without a size, which a shadow map can represent, and the cut from which its views are drawn.
 struct SharpLight {
     Light light;
