@@ -35,7 +35,8 @@ HostSurfels host_surfels(const DeviceCut& cut, std::span<const PackedSurfel> poo
         made.first.push_back(places);
         places += (block.count + HostSurfels::kPadding - 1) / HostSurfels::kPadding * HostSurfels::kPadding;
     }
-    made.radii.resize(places);
+    made.radii.resize(
+        std::max(places, HostSurfels::kPadding));  // readers of an id without a surfel read the first
     const auto shares = area_shares();
     parallel_ranges(blocks.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t at = first; at < last; ++at) {

@@ -351,7 +351,8 @@ void write_row(const DiscView& view, const PixelRect& rect, int y, GBufferTexel*
         Texels t;
         hn::LoadInterleaved4(Words(), reinterpret_cast<const uint32_t*>(lanes), t.depth, t.normal, t.albedo,
                              t.material);
-        const F scale = over(one, mul(any_to_float(weight), set(raster::kValueSteps)));
+        const F weights = any_to_float(hn::Max(weight, word(1)));  // no NaN in pixels without discs
+        const F scale = over(one, mul(weights, set(raster::kValueSteps)));
         const auto mean = [&](size_t channel) { return mul(any_to_float(sum(channel)), scale); };
         const auto signed_mean = [&](size_t channel) {
             return sub(mul(mul(two, any_to_float(sum(channel))), scale), one);
