@@ -63,7 +63,7 @@ double error(const std::vector<double>& coverage, const std::vector<double>& tru
     return std::sqrt(sum / count);
 }
 
-TEST_F(Antialiasing, AveragesConvergeToTheCoverageOfAnOutline) {
+TEST_P(Antialiasing, AveragesConvergeToTheCoverageOfAnOutline) {
     for (const float area : {2.2e-4f, 2e-3f}) {  // drawn as a small disc and as a large one
         const Surfel disc{{0.01f, 3, 0.005f}, glm::normalize(glm::vec3(1, -2, 0.7f)), kWhite, 0, area, 0};
         const auto coverage = truth(disc);
@@ -72,6 +72,8 @@ TEST_F(Antialiasing, AveragesConvergeToTheCoverageOfAnOutline) {
         EXPECT_LT(error(averaged(disc, 64), coverage), 0.04);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Passes, Antialiasing, ::testing::Bool(), passes_name);
 
 TEST(RayShift, FirstFrameIsThatOfASinglePicture) {
     const CameraView single = view_of(kSide);
