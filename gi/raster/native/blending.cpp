@@ -107,9 +107,8 @@ HWY_INLINE void contribute(const Contribution& c, Row distance2, Row z, hn::Mask
     weight = hn::Mul(weight, hn::Min(hn::Max(smooth, zero), one));
     adds = hn::And(adds, hn::Ge(weight, set_row(kLeastWeight)));
     if (hn::AllFalse(df, adds)) return;
-    const auto steps =
-        hn::IfThenElseZero(hn::RebindMask(di, adds),
-                           hn::ConvertTo(di, hn::Add(hn::Mul(weight, set_row(raster::kWeightSteps)), half)));
+    const auto steps = hn::IfThenElseZero(
+        hn::RebindMask(di, adds), to_int(di, hn::Add(hn::Mul(weight, set_row(raster::kWeightSteps)), half)));
     const auto sum = [&](uint32_t channel, hn::Vec<RowInts> value) {
         auto* HWY_RESTRICT to = reinterpret_cast<int32_t*>(row.sums[channel] + at);
         hn::StoreU(hn::Add(hn::LoadU(di, to), value), di, to);
@@ -118,7 +117,7 @@ HWY_INLINE void contribute(const Contribution& c, Row distance2, Row z, hn::Mask
     for (uint32_t channel = 0; channel < 6; ++channel)
         sum(channel + 1, hn::Mul(steps, hn::Set(di, c.values[channel])));
     const Row place = hn::Mul(hn::Add(hn::Mul(half, offset), half), set_row(raster::kValueSteps));
-    sum(7, hn::Mul(steps, hn::ConvertTo(di, hn::Add(hn::IfThenElseZero(adds, place), half))));
+    sum(7, hn::Mul(steps, to_int(di, hn::Add(hn::IfThenElseZero(adds, place), half))));
 }
 
 /// The discs of one step, lane by lane: widened ellipses, and what they contribute.
@@ -218,7 +217,7 @@ HWY_INLINE void store_contributions(const DiscView& view, const BlockDiscs& foun
     hn::Store(colour(hn::ShiftRight<20>(d)), di, lanes.values[2]);
     const F half = set(0.5f);
     const auto value = [&](F v) {
-        return hn::ConvertTo(di, add(mul(add(mul(half, v), half), set(raster::kValueSteps)), half));
+        return to_int(di, add(mul(add(mul(half, v), half), set(raster::kValueSteps)), half));
     };
     hn::Store(value(normal.x), di, lanes.values[3]);
     hn::Store(value(normal.y), di, lanes.values[4]);
@@ -262,10 +261,10 @@ void blend_block(const CutMemory& cut, const DiscView& view, const PixelRect& re
         hn::Store(e.slope_x, df, lanes.slope_x);
         hn::Store(e.slope_y, df, lanes.slope_y);
         hn::Store(discs.centre.z, df, lanes.z);
-        hn::Store(hn::ConvertTo(di, x0), di, lanes.x0);
-        hn::Store(hn::ConvertTo(di, y0), di, lanes.y0);
-        hn::Store(hn::ConvertTo(di, x1), di, lanes.x1);
-        hn::Store(hn::ConvertTo(di, y1), di, lanes.y1);
+        hn::Store(to_int(di, x0), di, lanes.x0);
+        hn::Store(to_int(di, y0), di, lanes.y0);
+        hn::Store(to_int(di, x1), di, lanes.x1);
+        hn::Store(to_int(di, y1), di, lanes.y1);
         for (uint32_t left = bits_of(drawn); left; left &= left - 1)
             blend_small(lanes, static_cast<size_t>(std::countr_zero(left)), rect, tile);
     }
@@ -321,9 +320,8 @@ HWY_INLINE U encode_colour(F value) {
     const Ints di;
     const ColourTables& tables = colour_tables();
     const F root = hn::Min(hn::Sqrt(hn::Max(value, hn::Zero(Floats()))), set(1.0f));
-    const auto code =
-        hn::GatherIndex(di, tables.codes.data(),
-                        hn::ConvertTo(di, mul(root, set(static_cast<float>(ColourTables::kRoots - 1)))));
+    const auto code = hn::GatherIndex(
+        di, tables.codes.data(), to_int(di, mul(root, set(static_cast<float>(ColourTables::kRoots - 1)))));
     const F next = hn::GatherIndex(Floats(), tables.thresholds.data() + 1, code);
     const auto up = hn::RebindMask(di, hn::Ge(value, next));
     return hn::BitCast(Words(), hn::Add(code, hn::IfThenElseZero(up, hn::Set(di, 1))));

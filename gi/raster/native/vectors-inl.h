@@ -47,6 +47,16 @@ HWY_INLINE F to_float(U v) {
     return hn::ConvertTo(Floats(), hn::BitCast(Ints(), v));
 }
 
+/// Converts numbers to integers, toward zero or to the nearest; NaN becomes 0, because plain C++ has no
+/// conversion for it. Lanes that are not used may hold anything.
+template <class D>
+HWY_INLINE hn::Vec<D> to_int(D di, hn::Vec<hn::RebindToFloat<D>> v) {
+    return hn::ConvertTo(di, hn::IfThenElseZero(hn::Eq(v, v), v));
+}
+HWY_INLINE hn::Vec<Ints> nearest_int(F v) {
+    return hn::NearestInt(hn::IfThenElseZero(hn::Eq(v, v), v));
+}
+
 struct V3 {
     F x, y, z;
 };
@@ -88,7 +98,7 @@ HWY_INLINE U encode_octahedral(const V3& n) {
     const Mask below = hn::Lt(n.z, zero);
     const auto code = [&](F v) {
         const F clamped = hn::Max(hn::Min(v, one), set(-1.0f));
-        return hn::BitCast(Words(), hn::NearestInt(mul(clamped, set(32767.0f))));
+        return hn::BitCast(Words(), nearest_int(mul(clamped, set(32767.0f))));
     };
     const U u = code(hn::IfThenElse(below, mul(sub(one, hn::Abs(y)), sign(x)), x));
     const U v = code(hn::IfThenElse(below, mul(sub(one, hn::Abs(x)), sign(y)), y));

@@ -165,10 +165,10 @@ bool draw_block(const CutMemory& cut, const DiscView& view, const PixelRect& rec
         hn::Store(discs.push, df, lanes.push);
         hn::Store(home_x, df, lanes.home_x);
         hn::Store(home_y, df, lanes.home_y);
-        hn::Store(hn::ConvertTo(di, x0), di, lanes.x0);
-        hn::Store(hn::ConvertTo(di, y0), di, lanes.y0);
-        hn::Store(hn::ConvertTo(di, x1), di, lanes.x1);
-        hn::Store(hn::ConvertTo(di, y1), di, lanes.y1);
+        hn::Store(to_int(di, x0), di, lanes.x0);
+        hn::Store(to_int(di, y0), di, lanes.y0);
+        hn::Store(to_int(di, x1), di, lanes.x1);
+        hn::Store(to_int(di, y1), di, lanes.y1);
         for (uint32_t left = bits_of(drawn); left; left &= left - 1) {
             const auto lane = static_cast<size_t>(std::countr_zero(left));
             draw_small(lanes, lane, found.id[i + lane], rect, tile);

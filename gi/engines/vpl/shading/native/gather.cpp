@@ -129,7 +129,7 @@ HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V
     const F scale = over(one, add(hn::Sqrt(dot(receiver, receiver)), receiver.z));
     const auto texel = [&](F v) {
         const F at = mul(add(mul(mul(v, scale), half), half), side);
-        return hn::ConvertTo(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), sub(side, one))));
+        return to_int(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), sub(side, one))));
     };
     const auto column = texel(receiver.x), row = texel(receiver.y);
     const auto index = hn::Add(hn::Mul(row, hn::Set(di, static_cast<int32_t>(input.side))), column);
@@ -147,7 +147,7 @@ HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V
                    sub(mul(sub(one, uv2), along), receiver.z)};
     const auto fraction = [&](U bits) {
         const F p = over(sub(to_float(hn::And(bits, word(63))), set(31.5f)), set(31.5f));
-        return hn::And(hn::BitCast(Words(), hn::NearestInt(mul(p, set(32767.0f)))), word(0xffffu));
+        return hn::And(hn::BitCast(Words(), nearest_int(mul(p, set(32767.0f)))), word(0xffffu));
     };
     const V3 blocker =
         decode_octahedral(hn::Or(fraction(nearest), hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(nearest)))));

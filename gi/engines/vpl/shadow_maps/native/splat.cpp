@@ -92,7 +92,7 @@ void decode_casters(const SplatJob& job, uint32_t block, Casters& casters) {
         const auto fraction = [&](U bits) {
             const F p = over(sub(to_float(hn::And(bits, word(511))), set(256.0f)), set(255.0f));
             const F inside = hn::Max(hn::Min(p, set(1.0f)), set(-1.0f));
-            return hn::BitCast(du, hn::NearestInt(mul(inside, set(32767.0f))));
+            return hn::BitCast(du, nearest_int(mul(inside, set(32767.0f))));
         };
         const U octahedral = hn::Or(hn::And(fraction(code), word(0xffffu)),
                                     hn::ShiftLeft<16>(fraction(hn::ShiftRight<9>(code))));
@@ -188,7 +188,7 @@ HWY_INLINE U map_surface(F radius, const V3& normal) {
     const auto code = hn::Min(hn::Max(exponent, hn::Zero(di)), hn::Set(di, 15));
     const U bits = encode_octahedral(normal);
     const auto steps = [&](hn::Vec<Ints> fraction) {
-        return hn::BitCast(Words(), hn::ConvertTo(di, add(mul(snorm(fraction), set(31.5f)), set(31.999f))));
+        return hn::BitCast(Words(), to_int(di, add(mul(snorm(fraction), set(31.5f)), set(31.999f))));
     };
     const auto both = hn::BitCast(di, bits);
     const U u = steps(hn::ShiftRight<16>(hn::ShiftLeft<16>(both))), v = steps(hn::ShiftRight<16>(both));
@@ -232,8 +232,8 @@ HWY_INLINE uint32_t set_up(const SplatJob& job, const MapFrame& map, const Caste
         const auto texel = [&](F v) { return sub(mul(add(mul(v, half), half), side), half); };
         const F first = hn::Max(hn::Ceil(texel(low)), zero), end = hn::Min(hn::Floor(texel(high)), last);
         hit = hn::And(hit, hn::Le(first, end));
-        hn::Store(hn::ConvertTo(di, first), di, first_texel);
-        hn::Store(hn::ConvertTo(di, end), di, last_texel);
+        hn::Store(to_int(di, first), di, first_texel);
+        hn::Store(to_int(di, end), di, last_texel);
     };
     range(centre.x, discs.x0, discs.x1);
     range(centre.y, discs.y0, discs.y1);
@@ -324,7 +324,7 @@ HWY_INLINE void draw(const SplatJob& job, const MapDiscs& discs, size_t lane, ui
             const Row share = hn::Min(hn::Max(hn::Mul(octaves, row_of(1 / 16.0f)), zero), one);
             const uint32_t most = (1u << (32 - job.layout.id_bits)) - 1;
             const auto far =
-                hn::BitCast(du, hn::ConvertTo(RowInts(), hn::Mul(share, row_of(static_cast<float>(most)))));
+                hn::BitCast(du, to_int(RowInts(), hn::Mul(share, row_of(static_cast<float>(most)))));
             const auto source =
                 hn::Or(hn::ShiftLeftSame(far, static_cast<int>(job.layout.id_bits)), hn::Set(du, id));
             take(source, core, job.memory.sources + at);
