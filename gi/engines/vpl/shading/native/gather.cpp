@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/shared/brdf.h"
 #include "io/core/parallel.h"
 
@@ -21,11 +22,10 @@
 #define LUCARNE_NATIVE_GATHER_ONCE
 namespace lucarne::gi::vpl::native {
 
-// As in parabolic.glsl and texel.h.
-constexpr float kSheetTolerance = 0.1f;
+// As in texel.h.
 constexpr uint32_t kNoTexel = UINT32_MAX;
 
-/// A VPL with the frame of its map, frame_about() in parabolic.glsl.
+/// A VPL with the frame of its map.
 struct GatherLight {
     glm::vec4 normal, tangent, bitangent;
     glm::vec3 position;  ///< relative to the camera
@@ -42,11 +42,10 @@ struct GatherJob {
 };
 
 inline GatherLight gather_light(const VplLight& light, const glm::vec4& eye, size_t map) {
-    const glm::vec4 n = light.normal;
-    const float s = n.z >= 0 ? 1.0f : -1.0f, a = -1 / (s + n.z), b = n.x * n.y * a;
-    return {n,
-            {1 + s * n.x * n.x * a, s * b, -s * n.x, 0},
-            {b, s + n.y * n.y * a, -n.y, 0},
+    const MapFrame frame = frame_of(light);
+    return {frame.normal,
+            frame.tangent,
+            frame.bitangent,
             glm::vec3(light.position) - glm::vec3(eye),
             glm::vec3(light.diffuse),
             std::max(light.position.w / kPi, 1e-12f),

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/shared/surfel_code.h"
 #include "io/core/parallel.h"
 
@@ -23,7 +24,7 @@ namespace lucarne::gi::vpl::native {
 
 // As in texel.h, pyramid.glsl, parabolic.glsl and close.comp.
 constexpr uint32_t kNoTexel = UINT32_MAX, kOpenTexel = UINT32_MAX - 1;
-constexpr float kSheetTolerance = 0.1f, kNormalError = 0.05f;
+constexpr float kNormalError = 0.05f;
 
 inline float texel_distance(uint32_t texel) {
     return std::bit_cast<float>(((texel >> 16) + (111u << 11)) << 12 | 0x800u);

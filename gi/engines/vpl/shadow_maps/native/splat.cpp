@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
 #include "gi/shared/brdf.h"
 #include "gi/shared/surfel.h"
@@ -23,7 +24,7 @@ namespace lucarne::gi::vpl::native {
 
 // As in thinning.glsl, fringe.glsl and parabolic.glsl, which explain them.
 constexpr float kLeastSlant = 0.1f, kLargestSplat = 3.1623f, kThinnedCover = 4;
-constexpr float kCore = 0.5f, kSheetTolerance = 0.1f;
+constexpr float kCore = 0.5f;
 
 /// Maps that are drawn together: blocks are decoded once for all of them.
 constexpr uint32_t kGroup = 16;
@@ -57,17 +58,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace gi::native::HWY_NAMESPACE;
 
 constexpr size_t kLanes = HWY_MAX_BYTES / 4;
-
-/// A map's projection: frame_about() in parabolic.glsl.
-struct MapFrame {
-    glm::vec4 centre, normal, tangent, bitangent;
-};
-MapFrame frame_of(const VplLight& light) {
-    const glm::vec4 n = light.normal;
-    const float s = n.z >= 0 ? 1.0f : -1.0f, a = -1 / (s + n.z), b = n.x * n.y * a;
-    return {light.position + n * n.w, n, glm::vec4(1 + s * n.x * n.x * a, s * b, -s * n.x, 0),
-            glm::vec4(b, s + n.y * n.y * a, -n.y, 0)};
-}
 
 /// Casters of a block, one after the other.
 struct Casters {
