@@ -121,10 +121,8 @@ HWY_INLINE void contribute(const Contribution& c, Row distance2, Row z, hn::Mask
 }
 
 /// The discs of one step, lane by lane: widened ellipses, and what they contribute.
-struct BlendedDiscs {
-    alignas(64) float x[kMostLanes], y[kMostLanes], xx[kMostLanes], xy[kMostLanes], yy[kMostLanes];
-    alignas(64) float slope_x[kMostLanes], slope_y[kMostLanes], z[kMostLanes], radius[kMostLanes];
-    alignas(64) int32_t x0[kMostLanes], y0[kMostLanes], x1[kMostLanes], y1[kMostLanes];
+struct BlendedDiscs : EllipseLanes {
+    alignas(64) float radius[kMostLanes];
     alignas(64) float nx[kMostLanes], ny[kMostLanes], nz[kMostLanes];
     alignas(64) uint32_t surface[kMostLanes];
     alignas(64) int32_t values[6][kMostLanes];
@@ -230,7 +228,6 @@ void blend_block(const CutMemory& cut, const DiscView& view, const PixelRect& re
     BlockDiscs found;
     find_discs(cut, view, rect, block, found);
     const Floats df;
-    const Ints di;
     const F low_x = set(static_cast<float>(rect.x0)), low_y = set(static_cast<float>(rect.y0)),
             high_x = set(static_cast<float>(rect.x1 - 1)), high_y = set(static_cast<float>(rect.y1 - 1));
     for (size_t i = 0; i < found.count; i += hn::Lanes(df)) {
@@ -253,18 +250,7 @@ void blend_block(const CutMemory& cut, const DiscView& view, const PixelRect& re
                 x1 = hn::Min(hn::Floor(add(e.x, reach_x)), high_x),
                 y1 = hn::Min(hn::Floor(add(e.y, reach_y)), high_y);
         drawn = hn::And(hn::And(drawn, small), hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
-        hn::Store(e.x, df, lanes.x);
-        hn::Store(e.y, df, lanes.y);
-        hn::Store(e.xx, df, lanes.xx);
-        hn::Store(e.xy, df, lanes.xy);
-        hn::Store(e.yy, df, lanes.yy);
-        hn::Store(e.slope_x, df, lanes.slope_x);
-        hn::Store(e.slope_y, df, lanes.slope_y);
-        hn::Store(discs.centre.z, df, lanes.z);
-        hn::Store(to_int(di, x0), di, lanes.x0);
-        hn::Store(to_int(di, y0), di, lanes.y0);
-        hn::Store(to_int(di, x1), di, lanes.x1);
-        hn::Store(to_int(di, y1), di, lanes.y1);
+        store(e, discs.centre.z, x0, y0, x1, y1, lanes);
         for (uint32_t left = bits_of(drawn); left; left &= left - 1)
             blend_small(lanes, static_cast<size_t>(std::countr_zero(left)), rect, tile);
     }

@@ -155,6 +155,31 @@ HWY_INLINE F determinant(const Ellipses& e) {
     return hn::Max(sub(mul(e.xx, e.yy), mul(mul(set(0.25f), e.xy), e.xy)), set(1e-12f));
 }
 
+/// Several ellipses lane by lane, with the depths of their centres and the pixels to test, x0 to x1 and y0 to
+/// y1.
+struct EllipseLanes {
+    static constexpr size_t kMost = HWY_MAX_BYTES / 4;
+    alignas(64) float x[kMost], y[kMost], xx[kMost], xy[kMost], yy[kMost], slope_x[kMost], slope_y[kMost],
+        z[kMost];
+    alignas(64) int32_t x0[kMost], y0[kMost], x1[kMost], y1[kMost];
+};
+HWY_INLINE void store(const Ellipses& e, F z, F x0, F y0, F x1, F y1, EllipseLanes& lanes) {
+    const Floats df;
+    const Ints di;
+    hn::Store(e.x, df, lanes.x);
+    hn::Store(e.y, df, lanes.y);
+    hn::Store(e.xx, df, lanes.xx);
+    hn::Store(e.xy, df, lanes.xy);
+    hn::Store(e.yy, df, lanes.yy);
+    hn::Store(e.slope_x, df, lanes.slope_x);
+    hn::Store(e.slope_y, df, lanes.slope_y);
+    hn::Store(z, df, lanes.z);
+    hn::Store(to_int(di, x0), di, lanes.x0);
+    hn::Store(to_int(di, y0), di, lanes.y0);
+    hn::Store(to_int(di, x1), di, lanes.x1);
+    hn::Store(to_int(di, y1), di, lanes.y1);
+}
+
 /// The discs of a block that may touch a tile, one after the other: on average a third of the block, because
 /// its surfels lie anywhere in its node.
 struct BlockDiscs {

@@ -41,12 +41,8 @@ HWY_BEFORE_NAMESPACE();
 namespace lucarne::gi::native::HWY_NAMESPACE {
 
 /// The small discs of one step, lane by lane.
-struct SmallDiscs {
-    alignas(64) float x[HWY_MAX_BYTES / 4], y[HWY_MAX_BYTES / 4], xx[HWY_MAX_BYTES / 4],
-        xy[HWY_MAX_BYTES / 4], yy[HWY_MAX_BYTES / 4], slope_x[HWY_MAX_BYTES / 4], slope_y[HWY_MAX_BYTES / 4],
-        z[HWY_MAX_BYTES / 4], push[HWY_MAX_BYTES / 4], home_x[HWY_MAX_BYTES / 4], home_y[HWY_MAX_BYTES / 4];
-    alignas(64) int32_t x0[HWY_MAX_BYTES / 4], y0[HWY_MAX_BYTES / 4], x1[HWY_MAX_BYTES / 4],
-        y1[HWY_MAX_BYTES / 4];
+struct SmallDiscs : EllipseLanes {
+    alignas(64) float push[kMost], home_x[kMost], home_y[kMost];
 };
 
 /// Gives pixels to a disc where its order is smaller, or equal and its id smaller.
@@ -126,7 +122,6 @@ bool draw_block(const CutMemory& cut, const DiscView& view, const PixelRect& rec
     find_discs(cut, view, rect, block, found);
     bool has_large = false;
     const Floats df;
-    const Ints di;
     const F zero = hn::Zero(df);
     const F low_x = set(static_cast<float>(rect.x0)), low_y = set(static_cast<float>(rect.y0)),
             high_x = set(static_cast<float>(rect.x1 - 1)), high_y = set(static_cast<float>(rect.y1 - 1));
@@ -154,21 +149,10 @@ bool draw_block(const CutMemory& cut, const DiscView& view, const PixelRect& rec
                 y1 = hn::Min(hn::Min(hn::Max(hn::Floor(add(e.y, reach_y)), home_y), last_y), high_y);
         drawn = hn::And(drawn, hn::And(hn::Le(x0, x1), hn::Le(y0, y1)));
         SmallDiscs lanes;
-        hn::Store(e.x, df, lanes.x);
-        hn::Store(e.y, df, lanes.y);
-        hn::Store(e.xx, df, lanes.xx);
-        hn::Store(e.xy, df, lanes.xy);
-        hn::Store(e.yy, df, lanes.yy);
-        hn::Store(e.slope_x, df, lanes.slope_x);
-        hn::Store(e.slope_y, df, lanes.slope_y);
-        hn::Store(discs.centre.z, df, lanes.z);
+        store(e, discs.centre.z, x0, y0, x1, y1, lanes);
         hn::Store(discs.push, df, lanes.push);
         hn::Store(home_x, df, lanes.home_x);
         hn::Store(home_y, df, lanes.home_y);
-        hn::Store(to_int(di, x0), di, lanes.x0);
-        hn::Store(to_int(di, y0), di, lanes.y0);
-        hn::Store(to_int(di, x1), di, lanes.x1);
-        hn::Store(to_int(di, y1), di, lanes.y1);
         for (uint32_t left = bits_of(drawn); left; left &= left - 1) {
             const auto lane = static_cast<size_t>(std::countr_zero(left));
             draw_small(lanes, lane, found.id[i + lane], rect, tile);
