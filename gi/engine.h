@@ -40,6 +40,9 @@ class Engine {
     Result<void> draw(Frame& frame);
     /// Returns figures of the last frame for statistics and reports ("vpls": 256).
     virtual std::vector<std::pair<std::string, double>> stats() const = 0;
+    /// Whether the engine is making light from the light cuts over several frames (Frame::light_seconds).
+    /// Such a cut should stay as it is until then: another one makes the engine start again.
+    virtual bool reads_light_cuts() const { return false; }
     /// Returns the pictures of info().layers, in their order: a vec4 per pixel, over all frames accumulated
     /// so far.
     virtual std::vector<std::vector<glm::vec4>> layers() const { return {}; }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,11 +37,19 @@ struct Frame {
     uint64_t index = 0;  ///< the frame's number since the view changed; averaging engines sample each anew
     std::shared_ptr<const Environment> environment;  ///< lights, and is seen in the place of `background`
     Bounds bounds{};                                 ///< of the whole cloud, m
-    bool moving = false;           ///< the camera moves: an engine may use results of the frame before
-    Progress* progress = nullptr;  ///< for engines that report it; or null
-    Unlit unlit{};                 ///< for the engine without light
+    bool moving = false;  ///< the camera moves: an engine may use results of the frame before
+    /// For moving frames: the time that may be spent on light which outlasts a frame, s. An engine may show
+    /// such light as it was some frames ago, and make the new one bit by bit.
+    double light_seconds = std::numeric_limits<double>::infinity();
+    const std::atomic<bool>* stop = nullptr;  ///< see stopped(); or null
+    Progress* progress = nullptr;             ///< for engines that report it; or null
+    Unlit unlit{};                            ///< for the engine without light
     GlFrame& gl;
     PassTimes& times;
+
+    /// Whether nobody waits for the picture any more. An engine may then return without having finished it;
+    /// it must not use what it has begun.
+    bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 
 }  // namespace lucarne::gi

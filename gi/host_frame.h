@@ -33,4 +33,11 @@ class TimedPass {
     PassTimes& times_;
 };
 
+/// Returns what `body` returns, and times it as a pass of the frame.
+template <class Body>
+auto timed(Frame& frame, const char* name, const Body& body) {
+    const TimedPass pass(frame, name);
+    return body();
+}
+
 }  // namespace lucarne::gi

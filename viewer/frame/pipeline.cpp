@@ -46,6 +46,12 @@ uint64_t pages(uint64_t surfels) {
     constexpr uint64_t kPage = gi::SurfelPool::kPageSurfels;
     return (surfels + kPage - 1) / kPage;
 }
+bool stopped(const FrameRequest& request) {
+    return request.stop && *request.stop;
+}
+bool contains(const gi::DeviceCut& cut, uint32_t node) {
+    return std::ranges::binary_search(cut.nodes(), node, {}, &gi::CutNode::node);
+}
 uint64_t pool_bytes(uint64_t surfels) {
     return pages(surfels) * gi::SurfelPool::kPageSurfels * sizeof(gi::PackedSurfel);
 }
@@ -71,8 +77,10 @@ struct Pipeline::State {
     uint64_t filled_bytes() const;
     uint64_t filled_count() const;  ///< of all synthetic surfels
     Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
-    Result<void> build_cuts();
-    Result<void> draw(const FrameRequest& request);
+    Result<void> build_cuts(bool hold_light);
+    bool light_cuts_intact() const;
+    Result<gi::Engine*> drawing_engine(const FrameRequest& request);
+    Result<void> draw(gi::Engine& drawing, const FrameRequest& request);
     Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
     Result<void> make_picture(const FrameRequest& request);
     bool shrink_pool();
@@ -104,8 +112,13 @@ struct Pipeline::State {
     std::vector<gi::DeviceCut> light_views;
     LocalFrame local;
     bool cuts_stale = true;  // the device's cuts differ from the chosen and resident nodes
+    // The same for the light's cuts alone, which stay as they are while the engine reads them over several
+    // frames, unless they are torn: nodes that they consist of are gone, or they have another origin or clip.
+    bool light_cuts_stale = true, light_cuts_torn = true;
+    std::vector<gi::SceneLight> lights_of_cuts;  // the lights for which light_views were chosen
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
+    std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
     gi::EngineSettings settings;
     CutBudgets budgets;
     gi::Scene scene;
@@ -176,7 +189,7 @@ Result<void> Pipeline::State::load_fillings() {
             LUCARNE_ASSIGN(const bool fits, pool.load(number++, preparation->pack(filling, node)));
             if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
         }
-    cuts_stale = true;
+    cuts_stale = light_cuts_stale = light_cuts_torn = true;
     return {};
 }
 
@@ -226,7 +239,7 @@ void Pipeline::State::start_stream() {
     };
     repack = true;
     residency = std::make_unique<Stream>(*source, how, std::move(pack));
-    cuts_stale = true;
+    cuts_stale = light_cuts_stale = light_cuts_torn = true;
 }
 
 /// Loads all resident nodes again for new materials or colours, which are packed into the surfels. Nodes are
@@ -258,9 +271,11 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                              &scene.look.clip};
     chosen = chooser.choose(purpose, {pool_bytes(pool.capacity()) - filled_bytes(),
                                       [](const auto& node) { return pool_bytes(node.count); }});
+    const glm::dvec3 origin = local.origin;
     local = local_frame(request.camera.position, source->header().metres_per_unit);
+    light_cuts_torn |= local.origin != origin;
     camera = camera_view(request.camera, request.size, local);
-    cuts_stale = true;
+    cuts_stale = light_cuts_stale = true;
 }
 
 /// Chooses cuts for what the camera will see if it continues its motion.
@@ -277,8 +292,14 @@ void Pipeline::State::look_ahead(const FrameRequest& request) {
 /// Applies the stream's events to the device.
 Result<void> Pipeline::State::apply(std::span<const Stream::Event> events) {
     for (const Stream::Event& event : events) {
-        cuts_stale = true;
-        if (event.kind != Stream::Kind::loaded) pool.evict(event.node);
+        cuts_stale = light_cuts_stale = true;
+        if (event.kind != Stream::Kind::loaded) {
+            pool.evict(event.node);
+            light_cuts_torn |= contains(light_cut, event.node) ||
+                               std::ranges::any_of(light_views, [&](const gi::DeviceCut& cut) {
+                                   return contains(cut, event.node);
+                               });
+        }
         if (event.kind == Stream::Kind::evicted) continue;
         bytes_loaded += source->nodes()[event.node].payload_bytes;
         LUCARNE_ASSIGN(const bool fits, pool.load(event.node, *event.data));
@@ -327,20 +348,40 @@ Result<void> Pipeline::State::build_cut(const octree::Cut& cut, const gi::Clip& 
                          scene.look.open_holes || small ? filled.first(0) : filled);
 }
 
-Result<void> Pipeline::State::build_cuts() {
+/// Whether the light's cuts may stay as they are.
+bool Pipeline::State::light_cuts_intact() const {
+    return !light_cuts_torn && light_views.size() == chosen.light_views.size() &&
+           lights_of_cuts.size() == scene.lights.size();
+}
+
+/// `hold_light`: leaves the light's cuts as they are, but for the views of lights that have changed.
+Result<void> Pipeline::State::build_cuts(bool hold_light) {
     const gi::Clip& clip = scene.look.clip;
     const gi::Clip lights_clip = clip.casts ? gi::Clip{} : clip;
     LUCARNE_TRY(build_cut(chosen.view, clip, view));
-    LUCARNE_TRY(build_cut(chosen.light, lights_clip, light_cut));
+    if (!hold_light) LUCARNE_TRY(build_cut(chosen.light, lights_clip, light_cut));
     light_views.resize(chosen.light_views.size());
     for (size_t i = 0; i < light_views.size(); ++i)
-        LUCARNE_TRY(build_cut(chosen.light_views[i], lights_clip, light_views[i]));
+        if (!hold_light || !(lights_of_cuts[i] == scene.lights[i]))
+            LUCARNE_TRY(build_cut(chosen.light_views[i], lights_clip, light_views[i]));
+    lights_of_cuts = scene.lights;
     cuts_stale = false;
+    light_cuts_stale = hold_light;
+    light_cuts_torn = light_cuts_torn && hold_light;
     return {};
 }
 
+/// Returns the engine that draws this frame.
+Result<gi::Engine*> Pipeline::State::drawing_engine(const FrameRequest& request) {
+    if (!request.stand_in || !engine->info().reports_progress) return engine.get();
+    if (!stand_in) {
+        LUCARNE_ASSIGN(stand_in, gi::make_engine(gi::default_engine().name));
+    }
+    return stand_in.get();
+}
+
 /// Draws the G-buffer and lights it.
-Result<void> Pipeline::State::draw(const FrameRequest& request) {
+Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& request) {
     times.begin("G-buffer");
     const gi::PointSize size{static_cast<float>(scene.look.point_size),
                              static_cast<float>(scene.look.point_pixels)};
@@ -351,7 +392,7 @@ Result<void> Pipeline::State::draw(const FrameRequest& request) {
         LUCARNE_TRY(gi::blend(device, view, camera, gbuffer, size));
         times.end();
     }
-    LUCARNE_TRY(draw_with(*engine, request, presentation.sample(false)));
+    LUCARNE_TRY(draw_with(drawing, request, presentation.sample(false)));
     return other ? draw_with(*other, request, presentation.sample(true)) : Result<void>();
 }
 
@@ -379,6 +420,8 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
                     .environment = scene.environment,
                     .bounds = {local.to_local(header.min), local.to_local(header.max)},
                     .moving = request.moving,
+                    .light_seconds = request.light_seconds,
+                    .stop = request.stop,
                     .progress = request.progress,
                     .unlit = scene.look.unlit,
                     .gl = on_device,
@@ -390,19 +433,22 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.begin("load");
     LUCARNE_TRY(stream(request));
     times.end();
-    if (cuts_stale) {
+    LUCARNE_ASSIGN(gi::Engine* const drawing, drawing_engine(request));
+    const bool held = drawing->reads_light_cuts() && light_cuts_intact();
+    if (cuts_stale || (light_cuts_stale && !held)) {
         times.begin("upload of cuts");
-        LUCARNE_TRY(build_cuts());
+        LUCARNE_TRY(build_cuts(held));
         times.end();
         presentation.restart();
     }
     if (!request.accumulate || !presentation.averaged()) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
     shift_rays(camera, shifted ? presentation.accumulated() : 0);
-    LUCARNE_TRY(draw(request));
+    LUCARNE_TRY(draw(*drawing, request));
+    if (stopped(request)) return {};
     times.begin("tone map");
-    LUCARNE_TRY(
-        presentation.finish(*engine, other.get(), scene, gbuffer, {request.accumulate, request.transparent}));
+    LUCARNE_TRY(presentation.finish(*drawing, other.get(), scene, gbuffer,
+                                    {request.accumulate, request.transparent}));
     times.end();
     return {};
 }
@@ -566,6 +612,8 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
                       scene.albedo.flatten != state_->scene.albedo.flatten ||
                       scene.albedo.balance != state_->scene.albedo.balance;
     state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
+    state_->light_cuts_torn |= !(scene.look.clip == state_->scene.look.clip) ||
+                               scene.look.open_holes != state_->scene.look.open_holes;
     state_->scene = std::move(scene);
     return {};
 }
@@ -590,10 +638,13 @@ Result<FrameStats> Pipeline::render(const FrameRequest& request) {
     }
     LUCARNE_TRY(state.device.check());
     state.times.finish();
+    const bool given_up = stopped(request);
     state.last = request;
     state.changed = state.fresh = false;
     state.last_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return state.stats(state.last_seconds);
+    FrameStats stats = state.stats(state.last_seconds);
+    stats.given_up = given_up;
+    return stats;
 }
 
 }  // namespace lucarne::viewer

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,12 +40,17 @@ struct MemoryUse {
 struct FrameRequest {
     gi::SceneCamera camera;
     ImageSize size{1280, 720};
-    bool wait = false;             ///< loads complete cuts first: the same pixels on every run
-    bool accumulate = false;       ///< averages with earlier frames as long as nothing drawn changes
-    bool antialiased = true;       ///< shifts the rays of averaged frames; false: all of them as in the first
-    bool transparent = false;      ///< keeps the points' light apart from the background in averages
-    bool moving = false;           ///< a frame of a motion: the engine may reuse data of earlier frames
-    Progress* progress = nullptr;  ///< counts pixels, for slow engines (EngineInfo)
+    bool wait = false;         ///< loads complete cuts first: the same pixels on every run
+    bool accumulate = false;   ///< averages with earlier frames as long as nothing drawn changes
+    bool antialiased = true;   ///< shifts the rays of averaged frames; false: all of them as in the first
+    bool transparent = false;  ///< keeps the points' light apart from the background in averages
+    bool moving = false;       ///< a frame of a motion: the engine may reuse data of earlier frames
+    /// For motion in real time: the time that may be spent on light that outlasts a frame, s
+    /// (gi::Frame::light_seconds).
+    double light_seconds = std::numeric_limits<double>::infinity();
+    bool stand_in = false;  ///< lets the default engine draw in the place of one that takes long
+    const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
+    Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };
 
 struct FrameStats {
@@ -58,6 +65,7 @@ struct FrameStats {
     double cut_share = 1;  ///< share of the points allowed by the budgets that fits the caps
     MemoryUse memory;
     uint32_t accumulated = 1;  ///< frames in the picture
+    bool given_up = false;     ///< FrameRequest::stop: there is no new picture
     uint64_t nodes_lost = 0;   ///< unreadable nodes, which are left out with their descendants
     std::string lost_node;     ///< why the first of these could not be read
     std::vector<std::pair<std::string, double>> engine;

@@ -320,6 +320,15 @@ void Buffer::download(size_t offset, std::span<std::byte> out) const {
                             out.data());
 }
 
+void Buffer::copy_from(const Buffer& from, size_t from_offset, size_t offset, size_t bytes) {
+    if (offset > bytes_ || bytes > bytes_ - offset || from_offset > from.bytes_ ||
+        bytes > from.bytes_ - from_offset)
+        throw std::logic_error("copy beyond a buffer's end");
+    if (bytes == 0) return;
+    glCopyNamedBufferSubData(from.id_, id_, static_cast<GLintptr>(from_offset), static_cast<GLintptr>(offset),
+                             static_cast<GLsizeiptr>(bytes));
+}
+
 void Buffer::clear(uint32_t word) {
     if (id_) glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }

@@ -69,6 +69,8 @@ class Buffer {
     void upload(size_t offset, std::span<const std::byte> data);
     void download(size_t offset, std::span<std::byte> out) const;  ///< waits for the device
     void clear(uint32_t word);                                     ///< sets every 32-bit word
+    /// Copies bytes of another buffer on the device.
+    void copy_from(const Buffer& from, size_t from_offset, size_t offset, size_t bytes);
     /// Waits for the device and gives the host access to the buffer's own memory. Only for buffers of a
     /// device with native_passes(). Errors: the driver refuses.
     Result<MappedBuffer> map() const;

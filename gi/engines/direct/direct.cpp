@@ -1,8 +1,12 @@
 #include "gi/engines/direct/direct.h"
 
+#include <limits>
+
 #include "gi/bounce_options.h"
 #include "gi/gl_frame.h"
+#include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
+#include "gi/lighting/light_gbuffers.h"
 #include "gi/lighting/light_options.h"
 
 namespace lucarne::gi {
@@ -32,7 +36,8 @@ class DirectEngine : public Engine {
  private:
     Buffer materials_;
     Sky sky_;
-    GBuffer light_gbuffer_;  // reused for the view of each light in turn
+    LightGBuffers light_gbuffers_;
+    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
 };
 
 Result<void> DirectEngine::render(Frame& frame) {
@@ -43,12 +48,26 @@ Result<void> DirectEngine::render(Frame& frame) {
     frame.times.begin("emission");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, false));
     frame.times.end();
-    for (const LightView& from : light_views(frame, sky_.directions)) {
+    // In motion shadows may be those of a moment ago; one view a frame is brought up to date.
+    const bool in_parts = frame.moving && frame.light_seconds < std::numeric_limits<double>::infinity();
+    if (!in_parts) light_index_ = frame.index;
+    Frame sampled = frame;
+    sampled.index = light_index_;
+    const std::vector<LightView> views = light_views(sampled, sky_.directions);
+    Device& device = frame.gl.device;
+    light_gbuffers_.begin(device, views, views.size());
+    if (in_parts) {
+        const TimedPass timed(frame, "light G-buffer");
+        LUCARNE_TRY(light_gbuffers_.draw_missing(device, views));
+    }
+    for (const LightView& from : views) {
+        if (frame.stopped()) return {};
         frame.times.begin("light G-buffer");
-        LUCARNE_TRY(rasterize(frame.gl.device, *from.cut, from.view, light_gbuffer_));
+        LUCARNE_ASSIGN(const GBuffer* seen, in_parts ? light_gbuffers_.look_at_any_state(device, from)
+                                                     : light_gbuffers_.look(device, from));
         frame.times.end();
         frame.times.begin("direct light");
-        LUCARNE_TRY(add_light(frame, materials_, from, light_gbuffer_));
+        LUCARNE_TRY(add_light(frame, materials_, from, *seen));
         frame.times.end();
     }
     return {};

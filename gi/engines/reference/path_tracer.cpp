@@ -264,9 +264,11 @@ PathSums PathTracer::trace(const Start& start, uint64_t index) const {
     return sums;
 }
 
-std::vector<PathSums> PathTracer::trace(std::span<const Start> starts, Progress* progress) const {
+std::vector<PathSums> PathTracer::trace(std::span<const Start> starts, Progress* progress,
+                                        const std::atomic<bool>* stop) const {
     std::vector<PathSums> sums(starts.size());
     parallel_ranges(starts.size(), 64, [&](size_t first, size_t last) {
+        if (stop && *stop) return;
         for (size_t i = first; i < last; ++i) sums[i] = trace(starts[i], i);
         if (progress) progress->add(last - first);
     });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -56,8 +57,9 @@ class PathTracer {
 
     /// Returns one sum per start. Random numbers depend only on (seed, frame, index of the start, path), so
     /// the result is the same for any number of threads. Adds finished starts to `progress` unless it is
-    /// null.
-    std::vector<PathSums> trace(std::span<const Start> starts, Progress* progress = nullptr) const;
+    /// null. Leaves out the rest once `stop` is true (unless it is null).
+    std::vector<PathSums> trace(std::span<const Start> starts, Progress* progress = nullptr,
+                                const std::atomic<bool>* stop = nullptr) const;
 
     /// Returns the sum of one start; `index` selects its random numbers.
     PathSums trace(const Start& start, uint64_t index) const;

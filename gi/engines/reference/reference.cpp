@@ -136,7 +136,9 @@ Result<void> ReferenceEngine::render(Frame& frame) {
                                 .samples = frame.settings[reference::kSamples],
                                 .seed = frame.settings[kSeed],
                                 .frame = frame.index};
-    std::vector<PathSums> sums = PathTracer(*illumination_, settings).trace(starts, frame.progress);
+    std::vector<PathSums> sums =
+        PathTracer(*illumination_, settings).trace(starts, frame.progress, frame.stop);
+    if (frame.stopped()) return {};
     const bool seen_directly = frame.settings[kOnlyBounce] <= 0;
     for (size_t i = 0; i < pixels; ++i)
         if (!(starts[i].radius > 0) && seen_directly)

@@ -1,46 +1,24 @@
 #include "gi/engines/vpl/vpl.h"
 
-#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "gi/bounce_options.h"
-#include "gi/engines/vpl/footprints.h"
-#include "gi/engines/vpl/lobes.h"
+#include "gi/engines/vpl/lighting_maker.h"
 #include "gi/engines/vpl/options.h"
-#include "gi/engines/vpl/redistribution/redistribution.h"
-#include "gi/engines/vpl/seeding/light_gbuffers.h"
 #include "gi/engines/vpl/shading/shading.h"
-#include "gi/engines/vpl/shadow_maps/shadow_maps.h"
-#include "gi/engines/vpl/view_importance/view_importance.h"
 #include "gi/gl_frame.h"
 #include "gi/host_frame.h"
 #include "gi/lighting/direct_light.h"
 #include "gi/lighting/light_options.h"
-#include "io/core/random.h"
 
 namespace lucarne::gi {
 namespace vpl {
 namespace {
-
-/// Everything from which VPLs and maps are made.
-struct Basis {
-    SceneRevisions scene;
-    LightCutRevisions cuts;
-    uint64_t index = UINT64_MAX;  ///< of the frame
-    CameraView camera{};          ///< for which VPLs were chosen, if they are chosen by the view
-    bool operator==(const Basis&) const = default;
-};
-
-/// The VPLs of one bounce and their maps.
-struct Bounce {
-    Seeds seeds;
-    Buffer atlas;
-};
-
-// Bytes of maps that are kept from frame to frame: sixteen bounces of `interactive`, one of `high`.
-constexpr size_t kMostKept = size_t{64} << 20;
 
 constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info,    &kVpls.info,
                                           &kInterleave.info,   &kAtlas.info,         &kLightResolution.info,
@@ -53,6 +31,7 @@ class VplEngine : public Engine {
  public:
     const EngineInfo& info() const override { return kInfo; }
     std::vector<std::pair<std::string, double>> stats() const override;
+    bool reads_light_cuts() const override { return making_.running(); }
 
  protected:
     void update(const Changes& changes) override;
@@ -60,26 +39,34 @@ class VplEngine : public Engine {
     Result<void> render(Frame& frame) override;
 
  private:
-    Result<void> add_direct(Frame& frame);
-    Result<void> look_around(Frame& frame, const Basis& basis);
-    Result<void> light_indirectly(Frame& frame, const Basis& basis);
-    Result<void> seed(Frame& frame, Seeds& target);
+    Result<void> render_at_once(Frame& frame);
+    Result<void> render_in_motion(Frame& frame);
+    Result<void> make_and_shade(Frame& frame, const Basis& basis);
+    Result<void> take_steps(Frame& frame, const Basis& basis);
+    Result<void> shade_in_motion(Frame& frame, const Basis& basis);
+    Result<void> shade_ambient(Frame& frame);
+    Result<void> shade(Frame& frame, const Bounce& bounce, const AtlasLayout& layout, const Buffer& atlas);
+    Result<void> merge(Frame& frame);
+    Result<void> add_direct(Frame& frame, bool any_state);
+    LightingMaker::Inputs inputs(const Basis& now);
     Basis basis_of(const Frame& frame) const;
 
     Buffer materials_;
     Sky sky_;
+    SkyDirections light_sky_;   ///< the directions of the sky from which light is sampled
+    uint64_t light_index_ = 0;  ///< Frame::index by which lights with a size are sampled
+    std::vector<LightView> views_;
     LightGBuffers light_gbuffers_;
-    Seeds candidates_;
-    ViewImportance view_importance_;
-    std::vector<Bounce> bounces_;
-    ShadowMaps maps_;       ///< borrows the atlas of a bounce while it is drawn or read
-    Basis basis_;           ///< what bounces_ were made from
-    Basis looked_;          ///< for which the casters were decoded and the importance was measured
+    LightingMaker making_;
+    /// The light of the first frame of an average, which a moving camera sees as well; and the light of the
+    /// average's other frames, or that which is being made while the camera moves.
+    Lighting lasting_, other_;
+    AtlasLayout layout_;    ///< of the last frame
+    float ambient_ = 0;     ///< W/m^2, until there is any light to show in motion
     SceneRevisions scene_;  ///< of the frame that is drawn
     LightCutRevisions cuts_;
     Tiles tiles_;
     History history_;
-    Redistribution redistribution_;
     bool indirect_ = false;  ///< the last frame had indirect light
 };
 
@@ -90,26 +77,16 @@ bool wants_indirect(const EngineSettings& s) {
     return s[kOnlyBounce] < 0 ? s[kBounces] > 0 : s[kOnlyBounce] > 0;
 }
 
-bool glossy(const Frame& frame) {
-    return std::any_of(frame.materials.begin(), frame.materials.end(),
-                       [](const Material& m) { return m.diffuse.w > 0; });
-}
-
-template <class Body>
-Result<void> pass(Frame& frame, const char* name, const Body& body) {
-    const TimedPass timed(frame, name);
-    return body();
-}
-
 Result<void> VplEngine::prepare(Frame& frame) {
     const EngineSettings& s = frame.settings;
     if (s[kInterleave] != 1 && s[kInterleave] != 2 && s[kInterleave] != 4)
         return bad_arguments("vpl", fmt::format("it cannot interleave {0} x {0} pixels", s[kInterleave]),
                              "choose 1, 2 or 4");
-    LUCARNE_TRY(atlas_layout(s[kAtlas], s[kVpls]));
+    LUCARNE_ASSIGN(layout_, atlas_layout(s[kAtlas], s[kVpls]));
     if (frame.gl.cuts.light_views.size() < frame.lights.size())
         return failed("vpl", "there are fewer light views than lights");
     LUCARNE_TRY(upload_sky(frame, sky_));
+    if (light_sky_.environment() != sky_.directions.environment()) light_sky_ = sky_.directions;
     return upload_materials(frame.gl.device, frame.materials, materials_);
 }
 
@@ -121,128 +98,180 @@ void VplEngine::update(const Changes& changes) {
 /// Returns what the VPLs of a frame are made from. A moving camera keeps the VPLs that were chosen for a view
 /// close to its own: new ones in every frame would flicker.
 Basis VplEngine::basis_of(const Frame& frame) const {
-    Basis basis{scene_, cuts_, frame.index, {}};
+    Basis basis{scene_, frame.settings, cuts_, frame.index, {}};
+    basis.scene.settings = 0;
+    basis.settings.set(kInterleave, 1);
+    basis.settings.set(kReuse, true);
     if (!frame.settings[kViewVpls]) return basis;
-    const bool serves = frame.moving && view_importance_.serves(frame.camera);
-    basis.camera = serves ? looked_.camera : frame.camera;
+    const bool serves = frame.moving && making_.serves(frame.camera);
+    basis.camera = serves ? making_.looked_from() : frame.camera;
     return basis;
 }
 
-/// Places the VPLs of the first bounce. The casters must have been decoded.
-Result<void> VplEngine::seed(Frame& frame, Seeds& target) {
-    const EngineSettings& s = frame.settings;
-    const uint64_t seed = mix64(s[kSeed], frame.index);
-    const uint32_t count = s[kViewVpls] ? candidates_for(s[kVpls]) : s[kVpls];
-    Seeds& placed = s[kViewVpls] ? candidates_ : target;
-    LUCARNE_TRY(pass(frame, "VPL seeding",
-                     [&] { return light_gbuffers_.seed(frame, materials_, count, seed, placed); }));
-    if (!s[kViewVpls]) return {};
-    LUCARNE_TRY(pass(frame, "VPL importance",
-                     [&] { return view_importance_.measure(frame.gl.device, candidates_, count); }));
-    target.host_lights =
-        draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls], seed);
-    LUCARNE_TRY(frame.gl.device.reserve(target.lights, s[kVpls] * sizeof(VplLight), "virtual point lights"));
-    target.lights.upload_all(target.host_lights);
-    return {};
+LightingMaker::Inputs VplEngine::inputs(const Basis& now) {
+    return {.now = now,
+            .materials = materials_,
+            .sky = sky_.directions,
+            .light_gbuffers = light_gbuffers_,
+            .light_index = light_index_};
 }
 
-/// Decodes the casters and measures what matters to the camera.
-Result<void> VplEngine::look_around(Frame& frame, const Basis& basis) {
-    if (looked_ == basis) return {};
-    looked_.index = UINT64_MAX;  // invalid until everything is done
-    LUCARNE_TRY(pass(frame, "ISM casters",
-                     [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); }));
-    sky_.directions.favour({});
-    if (frame.settings[kViewVpls]) {
-        const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
-        LUCARNE_TRY(view_importance_.look(frame, materials_, seed, maps_));
-        if (!sky_.directions.dark()) {
-            LUCARNE_ASSIGN(const auto openings, view_importance_.openings(frame.gl.device));
-            sky_.directions.favour(openings);
+/// Adds the light of the VPLs of one bounce.
+Result<void> VplEngine::shade(Frame& frame, const Bounce& bounce, const AtlasLayout& layout,
+                              const Buffer& atlas) {
+    return timed(frame, "VPL shading",
+                 [&] { return shade_tiles(frame, materials_, bounce.seeds, layout, atlas, tiles_); });
+}
+
+Result<void> VplEngine::merge(Frame& frame) {
+    const bool reuse = frame.moving && frame.settings[kReuse];
+    if (reuse) LUCARNE_TRY(history_.begin(frame, scene_));
+    return timed(frame, "VPL merge",
+                 [&] { return merge_tiles(frame, materials_, tiles_, reuse ? &history_ : nullptr); });
+}
+
+/// Sets frame.gl.radiance to the light of the requested bounces. VPLs and maps are kept while nothing but the
+/// camera moves.
+Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
+    const EngineSettings& s = frame.settings;
+    const uint32_t last = last_bounce(s);
+    const bool keep = keeps_bounces(layout_, last);
+    Lighting& lighting = keep && frame.index == 0 ? lasting_ : other_;
+    const auto shade_bounce = [&](uint32_t bounce) -> Result<void> {
+        if (s[kOnlyBounce] >= 0 && bounce < last) return {};
+        return shade(frame, lighting.bounces[bounce - 1], lighting.layout,
+                     lighting.bounces[keep ? bounce - 1 : 0].atlas);
+    };
+    LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
+    if (!keep || !(lighting.basis == basis)) {
+        making_.begin(basis);
+        while (making_.running()) {
+            if (frame.stopped()) return {};
+            LUCARNE_TRY(making_.step(frame, inputs(basis), lighting));
+            if (!keep && making_.made()) LUCARNE_TRY(shade_bounce(making_.made()));
         }
     }
-    looked_ = basis;
+    for (uint32_t bounce = 1; keep && bounce <= last; ++bounce) LUCARNE_TRY(shade_bounce(bounce));
+    return merge(frame);
+}
+
+/// Continues to make light, for the time that the frame allows.
+Result<void> VplEngine::take_steps(Frame& frame, const Basis& basis) {
+    if (!making_.goes_on(basis)) making_.begin(basis);
+    const auto start = std::chrono::steady_clock::now();
+    std::chrono::duration<double> spent{};
+    LightingMaker::Inputs in = inputs(basis);
+    in.small_steps = true;
+    while (making_.running() && spent.count() <= frame.light_seconds) {
+        LUCARNE_TRY(making_.step(frame, in, other_));
+        spent = std::chrono::steady_clock::now() - start;
+    }
+    if (making_.running()) return {};
+    std::swap(lasting_, other_);
+    light_sky_ = making_.sky();
     return {};
 }
 
-/// Sets frame.gl.radiance to the light of the requested bounces. It places VPLs on the surfaces that the
-/// lights see, draws their shadow maps and shades interleaved pixels, then redistributes the VPLs and repeats
-/// this for the next bounce. VPLs and maps are kept while nothing but the camera moves.
-Result<void> VplEngine::light_indirectly(Frame& frame, const Basis& basis) {
-    const EngineSettings& s = frame.settings;
-    const uint32_t last = s[kOnlyBounce] < 0 ? s[kBounces] : static_cast<uint32_t>(s[kOnlyBounce]);
-    LUCARNE_ASSIGN(const AtlasLayout layout, atlas_layout(s[kAtlas], s[kVpls]));
-    const bool keep = layout.texels() * sizeof(uint32_t) * last <= kMostKept;
-    const bool held = keep && basis == basis_;
-    basis_.index = UINT64_MAX;  // invalid until everything is drawn
-    // Each averaged frame blurs less, so that the average converges.
-    const float shrink = 1.0f / static_cast<float>(frame.index + 1);
-    bounces_.resize(std::max<size_t>(bounces_.size(), last));
-    redistribution_.best_candidate = s[kBestCandidate];
-    redistribution_.footprint_variance = footprint_variance(frame.index);
-    LUCARNE_TRY(pass(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
-    if (!held) LUCARNE_TRY(seed(frame, bounces_[0].seeds));
-    for (uint32_t bounce = 1; bounce <= last; ++bounce) {
-        Seeds& seeds = bounces_[bounce - 1].seeds;
-        Buffer& atlas = bounces_[keep ? bounce - 1 : 0].atlas;
-        std::swap(maps_.atlas, atlas);
-        Result<void> done = held ? Result<void>{}
-                                 : draw_shadow_maps(frame.gl.device, *frame.gl.cuts.light, seeds, layout,
-                                                    bounce < last, frame.times, maps_);
-        if (done && !held)
-            done = pass(frame, "VPL footprints",
-                        [&] { return trim_footprints(frame.gl.device, maps_, shrink, seeds); });
-        if (done && (s[kOnlyBounce] < 0 || bounce == last))
-            done = pass(frame, "VPL shading",
-                        [&] { return shade_tiles(frame, materials_, seeds, maps_, tiles_); });
-        if (done && !held && bounce < last)
-            done = pass(frame, "VPL redistribution", [&] {
-                const auto salt = static_cast<uint32_t>(mix64(mix64(s[kSeed], frame.index), bounce));
-                return redistribute(frame.gl.device, *frame.gl.cuts.light, maps_, materials_, glossy(frame),
-                                    salt, seeds, redistribution_, bounces_[bounce].seeds);
-            });
-        std::swap(maps_.atlas, atlas);
-        LUCARNE_TRY(done);
+/// Shades with the last light that was made. On a processor, VPLs of all bounces share the time of one.
+Result<void> VplEngine::shade_in_motion(Frame& frame, const Basis& basis) {
+    if (!lasting_.serves(basis)) return shade_ambient(frame);
+    LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
+    const uint32_t last = last_bounce(frame.settings);
+    if (frame.settings[kOnlyBounce] < 0 && last > 1 && frame.gl.device.info().software) {
+        if (!lasting_.is_united)
+            LUCARNE_TRY(timed(frame, "VPL union", [&] { return unite_bounces(frame.gl.device, lasting_); }));
+        LUCARNE_TRY(shade(frame, lasting_.united, lasting_.layout, lasting_.united.atlas));
+    } else {
+        for (uint32_t bounce = frame.settings[kOnlyBounce] < 0 ? 1 : last; bounce <= last; ++bounce)
+            LUCARNE_TRY(shade(frame, lasting_.bounces[bounce - 1], lasting_.layout,
+                              lasting_.bounces[bounce - 1].atlas));
     }
-    basis_ = basis;
-    const bool reuse = frame.moving && s[kReuse];
-    if (reuse) LUCARNE_TRY(history_.begin(frame, scene_));
-    return pass(frame, "VPL merge",
-                [&] { return merge_tiles(frame, materials_, tiles_, reuse ? &history_ : nullptr); });
+    return merge(frame);
 }
 
-/// Adds emission, background and the first reflection of the lights.
-Result<void> VplEngine::add_direct(Frame& frame) {
+/// Lights the picture evenly. The VPLs that come later replace this light as quickly as History forgets it.
+Result<void> VplEngine::shade_ambient(Frame& frame) {
+    if (other_.layout.maps && !other_.bounces.empty())
+        ambient_ = ambient_irradiance(other_.bounces[0].seeds, frame.bounds);
+    Frame plain = frame;
+    plain.settings.set(kInterleave, 1);  // so that each pixel is lit by itself
+    LUCARNE_TRY(timed(plain, "VPL join", [&] { return join_tiles(plain, glossy(plain), tiles_); }));
+    tiles_.diffuse.clear(std::bit_cast<uint32_t>(ambient_));
+    return merge(plain);
+}
+
+/// Adds emission, background and the first reflection of the lights. `any_state`: shadows may be those of a
+/// moment ago.
+Result<void> VplEngine::add_direct(Frame& frame, bool any_state) {
+    Device& device = frame.gl.device;
     frame.times.begin("direct light");
     LUCARNE_TRY(add_own_light(frame, materials_, sky_, true));
-    for (size_t i = 0; i < light_gbuffers_.views().size(); ++i) {
-        LUCARNE_ASSIGN(const GBuffer* seen, light_gbuffers_.look(frame, i));
-        LUCARNE_TRY(add_light(frame, materials_, light_gbuffers_.views()[i], *seen));
+    for (const LightView& view : views_) {
+        LUCARNE_ASSIGN(const GBuffer* seen, any_state ? light_gbuffers_.look_at_any_state(device, view)
+                                                      : light_gbuffers_.look(device, view));
+        LUCARNE_TRY(add_light(frame, materials_, view, *seen));
     }
     frame.times.end();
     return {};
+}
+
+/// Makes all light that the frame needs.
+Result<void> VplEngine::render_at_once(Frame& frame) {
+    const EngineSettings& s = frame.settings;
+    making_.stop();
+    light_index_ = frame.index;
+    const Basis basis = basis_of(frame);
+    const bool lit = !frame.lights.empty() || !sky_.directions.dark() || emits(frame);
+    const bool favours = s[kViewVpls] && !sky_.directions.dark();
+    if (lit && (wants_indirect(s) || favours)) {
+        LUCARNE_TRY(making_.look(frame, inputs(basis), basis));
+        light_sky_ = making_.sky();
+    }
+    views_ = light_views(frame, light_sky_);
+    light_gbuffers_.begin(frame.gl.device, views_, views_.size());
+    if (!views_.empty())
+        LUCARNE_TRY(
+            timed(frame, "light G-buffer", [&] { return light_gbuffers_.look(frame.gl.device, views_[0]); }));
+    indirect_ = wants_indirect(s) && (!views_.empty() || emits(frame));
+    if (indirect_)
+        LUCARNE_TRY(make_and_shade(frame, basis));
+    else
+        frame.gl.radiance.clear(0);
+    if (frame.stopped()) return {};
+    return wants_direct(s) ? add_direct(frame, false) : Result<void>{};
+}
+
+/// Shows light of earlier frames where that of this one takes long, and makes new light meanwhile.
+Result<void> VplEngine::render_in_motion(Frame& frame) {
+    Frame sampled = frame;
+    sampled.index = light_index_;
+    views_ = light_views(sampled, light_sky_);
+    light_gbuffers_.begin(frame.gl.device, views_, 2 * views_.size());
+    indirect_ = wants_indirect(frame.settings) && (!views_.empty() || emits(frame));
+    if (indirect_) {
+        const Basis basis = basis_of(frame);
+        if (lasting_.basis == basis)
+            making_.stop();
+        else
+            LUCARNE_TRY(take_steps(frame, basis));
+        LUCARNE_TRY(shade_in_motion(frame, basis));
+    } else {
+        frame.gl.radiance.clear(0);
+        LUCARNE_TRY(timed(frame, "light G-buffer",
+                          [&] { return light_gbuffers_.draw_missing(frame.gl.device, views_); }));
+    }
+    return wants_direct(frame.settings) ? add_direct(frame, true) : Result<void>{};
 }
 
 Result<void> VplEngine::render(Frame& frame) {
-    const Basis basis = basis_of(frame);
-    const bool lit = !frame.lights.empty() || !sky_.directions.dark() || emits(frame);
-    const bool favours = frame.settings[kViewVpls] && !sky_.directions.dark();
-    if (lit && (wants_indirect(frame.settings) || favours)) LUCARNE_TRY(look_around(frame, basis));
-    light_gbuffers_.begin(frame, sky_.directions);
-    frame.times.begin("light G-buffer");
-    if (!light_gbuffers_.views().empty()) LUCARNE_TRY(light_gbuffers_.look(frame, 0));
-    frame.times.end();
-    indirect_ = wants_indirect(frame.settings) && (!light_gbuffers_.views().empty() || emits(frame));
-    if (indirect_)
-        LUCARNE_TRY(light_indirectly(frame, basis));
-    else
-        frame.gl.radiance.clear(0);
-    return wants_direct(frame.settings) ? add_direct(frame) : Result<void>{};
+    const bool in_parts = frame.moving && frame.light_seconds < std::numeric_limits<double>::infinity() &&
+                          keeps_bounces(layout_, last_bounce(frame.settings));
+    return in_parts ? render_in_motion(frame) : render_at_once(frame);
 }
 
 std::vector<std::pair<std::string, double>> VplEngine::stats() const {
     if (!indirect_) return {{"vpls", 0}};
-    return {{"vpls", maps_.layout.maps}, {"ism_side", maps_.layout.side}};
+    return {{"vpls", layout_.maps}, {"ism_side", layout_.side}};
 }
 
 }  // namespace

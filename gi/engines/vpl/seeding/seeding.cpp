@@ -151,6 +151,10 @@ std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count)
     return shares;
 }
 
+double leaving_light(const VplLight& light) {
+    return luminance(glm::vec3(light.diffuse)) + light.incident.w * luminance(glm::vec3(light.flux));
+}
+
 void settle_lights(Seeds& seeds, uint32_t count) {
     seeds.host_lights = seeds.lights.download_all<VplLight>(count);
     clear_rims(seeds.host_lights);

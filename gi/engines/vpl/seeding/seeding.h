@@ -42,6 +42,9 @@ Result<void> seed_view(Device& device, const LightGBuffer& gbuffer, const Buffer
 /// above 0 (while VPLs last). The sum is `count` unless all weights are 0.
 std::vector<uint32_t> share_out(std::span<const double> weights, uint32_t count);
 
+/// Returns the light that leaves a VPL, W/sr along its normal, lobes counted like diffuse light.
+double leaving_light(const VplLight& light);
+
 /// Copies the VPLs to the host and lets those on rims give their flux to the others, there and on the
 /// device.
 void settle_lights(Seeds& seeds, uint32_t count);

@@ -41,21 +41,21 @@ Result<void> join_natively(const Frame& frame, Tiles& target) {
     return {};
 }
 
-Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const ShadowMaps& maps,
-                            const Tiles& target) {
+Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const AtlasLayout& layout,
+                            const Buffer& atlas_buffer, const Tiles& target) {
     LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
     LUCARNE_ASSIGN(const MappedBuffer lights, seeds.lights.map());
-    LUCARNE_ASSIGN(const MappedBuffer atlas, maps.atlas.map());
+    LUCARNE_ASSIGN(const MappedBuffer atlas, atlas_buffer.map());
     LUCARNE_ASSIGN(const MappedBuffer diffuse, target.diffuse.map());
     LUCARNE_ASSIGN(const MappedBuffer own_diffuse, target.own_diffuse.map());
     LUCARNE_ASSIGN(const MappedBuffer isolated, target.isolated.map());
     LUCARNE_ASSIGN(const MappedBuffer joints, target.joints.map());
     const native::GatherInput input{.camera = frame.camera,
                                     .texels = texels.as<const GBufferTexel>().data(),
-                                    .lights = lights.as<const VplLight>().first(maps.layout.maps),
+                                    .lights = lights.as<const VplLight>().first(layout.maps),
                                     .atlas = atlas.as<const uint32_t>().data(),
-                                    .side = maps.layout.side,
-                                    .splat_angle = maps.layout.splat_angle};
+                                    .side = layout.side,
+                                    .splat_angle = layout.splat_angle};
     const native::GatherOutput output{
         .irradiance = diffuse.as<glm::vec4>().data(),
         .own_irradiance = own_diffuse.as<glm::vec4>().data(),
@@ -67,6 +67,11 @@ Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const Shadow
 }
 
 }  // namespace
+
+bool glossy(const Frame& frame) {
+    return std::any_of(frame.materials.begin(), frame.materials.end(),
+                       [](const Material& m) { return m.diffuse.w > 0; });
+}
 
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     LUCARNE_ASSIGN(const Program* join, frame.gl.device.program("gi/engines/vpl/shading/join.comp"));
@@ -92,20 +97,21 @@ Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     return {};
 }
 
-Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         Tiles& target) {
-    if (frame.gl.device.native_passes() && !target.glossy) return shade_natively(frame, seeds, maps, target);
+Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const AtlasLayout& layout,
+                         const Buffer& atlas, Tiles& target) {
+    if (frame.gl.device.native_passes() && !target.glossy)
+        return shade_natively(frame, seeds, layout, atlas, target);
     LUCARNE_ASSIGN(const Program* shade,
                    frame.gl.device.program("gi/engines/vpl/shading/shade.comp", defines(target)));
     LUCARNE_ASSIGN(const Program* shade_isolated,
                    frame.gl.device.program("gi/engines/vpl/shading/shade_isolated.comp", defines(target)));
     materials.bind(kBindMaterials);
     seeds.lights.bind_texels(kUnitLights, TexelView::four_words);
-    maps.atlas.bind_texels(kUnitAtlas, TexelView::one_word);
+    atlas.bind_texels(kUnitAtlas, TexelView::one_word);
     for (const Program* program : {shade, shade_isolated}) {
         bind_pixels(frame, *program);
-        set_layout(*program, maps.layout);
-        program->set("light_count", maps.layout.maps);
+        set_layout(*program, layout);
+        program->set("light_count", layout.maps);
         program->set("footprint_variance", footprint_variance(frame.index));
     }
     const uint32_t n = frame.settings[kInterleave];

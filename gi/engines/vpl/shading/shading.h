@@ -17,14 +17,17 @@ struct Tiles {
     bool glossy = false;
 };
 
+/// Whether any material has a specular lobe.
+bool glossy(const Frame& frame);
+
 /// Decides from which pixels the light of each pixel is gathered, and clears the light. `glossy` says
 /// whether any material has a specular lobe. Errors: no device memory, a shader that fails.
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target);
 
-/// Adds the light of these VPLs to every pixel. `materials` comes from upload_materials(). Errors: a shader
-/// that fails.
-Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const ShadowMaps& maps,
-                         Tiles& target);
+/// Adds the light of these VPLs, whose maps are `atlas`, to every pixel. `materials` comes from
+/// upload_materials(). Errors: a shader that fails.
+Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& seeds, const AtlasLayout& layout,
+                         const Buffer& atlas, Tiles& target);
 
 /// Writes the gathered light of all tiles to frame.gl.radiance, averaged with `history` unless it is null;
 /// History::begin() must have been called for the frame. Errors: a shader that fails.

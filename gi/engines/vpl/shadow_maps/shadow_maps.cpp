@@ -157,19 +157,22 @@ Result<void> splat_ranges(Device& device, const SplatPrograms& splat, std::vecto
     return {};
 }
 
-/// Draws all maps in C++.
-Result<void> splat_natively(const DeviceCut& cut, const Seeds& seeds, const ShadowMaps& target) {
+/// Draws a range of maps in C++.
+Result<void> splat_natively(const DeviceCut& cut, const Seeds& seeds, const Range& maps,
+                            const ShadowMaps& target) {
+    const size_t first = size_t{maps.first} * target.layout.side * target.layout.side;
     LUCARNE_ASSIGN(const MappedBuffer casters, target.casters.map());
     LUCARNE_ASSIGN(const MappedBuffer bounds, target.bounds.map());
     LUCARNE_ASSIGN(const MappedBuffer lights, seeds.lights.map());
     LUCARNE_ASSIGN(const MappedBuffer atlas, target.atlas.map());
     LUCARNE_ASSIGN(const MappedBuffer fringe, target.fringe.map());
-    native::SplatMemory memory{.casters = casters.as<const uint32_t>().data(),
-                               .bounds = bounds.as<const float>().data(),
-                               .blocks = cut.blocks(),
-                               .lights = lights.as<const VplLight>().first(target.layout.maps),
-                               .atlas = atlas.as<uint32_t>().data(),
-                               .fringe = fringe.as<uint32_t>().data()};
+    native::SplatMemory memory{
+        .casters = casters.as<const uint32_t>().data(),
+        .bounds = bounds.as<const float>().data(),
+        .blocks = cut.blocks(),
+        .lights = lights.as<const VplLight>().subspan(maps.first, maps.end - maps.first),
+        .atlas = atlas.as<uint32_t>().data() + first,
+        .fringe = fringe.as<uint32_t>().data() + first};
     const native::SplatLayout layout{.side = target.layout.side,
                                      .splat_angle = target.layout.splat_angle,
                                      .cut_size = cut.size(),
@@ -180,15 +183,16 @@ Result<void> splat_natively(const DeviceCut& cut, const Seeds& seeds, const Shad
     }
     LUCARNE_ASSIGN(const MappedBuffer sources, target.sources.map());
     LUCARNE_ASSIGN(const MappedBuffer fringe_sources, target.fringe_sources.map());
-    memory.sources = sources.as<uint32_t>().data();
-    memory.fringe_sources = fringe_sources.as<uint32_t>().data();
+    memory.sources = sources.as<uint32_t>().data() + first;
+    memory.fringe_sources = fringe_sources.as<uint32_t>().data() + first;
     native::splat(memory, layout);
     return {};
 }
 
-Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, ShadowMaps& target) {
+Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, const Range& maps,
+                   ShadowMaps& target) {
     if (cut.blocks() == 0) return {};
-    if (device.native_passes()) return splat_natively(cut, seeds, target);
+    if (device.native_passes()) return splat_natively(cut, seeds, maps, target);
     LUCARNE_ASSIGN(const Program* meet, device.program("gi/engines/vpl/shadow_maps/meet.comp"));
     LUCARNE_ASSIGN(const Program* enter, device.program("gi/engines/vpl/shadow_maps/enter.comp"));
     LUCARNE_ASSIGN(const Program* plan, device.program("gi/engines/vpl/shadow_maps/plan.comp"));
@@ -222,8 +226,8 @@ Result<void> splat(Device& device, const DeviceCut& cut, const Seeds& seeds, Sha
         target.fringe_sources.bind(kBindFringeSources);
     }
     std::vector<BlocksAndMaps> ranges;
-    for (uint32_t first = 0; first < target.layout.maps; first += kRunMaps)
-        ranges.push_back({{0, cut.blocks()}, {first, std::min(first + kRunMaps, target.layout.maps)}});
+    for (uint32_t first = maps.first; first < maps.end; first += kRunMaps)
+        ranges.push_back({{0, cut.blocks()}, {first, std::min(first + kRunMaps, maps.end)}});
     return splat_ranges(device, programs, std::move(ranges), places, target);
 }
 
@@ -275,24 +279,33 @@ Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& ta
     return {};
 }
 
-Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
-                              const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target) {
+Result<void> clear_shadow_maps(Device& device, const DeviceCut& cut, const AtlasLayout& layout, bool sources,
+                               ShadowMaps& target) {
     LUCARNE_TRY(device.reserve(target.atlas, layout.texels() * sizeof(uint32_t), "ISM atlas"));
     LUCARNE_TRY(device.reserve(target.fringe, layout.texels() * sizeof(uint32_t), "ISM atlas"));
-    LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
+    if (!device.native_passes())
+        LUCARNE_TRY(device.reserve(target.coarse, layout.coarse_texels() * sizeof(uint32_t), "ISM pyramid"));
     target.layout = layout;
     target.id_bits = sources ? static_cast<uint32_t>(std::bit_width(cut.blocks() * kBlockSurfels)) : 0;
-    if (sources) {
-        LUCARNE_TRY(device.reserve(target.sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
-        LUCARNE_TRY(device.reserve(target.fringe_sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
-        target.sources.clear(kNothing);
-        target.fringe_sources.clear(kNothing);
-    }
-    times.begin("ISM splat");
     target.atlas.clear(kNothing);
     target.fringe.clear(kNothing);
-    LUCARNE_TRY(splat(device, cut, seeds, target));
+    if (!sources) return {};
+    LUCARNE_TRY(device.reserve(target.sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
+    LUCARNE_TRY(device.reserve(target.fringe_sources, layout.texels() * sizeof(uint32_t), "ISM sources"));
+    target.sources.clear(kNothing);
+    target.fringe_sources.clear(kNothing);
+    return {};
+}
+
+Result<void> splat_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds, uint32_t first,
+                               uint32_t end, PassTimes& times, ShadowMaps& target) {
+    times.begin("ISM splat");
+    const auto drawn = splat(device, cut, seeds, {first, end}, target);
     times.end();
+    return drawn;
+}
+
+Result<void> close_shadow_maps(Device& device, PassTimes& times, ShadowMaps& target) {
     times.begin("ISM pull-push");
     if (device.native_passes()) {
         LUCARNE_TRY(close_natively(target));
@@ -302,6 +315,13 @@ Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds&
     }
     times.end();
     return {};
+}
+
+Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
+                              const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target) {
+    LUCARNE_TRY(clear_shadow_maps(device, cut, layout, sources, target));
+    LUCARNE_TRY(splat_shadow_maps(device, cut, seeds, 0, layout.maps, times, target));
+    return close_shadow_maps(device, times, target);
 }
 
 }  // namespace lucarne::gi::vpl

@@ -48,4 +48,12 @@ Result<void> decode_casters(Device& device, const DeviceCut& cut, ShadowMaps& ta
 Result<void> draw_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds,
                               const AtlasLayout& layout, bool sources, PassTimes& times, ShadowMaps& target);
 
+/// The same in parts: empties the maps, draws those from `first` to before `end`, and closes the holes of
+/// all.
+Result<void> clear_shadow_maps(Device& device, const DeviceCut& cut, const AtlasLayout& layout, bool sources,
+                               ShadowMaps& target);
+Result<void> splat_shadow_maps(Device& device, const DeviceCut& cut, const Seeds& seeds, uint32_t first,
+                               uint32_t end, PassTimes& times, ShadowMaps& target);
+Result<void> close_shadow_maps(Device& device, PassTimes& times, ShadowMaps& target);
+
 }  // namespace lucarne::gi::vpl

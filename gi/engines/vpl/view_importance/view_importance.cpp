@@ -9,7 +9,6 @@
 #include "gi/engines/vpl/view_importance/openings.h"
 #include "gi/lighting/sky_grid.h"
 #include "gi/raster/uniforms.h"
-#include "gi/shared/luminance.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::vpl {
@@ -36,11 +35,6 @@ std::vector<float> spread(const std::vector<uint32_t>& sums) {
             shares[row * kSkyColumns + column] += static_cast<float>(sums[cell]) / (9 * kOpeningSteps);
         }
     return shares;
-}
-
-/// Returns the light that leaves a candidate, W/sr along its normal, lobes counted like diffuse light.
-double leaving(const VplLight& light) {
-    return luminance(glm::vec3(light.diffuse)) + light.incident.w * luminance(glm::vec3(light.flux));
 }
 
 /// Returns the median distance of the importons from the camera, m; 0 if there are none.
@@ -142,7 +136,7 @@ std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std:
     std::vector<double> weights(candidates.size());
     double light_sum = 0, weight_sum = 0;
     for (size_t i = 0; i < candidates.size(); ++i) {
-        const double light = leaving(candidates[i]);
+        const double light = leaving_light(candidates[i]);
         weights[i] = importance[i] > 0 ? light * static_cast<double>(importance[i]) : 0;  // NaN: 0
         light_sum += light;
         weight_sum += weights[i];
@@ -154,7 +148,7 @@ std::vector<VplLight> draw_candidates(std::span<const VplLight> candidates, std:
     double running = 0;  // expected number of VPLs drawn up to here
     uint32_t next = 0;
     for (size_t i = 0; i < candidates.size() && next < count; ++i) {
-        const double probability = alone * leaving(candidates[i]) / light_sum +
+        const double probability = alone * leaving_light(candidates[i]) / light_sum +
                                    (weight_sum > 0 ? (1 - alone) * weights[i] / weight_sum : 0);
         const double expected = count * probability;
         running += expected;

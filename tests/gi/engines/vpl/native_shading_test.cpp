@@ -91,7 +91,7 @@ class NativeShading : public OnDevice {
         EXPECT_TRUE(upload_materials(*device, frame.materials, materials_));
         Tiles tiles;
         EXPECT_TRUE(join_tiles(frame, false, tiles));
-        EXPECT_TRUE(shade_tiles(frame, materials_, seeds_, maps_, tiles));
+        EXPECT_TRUE(shade_tiles(frame, materials_, seeds_, maps_.layout, maps_.atlas, tiles));
         const uint32_t isolated = tiles.isolated.download_all<uint32_t>(4)[3];
         auto list = tiles.isolated.download_all<uint32_t>(4 + isolated);
         list.erase(list.begin(), list.begin() + 4);
