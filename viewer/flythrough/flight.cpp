@@ -15,6 +15,8 @@
 namespace lucarne::viewer {
 namespace {
 
+constexpr double kUsualFrameTime = 0.1;  ///< s, of a flight in real time without a target
+
 /// A wall clock that can be paused.
 class FlightClock {
  public:
@@ -161,6 +163,9 @@ struct Flying {
         request.size = options.size;
         request.wait = options.wait;
         request.moving = true;
+        if (!options.wait)
+            request.light_seconds =
+                kLightShare * (options.frame_time > 0 ? options.frame_time : kUsualFrameTime);
         FlownFrame frame;
         frame.time = time;
         frame.lap = lap;

@@ -43,6 +43,9 @@ class CostModel {
     std::map<std::string, std::deque<Sample>, std::less<>> passes_;
 };
 
+/// The share of a frame's time in which light that outlasts the frame is made (FrameRequest::light_seconds).
+inline constexpr double kLightShare = 0.3;
+
 /// Chooses budgets that keep frames to a target time. The view's budget changes from frame to frame. A change
 /// of the lights' cuts makes an engine light everything again; so their budgets are halved only if the least
 /// view is still too slow, and doubled again when there is time to spare.

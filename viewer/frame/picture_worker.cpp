@@ -1,5 +1,6 @@
 #include "viewer/frame/picture_worker.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <future>
 #include <mutex>
@@ -35,6 +36,8 @@ struct PictureWorker::State {
     std::optional<WorkerDevice> next_device;
     gi::DeviceInfo device;
     bool stop = false;
+    std::atomic<bool> give_up = false;  ///< the picture that is being made
+    bool may_give_up = false;           ///< whether it may be, for one of a motion
     std::function<void()> published;
     std::thread thread;
 
@@ -73,13 +76,19 @@ Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& 
     return {};
 }
 
+/// Returns null if the picture was given up.
 Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipeline,
-                                              const PictureRequest& request) {
+                                              const PictureRequest& request,
+                                              const std::atomic<bool>& give_up) {
     auto picture = std::make_shared<Picture>();
-    LUCARNE_ASSIGN(picture->stats, pipeline.render(request.frame));
+    FrameRequest frame = request.frame;
+    frame.stop = &give_up;
+    LUCARNE_ASSIGN(picture->stats, pipeline.render(frame));
+    if (picture->stats.given_up) return nullptr;
     const gi::GBuffer& gbuffer = pipeline.gbuffer();
     const size_t pixels = size_t{gbuffer.width} * gbuffer.height;
     picture->moving = request.moving;
+    picture->sketch = request.sketch;
     picture->size = {gbuffer.width, gbuffer.height};
     picture->rgba = pipeline.picture().download_all<std::byte>(pixels * 4);
     picture->depth.reserve(pixels);
@@ -183,6 +192,8 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
             if (other) last_source = *other;
             request = wanted;
             request_number = wanted_number;
+            give_up = false;
+            may_give_up = request && (!request->moving || request->sketch);
         }
         if (other) warnings = {};
         const log::Operation::Scope scope(warnings);
@@ -190,11 +201,12 @@ Result<void> PictureWorker::State::make_pictures(gi::Device& gl) {
             if (other) LUCARNE_TRY(take_source(gl, std::move(*other)));
             if (!shown || request_number == 0) return nullptr;
             LUCARNE_TRY(tell(gl, *pipeline, *request, request_number, told));
-            return make_picture(gl, *pipeline, *request);
+            return make_picture(gl, *pipeline, *request, give_up);
         });
         if (!picture) LUCARNE_TRY(gl.check());
-        if (picture && !*picture) continue;
+        if (picture && !*picture && !give_up) continue;
         made_of = request_number;
+        if (picture && !*picture) continue;
         again = picture && worth_another(*request, (*picture)->stats);
         if (picture) {
             (*picture)->number = ++pictures_made;
@@ -274,6 +286,7 @@ PictureWorker::~PictureWorker() {
     {
         const std::lock_guard lock(state_->mutex);
         state_->stop = true;
+        state_->give_up = true;
     }
     state_->changed.notify_all();
     if (state_->thread.joinable()) state_->thread.join();
@@ -284,6 +297,7 @@ uint64_t PictureWorker::request(PictureRequest request) {
     uint64_t number = 0;
     {
         const std::lock_guard lock(state_->mutex);
+        if (state_->may_give_up && wanted->moving && !wanted->sketch) state_->give_up = true;
         state_->wanted = std::move(wanted);
         number = ++state_->wanted_number;
         state_->error = {};

@@ -24,11 +24,12 @@ struct PictureRequest {
     uint64_t scene_version = 0;            ///< changes when the scene changes
     uint64_t shader_version = 0;           ///< changes when the shader files are to be read again
     bool moving = false;                   ///< one picture is enough, since the next request will follow
+    bool sketch = false;                   ///< a large picture between motion and rest
     uint32_t pictures = kMostAccumulated;  ///< number to average at rest; then the worker sleeps
 
     /// What makes another picture of it, for comparisons. `scene_version` stands for the scene.
     auto content() const {
-        return std::tie(frame.camera, frame.size, method, scene_version, shader_version, moving);
+        return std::tie(frame.camera, frame.size, method, scene_version, shader_version, moving, sketch);
     }
 };
 
@@ -37,7 +38,7 @@ struct Picture {
     uint64_t number = 0;   ///< 1 for the first that the worker made
     uint64_t request = 0;  ///< number of its request
     std::shared_ptr<const octree::NodeSource> source;
-    bool moving = false;
+    bool moving = false, sketch = false;  ///< as in the request
     ImageSize size;
     std::vector<std::byte> rgba;  ///< row 0 on top
     std::vector<float> depth;     ///< m along the camera's forward axis; 0: nothing
@@ -75,11 +76,13 @@ class PictureWorker {
                                                         std::shared_ptr<const octree::NodeSource> source,
                                                         const PipelineOptions& options,
                                                         std::function<void()> published);
-    ~PictureWorker();  ///< waits for the current picture
+    ~PictureWorker();  ///< gives up the current picture
     PictureWorker(const PictureWorker&) = delete;
     PictureWorker& operator=(const PictureWorker&) = delete;
 
-    /// Replaces the previous request. Returns the new request's number.
+    /// Replaces the previous request. Returns the new request's number. If the new one is of a motion, a
+    /// picture that is not (or a sketch) is given up; pictures of a motion are always finished, so that there
+    /// are some.
     uint64_t request(PictureRequest request);
     /// Sets the source of the next pictures. Null: no pictures until there is another source.
     void set_source(std::shared_ptr<const octree::NodeSource> source);

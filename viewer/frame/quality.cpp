@@ -1,25 +1,32 @@
 #include "viewer/frame/quality.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kTooSlow = 1.5, kFast = 0.5;  ///< of the wanted time
+constexpr double kAim = 0.75, kFast = 0.5;  ///< of the longest time
 constexpr double kLeastScale = 0.25;
 
 }  // namespace
 
 void MovingQuality::observe(double frame_seconds) {
-    if (frame_seconds > kTooSlow * wanted_) {
+    last_[next_++ % last_.size()] = frame_seconds;
+    std::array<double, kObserved> sorted = last_;
+    const auto known = std::min(next_, sorted.size());
+    const auto middle = sorted.begin() + static_cast<ptrdiff_t>(known / 2);
+    std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<ptrdiff_t>(known));
+    if (*middle > longest_) {
         if (scale_ <= kLeastScale) reduced_ = true;
-        // Assume that all time is spent on pixels. At most halve the scale at once, since one slow picture
-        // may be an exception.
-        scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(wanted_ / frame_seconds)));
-    } else if (frame_seconds < kFast * wanted_) {
+        // Assume that all time is spent on pixels. At most halve the scale at once, since some time is not.
+        scale_ = std::max(kLeastScale, scale_ * std::max(0.5, std::sqrt(kAim * longest_ / *middle)));
+        next_ = 0;  // pictures of another size tell nothing about this one
+    } else if (*middle < kFast * longest_ && known == last_.size()) {
         if (scale_ >= 1) reduced_ = false;
-        scale_ = std::min(1.0, scale_ * 1.25);
+        scale_ = std::min(1.0, scale_ * 1.2);
+        next_ = 0;
     }
 }
 
@@ -31,17 +38,17 @@ ImageSize scaled_size(ImageSize full, double scale) {
 }
 
 void MovingQuality::reduce(gi::EngineSettings& settings, CutBudgets& budgets) const {
-    if (!reduced_) return;
-    const Preset& cheap = presets().front();
+    const Preset& dearest = presets()[1];
     for (const gi::OptionInfo* option : gi::engine_options()) {
-        const gi::OptionValue& cheap_value = cheap.engine.get(*option);
-        const double more = gi::number_of(cheap_value) - gi::number_of(settings.get(*option));
-        if (option->cheaper * more > 0) settings.set(*option, cheap_value);
+        const gi::OptionValue& value = dearest.engine.get(*option);
+        const double more = gi::number_of(value) - gi::number_of(settings.get(*option));
+        if (option->cheaper * more > 0) settings.set(*option, value);
     }
-    budgets.view = std::min(budgets.view, cheap.budgets.view);
-    budgets.light_view = std::min(budgets.light_view, cheap.budgets.light_view);
-    budgets.light = std::min(budgets.light, cheap.budgets.light);
-    budgets.pixel_spacing = std::max(budgets.pixel_spacing, cheap.budgets.pixel_spacing);
+    const CutBudgets& most = reduced_ ? presets().front().budgets : dearest.budgets;
+    budgets.view = std::min(budgets.view, most.view);
+    budgets.light_view = std::min(budgets.light_view, most.light_view);
+    budgets.light = std::min(budgets.light, most.light);
+    budgets.pixel_spacing = std::max(budgets.pixel_spacing, most.pixel_spacing);
 }
 
 }  // namespace lucarne::viewer

@@ -9,7 +9,7 @@
 
 namespace lucarne::viewer {
 
-/// Times of the window's own frames (not of pictures): how long each kept the window from responding.
+/// Times of events that repeat, for example of the window's own frames.
 class FrameTimes {
  public:
     void add(double seconds);
@@ -41,10 +41,11 @@ class RecoveryTries {
 
 /// Current problems, and the window's frame times.
 struct Health {
-    std::string device;   ///< the graphics device is lost for good; empty: it works
-    std::string shaders;  ///< why the last good program is used instead of a shader file
-    std::string nodes;    ///< nodes that are missing in the picture because they cannot be read
-    FrameTimes frames;
+    std::string device;           ///< the graphics device is lost for good; empty: it works
+    std::string shaders;          ///< why the last good program is used instead of a shader file
+    std::string nodes;            ///< nodes that are missing in the picture because they cannot be read
+    FrameTimes frames;            ///< of the window itself: how long each kept it from responding
+    FrameTimes pictures;          ///< between two pictures while something moves
     uint64_t shader_version = 0;  ///< counts requests to reload the shader files
 };
 

@@ -1,6 +1,7 @@
 #include "viewer/window/view_session.h"
 
 #include <algorithm>
+#include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -20,8 +21,10 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kRest = 0.25;       ///< s without motion until the picture is made at full quality
+constexpr double kSharp = 0.1;       ///< s without motion until the picture is made at full size
+constexpr double kRest = 0.25;       ///< and at full quality
 constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
+constexpr double kNone = -1;         ///< FrameRequest::light_seconds: not even one step
 constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
 
 double axis(int less, int more) {
@@ -53,9 +56,11 @@ void ViewSession::take_picture() {
     const auto latest = worker_.latest();
     if (!latest || (model_.view.picture && latest->number == model_.view.picture->number)) return;
     model_.view.picture = latest;
-    if (latest->moving) {
+    if (latest->moving && !latest->sketch) {
         quality_.observe(latest->stats.seconds);
-        budget_.observe(latest->stats, latest->size);
+        const auto now = Clock::now();
+        model_.health.pictures.add(std::chrono::duration<double>(now - last_moving_).count());
+        last_moving_ = now;
     }
     model_.view.scale = quality_.scale();
     model_.health.shaders = latest->shader_problem;
@@ -238,23 +243,26 @@ void ViewSession::send_request() {
     if (scene_seen_ != moves && scene_seen_ != 0) moved_ = Clock::now();
     scene_seen_ = moves;
     PictureRequest request;
-    request.moving = seconds_at_rest() < kRest;
+    const double rest = seconds_at_rest();
+    request.moving = rest < kRest;
     request.method = model_.view.method;
     request.frame.camera = model_.view.rig.camera();
     request.frame.size = scaled_size(window_.framebuffer(), model_.view.resolution_scale);
     request.frame.accumulate = !request.moving;
     if (shot_) request.pictures = shot_->pictures;
-    request.frame.moving = request.moving;
+    request.frame.moving = request.frame.stand_in = request.moving;
     if (request.moving) {
-        request.frame.size = quality_.size(request.frame.size);
+        const ImageSize size = quality_.size(request.frame.size);
+        request.sketch = rest >= kSharp && !(size == request.frame.size);
         quality_.reduce(request.method.settings, request.method.budgets);
-        request.method.budgets = budget_.budgets(request.method.budgets);
+        if (!request.sketch) request.frame.size = size;
+        request.frame.light_seconds = request.sketch ? kNone : kLightShare * model_.view.frame_time;
     }
+    const bool goes_on = sent_.moving && !sent_.sketch;
+    if (request.moving && !request.sketch && !goes_on) last_moving_ = Clock::now();
     request.scene_version = model_.view.scene_version;
     request.shader_version = model_.health.shader_version;
     if (sent_number_ != 0 && request.content() == sent_.content()) return;
-    if (request.method.engine != sent_.method.engine || !(request.method.settings == sent_.method.settings))
-        budget_.forget();
     request.scene = model_.view.scene;
     sent_ = request;
     sent_number_ = worker_.request(std::move(request));
@@ -309,6 +317,9 @@ Result<void> ViewSession::run() {
     log::info("window: {} frames, each {:.1f} ms, 95 % of the last ones within {:.1f} ms",
               model_.health.frames.frames(), 1e3 * model_.health.frames.quantile(0.5),
               1e3 * model_.health.frames.quantile(0.95));
+    const FrameTimes& pictures = model_.health.pictures;
+    log::info("while moving: {} pictures, {:.1f} ms apart, 95 % within {:.1f} ms", pictures.frames(),
+              1e3 * pictures.quantile(0.5), 1e3 * pictures.quantile(0.95));
     window_.hide();
     return {};
 }

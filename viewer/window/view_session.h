@@ -53,8 +53,7 @@ class ViewSession {
           closing_(window, model),
           bookmarks_([&window](const io::Image8& image) { return window.make_texture(image); },
                      [&window](unsigned texture) { window.free_texture(texture); }),
-          quality_(model.view.frame_time),
-          budget_(model.view.frame_time),
+          quality_(model.view.frame_time, worker.device().software ? kFirstScale : 1),
           publish_([&window] { return window.renew_worker_device(Window::Hidden::rendering); },
                    &Window::wake) {}
 
@@ -65,6 +64,9 @@ class ViewSession {
 
  private:
     using Clock = std::chrono::steady_clock;
+    /// Scale of the first moving pictures without a GPU, so that they need not become slow before they become
+    /// small.
+    static constexpr double kFirstScale = 0.5;
 
     Result<void> show_until_closed();
     void take_picture();
@@ -102,7 +104,6 @@ class ViewSession {
     RecoveryTries tries_;
     bool given_up_ = false;  ///< the device is lost for good
     MovingQuality quality_;
-    FrameBudget budget_;
     LegendHandles legend_;
     LightSession light_{&Window::wake};
     MeasureSession measure_{&Window::wake};
@@ -111,8 +112,9 @@ class ViewSession {
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the scene version before any change by the user
     uint64_t scene_seen_ = 0;
-    uint32_t whole_pictures_ = 0;  ///< complete pictures in the displayed average
-    uint32_t idle_frames_ = 0;     ///< frames of the window with nothing open
+    uint32_t whole_pictures_ = 0;    ///< complete pictures in the displayed average
+    uint32_t idle_frames_ = 0;       ///< frames of the window with nothing open
+    Clock::time_point last_moving_;  ///< when the last picture of a motion arrived, or the motion began
     Clock::time_point moved_ = Clock::now() - std::chrono::hours(1);
 };
 

@@ -16,7 +16,8 @@ namespace {
 
 // Bytes of maps that are kept from frame to frame: sixteen bounces of `interactive`, one of `high`.
 constexpr size_t kMostKept = size_t{64} << 20;
-constexpr uint32_t kMapsOfStep = 64;  // of small steps
+// Of small steps: maps, and how many times fewer candidates for the VPLs.
+constexpr uint32_t kMapsOfStep = 64, kFewerCandidates = 4;
 
 /// Returns the part of a basis on which casters and importance depend.
 Basis without_lights(Basis basis) {
@@ -39,7 +40,7 @@ void LightingMaker::begin(Basis basis) {
     basis_ = std::move(basis);
     last_ = last_bounce(basis_.settings);
     bounce_ = 1;
-    made_ = drawn_maps_ = 0;
+    made_ = maps_done_ = 0;
     drawn_views_ = 0;
     next_ = Step::casters;
 }
@@ -57,7 +58,8 @@ Result<void> LightingMaker::look(Frame& frame, const Inputs& inputs, const Basis
     if (looked_ == without_lights(basis)) return {};
     looked_.index = UINT64_MAX;  // invalid until everything is done
     LUCARNE_TRY(decode(frame));
-    LUCARNE_TRY(measure_importance(frame, inputs));
+    LUCARNE_TRY(place_importons(frame, inputs));
+    LUCARNE_TRY(place_further_importons(frame, inputs));
     looked_ = without_lights(basis);
     return {};
 }
@@ -80,9 +82,12 @@ Result<void> LightingMaker::step(Frame& frame, const Inputs& inputs, Lighting& t
         }
         case Step::importons:
             if (frame.settings[kViewVpls]) basis_.camera = frame.camera;
-            LUCARNE_TRY(measure_importance(frame, inputs));
-            looked_ = without_lights(basis_);
+            next_ = Step::further_importons;
+            return place_importons(frame, inputs);
+        case Step::further_importons:
             next_ = Step::light_views;
+            LUCARNE_TRY(place_further_importons(frame, inputs));
+            looked_ = without_lights(basis_);
             return {};
         case Step::light_views: {
             // As many as there are: one that a moving light has may be missing in every frame.
@@ -99,11 +104,15 @@ Result<void> LightingMaker::step(Frame& frame, const Inputs& inputs, Lighting& t
         case Step::seeds:
             basis_.scene.lights = inputs.now.scene.lights;
             basis_.cuts.light_views = inputs.now.cuts.light_views;
-            next_ = Step::maps;
+            next_ = Step::importance;
             return seed(frame, inputs, target.bounces[0].seeds);
+        case Step::importance:
+            next_ = Step::maps;
+            return choose_seeds(frame, target.bounces[0].seeds);
         case Step::maps:
         case Step::closing:
-        case Step::spreading:
+        case Step::races:
+        case Step::combination:
             break;
     }
     Buffer& atlas = target.bounces[keeps_bounces(target.layout, last_) ? bounce_ - 1 : 0].atlas;
@@ -118,15 +127,19 @@ Result<void> LightingMaker::step(Frame& frame, const Inputs& inputs, Lighting& t
 Result<void> LightingMaker::step_of_bounce(Frame& frame, const Inputs& inputs, Lighting& target) {
     if (next_ == Step::maps) {
         LUCARNE_TRY(draw_maps(frame, inputs, target));
-        if (drawn_maps_ == target.layout.maps) next_ = Step::closing;
+        if (maps_done_ == target.layout.maps) next_ = Step::closing;
     } else if (next_ == Step::closing) {
         LUCARNE_TRY(close_maps(frame, target));
         made_ = bounce_;
-        drawn_maps_ = 0;
-        next_ = bounce_ < last_ ? Step::spreading : Step::none;
+        maps_done_ = 0;
+        next_ = bounce_ < last_ ? Step::races : Step::none;
+    } else if (next_ == Step::races) {
+        LUCARNE_TRY(race(frame, inputs, target));
+        if (maps_done_ == target.layout.maps) next_ = Step::combination;
     } else {
-        LUCARNE_TRY(spread(frame, inputs, target));
+        LUCARNE_TRY(combine(frame, inputs, target));
         ++bounce_;
+        maps_done_ = 0;
         next_ = Step::maps;
     }
     return {};
@@ -137,11 +150,17 @@ Result<void> LightingMaker::decode(Frame& frame) {
                  [&] { return decode_casters(frame.gl.device, *frame.gl.cuts.light, maps_); });
 }
 
-Result<void> LightingMaker::measure_importance(Frame& frame, const Inputs& inputs) {
+Result<void> LightingMaker::place_importons(Frame& frame, const Inputs& inputs) {
+    if (!frame.settings[kViewVpls]) return {};
+    const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
+    return view_importance_.look(frame, inputs.materials, seed, maps_);
+}
+
+Result<void> LightingMaker::place_further_importons(Frame& frame, const Inputs& inputs) {
     sky_ = inputs.sky;
     if (!frame.settings[kViewVpls]) return {};
     const uint64_t seed = mix64(frame.settings[kSeed], frame.index);
-    LUCARNE_TRY(view_importance_.look(frame, inputs.materials, seed, maps_));
+    LUCARNE_TRY(view_importance_.look_further(frame, inputs.materials, seed, maps_));
     if (sky_.dark()) return {};
     LUCARNE_ASSIGN(const auto openings, view_importance_.openings(frame.gl.device));
     sky_.favour(openings);
@@ -154,36 +173,49 @@ std::vector<LightView> LightingMaker::light_views_of(const Frame& frame, const I
     return light_views(sampled, sky_);
 }
 
-/// Places the VPLs of the first bounce.
+/// Places the VPLs of the first bounce, or candidates for them.
 Result<void> LightingMaker::seed(Frame& frame, const Inputs& inputs, Seeds& target) {
     const EngineSettings& s = frame.settings;
     const uint64_t seed = mix64(s[kSeed], frame.index);
-    const uint32_t count = s[kViewVpls] ? candidates_for(s[kVpls]) : s[kVpls];
-    Seeds& placed = s[kViewVpls] ? candidates_ : target;
-    LUCARNE_TRY(timed(frame, "VPL seeding", [&] {
+    candidates_count_ = s[kVpls];
+    if (s[kViewVpls]) {
+        candidates_count_ = candidates_for(s[kVpls]);
+        if (inputs.small_steps) candidates_count_ = std::max(s[kVpls], candidates_count_ / kFewerCandidates);
+    }
+    return timed(frame, "VPL seeding", [&] {
         return light_seeding_.seed(frame, light_views_of(frame, inputs), inputs.light_gbuffers,
-                                   inputs.materials, count, seed, placed);
-    }));
+                                   inputs.materials, candidates_count_, seed,
+                                   s[kViewVpls] ? candidates_ : target);
+    });
+}
+
+/// Chooses the VPLs of the first bounce among the candidates, if there are any.
+Result<void> LightingMaker::choose_seeds(Frame& frame, Seeds& target) {
+    const EngineSettings& s = frame.settings;
     if (!s[kViewVpls]) return {};
-    LUCARNE_TRY(timed(frame, "VPL importance",
-                      [&] { return view_importance_.measure(frame.gl.device, candidates_, count); }));
-    target.host_lights =
-        draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls], seed);
+    LUCARNE_TRY(timed(frame, "VPL importance", [&] {
+        return view_importance_.measure(frame.gl.device, candidates_, candidates_count_);
+    }));
+    target.host_lights = draw_candidates(candidates_.host_lights, view_importance_.importance(), s[kVpls],
+                                         mix64(s[kSeed], frame.index));
     LUCARNE_TRY(frame.gl.device.reserve(target.lights, s[kVpls] * sizeof(VplLight), "virtual point lights"));
     target.lights.upload_all(target.host_lights);
     return {};
+}
+
+uint32_t LightingMaker::end_of_step(const Inputs& inputs, uint32_t maps) const {
+    return inputs.small_steps ? std::min(maps_done_ + kMapsOfStep, maps) : maps;
 }
 
 /// Draws the shadow maps of the bounce, or the next of them.
 Result<void> LightingMaker::draw_maps(Frame& frame, const Inputs& inputs, Lighting& target) {
     Device& device = frame.gl.device;
     const DeviceCut& cut = *frame.gl.cuts.light;
-    if (drawn_maps_ == 0) LUCARNE_TRY(clear_shadow_maps(device, cut, target.layout, needs_sources(), maps_));
-    const uint32_t maps = target.layout.maps;
-    const uint32_t end = inputs.small_steps ? std::min(drawn_maps_ + kMapsOfStep, maps) : maps;
-    LUCARNE_TRY(splat_shadow_maps(device, cut, target.bounces[bounce_ - 1].seeds, drawn_maps_, end,
+    if (maps_done_ == 0) LUCARNE_TRY(clear_shadow_maps(device, cut, target.layout, needs_sources(), maps_));
+    const uint32_t end = end_of_step(inputs, target.layout.maps);
+    LUCARNE_TRY(splat_shadow_maps(device, cut, target.bounces[bounce_ - 1].seeds, maps_done_, end,
                                   frame.times, maps_));
-    drawn_maps_ = end;
+    maps_done_ = end;
     return {};
 }
 
@@ -196,15 +228,26 @@ Result<void> LightingMaker::close_maps(Frame& frame, Lighting& target) {
     });
 }
 
-/// Places the VPLs of the next bounce.
-Result<void> LightingMaker::spread(Frame& frame, const Inputs& inputs, Lighting& target) {
+/// Finds places for the VPLs of the next bounce, or for some of them.
+Result<void> LightingMaker::race(Frame& frame, const Inputs& inputs, Lighting& target) {
     redistribution_.best_candidate = frame.settings[kBestCandidate];
     redistribution_.footprint_variance = footprint_variance(frame.index);
+    const auto salt = static_cast<uint32_t>(mix64(mix64(frame.settings[kSeed], frame.index), bounce_));
+    const uint32_t end = end_of_step(inputs, target.layout.maps);
+    const TimedPass pass(frame, "VPL redistribution");
+    LUCARNE_TRY(race_maps(frame.gl.device, *frame.gl.cuts.light, maps_, inputs.materials, glossy(frame), salt,
+                          target.bounces[bounce_ - 1].seeds, maps_done_, end, redistribution_,
+                          target.bounces[bounce_].seeds));
+    maps_done_ = end;
+    return {};
+}
+
+/// Places the VPLs of the next bounce.
+Result<void> LightingMaker::combine(Frame& frame, const Inputs& inputs, Lighting& target) {
     return timed(frame, "VPL redistribution", [&] {
-        const auto salt = static_cast<uint32_t>(mix64(mix64(frame.settings[kSeed], frame.index), bounce_));
-        return redistribute(frame.gl.device, *frame.gl.cuts.light, maps_, inputs.materials, glossy(frame),
-                            salt, target.bounces[bounce_ - 1].seeds, redistribution_,
-                            target.bounces[bounce_].seeds);
+        return combine_races(frame.gl.device, *frame.gl.cuts.light, maps_, inputs.materials, glossy(frame),
+                             target.bounces[bounce_ - 1].seeds, redistribution_,
+                             target.bounces[bounce_].seeds);
     });
 }
 

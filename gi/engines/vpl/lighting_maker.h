@@ -54,15 +54,31 @@ class LightingMaker {
     const SkyDirections& sky() const { return sky_; }
 
  private:
-    enum class Step : uint8_t { none, casters, importons, light_views, seeds, maps, closing, spreading };
+    enum class Step : uint8_t {
+        none,
+        casters,
+        importons,
+        further_importons,
+        light_views,
+        seeds,
+        importance,
+        maps,
+        closing,
+        races,
+        combination
+    };
 
     Result<void> step_of_bounce(Frame& frame, const Inputs& inputs, Lighting& target);
     Result<void> decode(Frame& frame);
-    Result<void> measure_importance(Frame& frame, const Inputs& inputs);
+    Result<void> place_importons(Frame& frame, const Inputs& inputs);
+    Result<void> place_further_importons(Frame& frame, const Inputs& inputs);
     Result<void> seed(Frame& frame, const Inputs& inputs, Seeds& target);
+    Result<void> choose_seeds(Frame& frame, Seeds& target);
     Result<void> draw_maps(Frame& frame, const Inputs& inputs, Lighting& target);
     Result<void> close_maps(Frame& frame, Lighting& target);
-    Result<void> spread(Frame& frame, const Inputs& inputs, Lighting& target);
+    Result<void> race(Frame& frame, const Inputs& inputs, Lighting& target);
+    Result<void> combine(Frame& frame, const Inputs& inputs, Lighting& target);
+    uint32_t end_of_step(const Inputs& inputs, uint32_t maps) const;
     std::vector<LightView> light_views_of(const Frame& frame, const Inputs& inputs) const;
     bool needs_sources() const { return bounce_ < last_; }
 
@@ -70,7 +86,8 @@ class LightingMaker {
     Basis basis_;
     uint32_t bounce_ = 1, last_ = 1;  ///< the bounce that is being made, and the last one
     uint32_t made_ = 0;
-    uint32_t drawn_maps_ = 0;  ///< of bounce_
+    uint32_t maps_done_ = 0;  ///< of bounce_, in this kind of step
+    uint32_t candidates_count_ = 0;
     size_t drawn_views_ = 0;
 
     Basis looked_;

@@ -145,10 +145,15 @@ Result<void> VplEngine::make_and_shade(Frame& frame, const Basis& basis) {
     LUCARNE_TRY(timed(frame, "VPL join", [&] { return join_tiles(frame, glossy(frame), tiles_); }));
     if (!keep || !(lighting.basis == basis)) {
         making_.begin(basis);
-        while (making_.running()) {
-            if (frame.stopped()) return {};
-            LUCARNE_TRY(making_.step(frame, inputs(basis), lighting));
-            if (!keep && making_.made()) LUCARNE_TRY(shade_bounce(making_.made()));
+        while (making_.running() && !frame.stopped()) {
+            auto done = making_.step(frame, inputs(basis), lighting);
+            if (done && !keep && making_.made()) done = shade_bounce(making_.made());
+            if (!done) making_.stop();
+            LUCARNE_TRY(done);
+        }
+        if (making_.running()) {  // the frame was given up; frames in motion make light elsewhere
+            making_.stop();
+            return {};
         }
     }
     for (uint32_t bounce = 1; keep && bounce <= last; ++bounce) LUCARNE_TRY(shade_bounce(bounce));

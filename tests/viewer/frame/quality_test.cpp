@@ -30,7 +30,7 @@ TEST(MovingQuality, SlowPicturesGetSmallerFirstAndCheaperOnlyThen) {
 TEST(MovingQuality, ComesBackWhenPicturesAreFastAgain) {
     MovingQuality quality;
     for (int i = 0; i < 10; ++i) quality.observe(1.0);
-    for (int i = 0; i < 20; ++i) quality.observe(0.01);
+    for (int i = 0; i < 60; ++i) quality.observe(0.01);
     EXPECT_EQ(quality.scale(), 1);
     EXPECT_FALSE(quality.reduced_settings());
 }
@@ -49,6 +49,39 @@ TEST(MovingQuality, NeverMovesDearerThanAtRest) {
         EXPECT_EQ(budgets.view, 1000u);
         EXPECT_EQ(settings[gi::kBounces], preset.engine[gi::kBounces]) << "what is seen is the user's choice";
     }
+}
+
+TEST(MovingQuality, MovesWithTheLightOfThePresetInteractiveAtMost) {
+    const Preset interactive = *find_preset("interactive"), high = *find_preset("high");
+    MovingQuality quality;
+    for (const bool slow : {false, true}) {
+        if (slow)
+            for (int i = 0; i < 10; ++i) quality.observe(1.0);
+        gi::EngineSettings settings = high.engine;
+        CutBudgets budgets = high.budgets;
+        quality.reduce(settings, budgets);
+        EXPECT_EQ(settings[gi::vpl::kVpls], interactive.engine[gi::vpl::kVpls]);
+        EXPECT_EQ(settings[gi::vpl::kInterleave], interactive.engine[gi::vpl::kInterleave]);
+        EXPECT_EQ(budgets.light < interactive.budgets.light, slow);
+    }
+}
+
+TEST(MovingQuality, OneDisturbedPictureChangesNothing) {
+    MovingQuality quality;
+    for (int i = 0; i < 40; ++i) quality.observe(i % 3 == 1 ? 0.4 : 0.07);
+    EXPECT_EQ(quality.scale(), 1);
+}
+
+TEST(MovingQuality, SettlesBelowTheLongestTime) {
+    MovingQuality quality(0.1);
+    const auto seconds = [&] { return 0.02 + 0.3 * quality.scale() * quality.scale(); };
+    for (int i = 0; i < 60; ++i) quality.observe(seconds());
+    EXPECT_LE(seconds(), 0.1);
+    EXPECT_GE(seconds(), 0.05);
+}
+
+TEST(MovingQuality, StartsSmallWhereItIsTold) {
+    EXPECT_EQ(MovingQuality(0.1, 0.5).size({640, 480}).width, 320u);
 }
 
 }  // namespace

@@ -39,6 +39,10 @@ void draw_statistics_panel(const ViewModel& model) {
     const FrameTimes& frames = model.health.frames;
     ImGui::Text("window: %.1f ms a frame, 95 %% within %.1f ms", frames.quantile(0.5) * 1e3,
                 frames.quantile(0.95) * 1e3);
+    const FrameTimes& pictures = model.health.pictures;
+    if (pictures.frames() > 0)
+        ImGui::Text("while moving: %.0f ms between pictures, 95 %% within %.0f ms",
+                    pictures.quantile(0.5) * 1e3, pictures.quantile(0.95) * 1e3);
     if (model.view.picture) {
         const Picture& picture = *model.view.picture;
         const FrameStats& stats = picture.stats;

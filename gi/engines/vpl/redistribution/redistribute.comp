@@ -17,7 +17,7 @@ layout(std430, binding = kBindLights) writeonly buffer Next { VplLight next[]; }
 layout(std430, binding = kBindWeightSums) writeonly buffer WeightSums { float weight_sums[]; };  // weight sum: sum(w) of a map, W
 layout(binding = kUnitSources) uniform usamplerBuffer source_texels;
 
-uniform uint seed, id_bits;
+uniform uint seed, id_bits, first_map;
 
 // Texels without a surfel, and surfels of the VPL's own sheet, hide what the light would reach behind them: the rest of
 // the map stands in for them, up to this factor.
@@ -98,7 +98,7 @@ void write_light(uint map, uvec2 at, float inverse_probability) {
 }
 
 void main() {
-    uint map = gl_WorkGroupID.x;
+    uint map = first_map + gl_WorkGroupID.x;
     uint lane = gl_LocalInvocationID.x;
     mat3 frame = frame_about(vpl_normal(map).xyz);
     float best = 3e38, sum = 0.0, all = 0.0, found = 0.0;

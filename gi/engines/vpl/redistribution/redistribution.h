@@ -22,4 +22,13 @@ Result<void> redistribute(Device& device, const DeviceCut& cut, const ShadowMaps
                           const Buffer& materials, bool glossy, uint32_t seed, const Seeds& from,
                           Redistribution& scratch, Seeds& to);
 
+/// The same in parts: lets the texels of the maps from `first` to before `end` race, and completes the VPLs
+/// once all maps have raced.
+Result<void> race_maps(Device& device, const DeviceCut& cut, const ShadowMaps& maps, const Buffer& materials,
+                       bool glossy, uint32_t seed, const Seeds& from, uint32_t first, uint32_t end,
+                       Redistribution& scratch, Seeds& to);
+Result<void> combine_races(Device& device, const DeviceCut& cut, const ShadowMaps& maps,
+                           const Buffer& materials, bool glossy, const Seeds& from, Redistribution& scratch,
+                           Seeds& to);
+
 }  // namespace lucarne::gi::vpl

@@ -81,7 +81,12 @@ Result<void> ViewImportance::look(Frame& frame, const Buffer& materials, uint64_
     place->set("cells", kCells);
     place->set_block("shift", std::array{x, y});
     place->dispatch(kImportons);
-    LUCARNE_TRY(draw(frame, first_, true, maps));
+    return draw(frame, first_, true, maps);
+}
+
+Result<void> ViewImportance::look_further(Frame& frame, const Buffer& materials, uint64_t seed,
+                                          ShadowMaps& maps) {
+    Device& device = frame.gl.device;
     redistribution_.footprint_variance = footprint_variance(0);
     std::swap(maps.atlas, first_.atlas);
     const auto fallen =
@@ -91,7 +96,7 @@ Result<void> ViewImportance::look(Frame& frame, const Buffer& materials, uint64_
     LUCARNE_TRY(fallen);
     LUCARNE_TRY(draw(frame, second_, false, maps));
     camera_ = frame.camera;
-    distance_ = median_distance(frame.camera, lights.download_all<VplLight>(kImportons));
+    distance_ = median_distance(frame.camera, first_.seeds.lights.download_all<VplLight>(kImportons));
     return {};
 }
 

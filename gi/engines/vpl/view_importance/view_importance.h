@@ -31,6 +31,8 @@ class ViewImportance {
     /// Places importons for the camera of the frame and draws their shadow maps. `maps` has decoded casters
     /// and lends its scratch buffers. Errors: no device memory, a shader that fails.
     Result<void> look(Frame& frame, const Buffer& materials, uint64_t seed, ShadowMaps& maps);
+    /// Then places importons where the importance of the first falls. `maps` must not have been used since.
+    Result<void> look_further(Frame& frame, const Buffer& materials, uint64_t seed, ShadowMaps& maps);
     /// Returns how much light from each cell of the sky's grid (gi/lighting/sky_grid.h) adds to the picture,
     /// by at most one bounce. Errors as above.
     Result<std::vector<float>> openings(Device& device);
