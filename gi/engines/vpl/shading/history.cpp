@@ -35,6 +35,24 @@ void History::bind(const Frame& frame, const Program& merge) const {
     merge.set("most_frames", camera_.width ? kMostFrames : 0.0f);
 }
 
+Result<MappedHistory> History::map() const {
+    LUCARNE_ASSIGN(MappedBuffer light, next_.light.map());
+    LUCARNE_ASSIGN(MappedBuffer surfaces, next_.surfaces.map());
+    MappedHistory mapped{std::move(light), std::move(surfaces), {}, {}, {}};
+    mapped.view.next_light = mapped.next_light.as<glm::vec4>().data();
+    mapped.view.next_surfaces = mapped.next_surfaces.as<uint32_t>().data();
+    if (!camera_.width) return mapped;
+    LUCARNE_ASSIGN(MappedBuffer last_light, last_.light.map());
+    LUCARNE_ASSIGN(MappedBuffer last_surfaces, last_.surfaces.map());
+    mapped.view.last_camera = &camera_;
+    mapped.view.most_frames = kMostFrames;
+    mapped.view.last_light = last_light.as<const glm::vec4>().data();
+    mapped.view.last_surfaces = last_surfaces.as<const uint32_t>().data();
+    mapped.last_light.emplace(std::move(last_light));
+    mapped.last_surfaces.emplace(std::move(last_surfaces));
+    return mapped;
+}
+
 void History::end(const Frame& frame) {
     std::swap(last_, next_);
     camera_ = frame.camera;

@@ -4,6 +4,8 @@
 // none does, only the light of this frame is used. While the VPLs are kept, the average is over camera positions, in
 // which the patterns of interleaved tiles cancel.
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shading/merging.h"
+#include "gi/engines/vpl/shading/pixel.glsl"
 
 layout(binding = kUnitHistory) uniform samplerBuffer last_light;      // irradiance, W/m^2; w: number of frames
 layout(binding = kUnitHistorySurfaces) uniform usamplerBuffer last_surfaces;  // depth, normal
@@ -12,9 +14,6 @@ layout(std430, binding = kBindHistorySurfaces) writeonly buffer NextSurfaces { u
 
 uniform CameraView last_camera;
 uniform float most_frames;  // largest number of frames in an average; 0: there is no last frame
-
-const float kSameNormal = 0.9;  // cosine of 25 degrees
-const float kSamePlane = 1.0;   // pixel widths
 
 // Returns irradiance and number of frames of a point in the last frame; 0 frames if it did not see the point.
 vec4 last_known(vec3 position, vec3 normal) {
@@ -38,20 +37,19 @@ vec4 last_known(vec3 position, vec3 normal) {
         vec3 seen = view_point(last_camera, vec2(pixel) + 0.5, there);
         bool same = there > 0.0 && abs(dot(normal, seen - position)) < kSamePlane * pixel_width &&
                     dot(decode_octahedral(surface.y), normal) > kSameNormal;
+        if (!same) continue;  // the light of an empty pixel is undefined
         vec2 near = mix(1.0 - share, share, step);
-        float weight = same ? near.x * near.y : 0.0;
-        sum += weight * texelFetch(last_light, index);
-        weights += weight;
+        sum += near.x * near.y * texelFetch(last_light, index);
+        weights += near.x * near.y;
     }
-    // A small weight of one pixel is too little evidence.
-    return weights > 0.05 ? sum / weights : vec4(0.0);
+    return weights > kLeastEvidence ? sum / weights : vec4(0.0);
 }
 
-vec3 with_history(uint index, vec3 position, vec3 normal, float depth, vec3 irradiance) {
-    vec4 known = last_known(position, normal);
+vec3 with_history(uint index, Receiver receiver, GBufferTexel texel, vec3 irradiance) {
+    vec4 known = last_known(receiver.position, receiver.normal);
     float frames = min(known.w, most_frames - 1.0) + 1.0;
     vec3 light = known.w > 0.0 ? known.xyz + (irradiance - known.xyz) / frames : irradiance;
     next_light[index] = vec4(light, known.w > 0.0 ? frames : 1.0);
-    next_surfaces[index] = uvec2(floatBitsToUint(depth), encode_octahedral(normal));
+    next_surfaces[index] = uvec2(floatBitsToUint(texel.depth), texel.normal);
     return light;
 }

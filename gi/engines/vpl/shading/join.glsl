@@ -2,6 +2,7 @@
 // of a pixel is gathered. join.comp decides it once a frame, from geometry alone; shading and merging of every bounce
 // follow it.
 #include "gi/engines/vpl/bindings.h"
+#include "gi/engines/vpl/shading/merging.h"
 #include "gi/engines/vpl/shading/pixel.glsl"
 
 layout(std430, binding = kBindJoints) buffer Joints { uvec2 joints[]; };  // for each tile, which candidates are alike: 4 bits
@@ -18,7 +19,7 @@ ivec2 window_pixel(ivec2 pixel, int n, int i, int candidate) {
 float candidate_weight(int n, int i, int candidate) {
     vec2 distance = abs(vec2(i % n, i / n) - float((n - 1) / 2));
     vec2 weight = mix(float(n) - distance, distance, vec2(candidate & 1, candidate >> 1));
-    return max(weight.x * weight.y, 0.01);
+    return max(weight.x * weight.y, kLeastCandidateWeight);
 }
 uint candidates_of(uvec2 joint, int i) { return ((i < 8 ? joint.x : joint.y) >> 4 * (i & 7)) & 15u; }
 // Returns the mask of the tiles of which no candidate is alike.

@@ -56,7 +56,7 @@ void main() {
         Receiver receiver = pixel_receiver(pixel, texel);
         irradiance /= tiles;
 #ifdef LUCARNE_HISTORY
-        irradiance = with_history(index, receiver.position, receiver.normal, texel.depth, irradiance);
+        irradiance = with_history(index, receiver, texel, irradiance);
 #endif
         light = irradiance * receiver.reflectance.kd / kPi + specular / tiles;
     }

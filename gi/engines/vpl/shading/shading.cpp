@@ -1,7 +1,9 @@
 #include "gi/engines/vpl/shading/shading.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "gi/engines/vpl/bindings.h"
@@ -10,6 +12,7 @@
 #include "gi/engines/vpl/shading/isolated.h"
 #include "gi/engines/vpl/shading/native/gather.h"
 #include "gi/engines/vpl/shading/native/join.h"
+#include "gi/engines/vpl/shading/native/merge.h"
 #include "gi/gl_frame.h"
 #include "gi/raster/uniforms.h"
 
@@ -63,6 +66,30 @@ Result<void> shade_natively(const Frame& frame, const Seeds& seeds, const AtlasL
                                                           isolated.as<const IsolatedHeader>().front().count),
         .joints = joints.as<const uint32_t>().data()};
     native::gather(input, frame.settings[kInterleave], output);
+    return {};
+}
+
+Result<void> merge_natively(const Frame& frame, const Buffer& materials, const Tiles& tiles,
+                            History* history) {
+    std::optional<MappedHistory> frames;
+    if (history) {
+        LUCARNE_ASSIGN(MappedHistory mapped, history->map());
+        frames.emplace(std::move(mapped));
+    }
+    LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer mapped_materials, materials.map());
+    LUCARNE_ASSIGN(const MappedBuffer joints, tiles.joints.map());
+    LUCARNE_ASSIGN(const MappedBuffer diffuse, tiles.diffuse.map());
+    LUCARNE_ASSIGN(const MappedBuffer own_diffuse, tiles.own_diffuse.map());
+    LUCARNE_ASSIGN(const MappedBuffer radiance, frame.gl.radiance.map());
+    const native::MergeInput input{.camera = frame.camera,
+                                   .texels = texels.as<const GBufferTexel>().data(),
+                                   .materials = mapped_materials.as<const Material>(),
+                                   .joints = joints.as<const uint32_t>().data(),
+                                   .irradiance = diffuse.as<const glm::vec4>().data(),
+                                   .own_irradiance = own_diffuse.as<const glm::vec4>().data()};
+    native::merge(input, frame.settings[kInterleave], frames ? &frames->view : nullptr,
+                  radiance.as<glm::vec4>().data());
     return {};
 }
 
@@ -128,6 +155,11 @@ Result<void> shade_tiles(Frame& frame, const Buffer& materials, const Seeds& see
 }
 
 Result<void> merge_tiles(Frame& frame, const Buffer& materials, const Tiles& tiles, History* history) {
+    if (frame.gl.device.native_passes() && !tiles.glossy) {
+        LUCARNE_TRY(merge_natively(frame, materials, tiles, history));
+        if (history) history->end(frame);
+        return {};
+    }
     Defines how = defines(tiles);
     if (history) how.emplace_back("LUCARNE_HISTORY", "1");
     LUCARNE_ASSIGN(const Program* merge, frame.gl.device.program("gi/engines/vpl/shading/merge.comp", how));

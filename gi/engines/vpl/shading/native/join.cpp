@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "gi/engines/vpl/shading/native/window.h"
 #include "io/core/parallel.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -21,22 +22,6 @@
 namespace lucarne::gi::vpl::native {
 
 constexpr int kBand = 32;  ///< rows that a thread takes at a time
-/// The candidates of all tiles as offsets from a pixel, see window_pixel() in join.glsl.
-struct Candidate {
-    int dx, dy;
-    uint32_t word, bit;
-};
-inline std::vector<Candidate> candidates(int n) {
-    std::vector<Candidate> all;
-    const int last = n > 1 ? 3 : 0;
-    for (int i = 0; i < n * n; ++i)
-        for (int j = 0; j <= last; ++j) {
-            const int x = i % n - (n - 1) / 2, y = i / n - (n - 1) / 2;
-            all.push_back({x + n * (x < 0 ? 1 : -1) * (j & 1), y + n * (y < 0 ? 1 : -1) * (j >> 1),
-                           static_cast<uint32_t>(i >> 3), 1u << (4 * (i & 7) + j)});
-        }
-    return all;
-}
 
 struct JoinJob {
     const CameraView& camera;
