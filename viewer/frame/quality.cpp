@@ -16,7 +16,7 @@ void MovingQuality::observe(double frame_seconds) {
     last_[next_++ % last_.size()] = frame_seconds;
     std::array<double, kObserved> sorted = last_;
     const auto known = std::min(next_, sorted.size());
-    const auto middle = sorted.begin() + static_cast<ptrdiff_t>(known / 2);
+    const auto middle = sorted.begin() + static_cast<ptrdiff_t>((known - 1) / 2);
     std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<ptrdiff_t>(known));
     if (*middle > longest_) {
         if (scale_ <= kLeastScale) reduced_ = true;

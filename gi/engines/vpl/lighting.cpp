@@ -76,12 +76,13 @@ Result<void> unite_bounces(Device& device, Lighting& lighting) {
     return {};
 }
 
-float ambient_irradiance(const Seeds& first_bounce, const Bounds& scene) {
+float ambient_irradiance(const Seeds& first_bounce, const Bounds& scene, uint32_t bounces) {
     constexpr double kAlbedo = .5;
     const glm::dvec3 size = glm::dvec3(scene.max) - glm::dvec3(scene.min);
     const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    const double all_bounces = (1 - std::pow(kAlbedo, bounces)) / (1 - kAlbedo);
     const double irradiance =
-        std::numbers::pi * all_leaving(first_bounce) / std::max(area, 1e-6) / (1 - kAlbedo);
+        std::numbers::pi * all_leaving(first_bounce) / std::max(area, 1e-6) * all_bounces;
     return std::isfinite(irradiance) ? static_cast<float>(irradiance) : 0.0f;
 }
 

@@ -46,9 +46,9 @@ struct Lighting {
 /// noise. Errors: no device memory.
 Result<void> unite_bounces(Device& device, Lighting& lighting);
 
-/// Returns the radiance times pi that a box of the size of the scene, grey by half, would get from these VPLs
-/// of the first bounce everywhere (the mean of an integrating sphere): an ambient term until there is better
-/// light. W/m^2.
-float ambient_irradiance(const Seeds& first_bounce, const Bounds& scene);
+/// Returns the mean irradiance, W/m^2, in a closed box of the size of the scene whose albedo is .5, by this
+/// many bounces of which these are the first one's VPLs (an integrating sphere): an ambient term until there
+/// is better light.
+float ambient_irradiance(const Seeds& first_bounce, const Bounds& scene, uint32_t bounces);
 
 }  // namespace lucarne::gi::vpl

@@ -197,7 +197,7 @@ Result<void> VplEngine::shade_in_motion(Frame& frame, const Basis& basis) {
 /// Lights the picture evenly. The VPLs that come later replace this light as quickly as History forgets it.
 Result<void> VplEngine::shade_ambient(Frame& frame) {
     if (other_.layout.maps && !other_.bounces.empty())
-        ambient_ = ambient_irradiance(other_.bounces[0].seeds, frame.bounds);
+        ambient_ = ambient_irradiance(other_.bounces[0].seeds, frame.bounds, frame.settings[kBounces]);
     Frame plain = frame;
     plain.settings.set(kInterleave, 1);  // so that each pixel is lit by itself
     LUCARNE_TRY(timed(plain, "VPL join", [&] { return join_tiles(plain, glossy(plain), tiles_); }));

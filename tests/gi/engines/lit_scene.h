@@ -1,6 +1,10 @@
 // A cloud of surfels lit by an engine, for tests.
 #pragma once
 
+#include <atomic>
+#include <limits>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "gi/engine.h"
@@ -47,11 +51,15 @@ struct LitOptions {
     std::vector<Material> materials = {make_material()};
     glm::vec3 background{0.0f};
     EngineSettings settings = test_settings();
+    uint64_t index = 0;
     bool moving = false;
+    double light_seconds = std::numeric_limits<double>::infinity();
+    const std::atomic<bool>* stop = nullptr;
     std::shared_ptr<const Environment> environment = nullptr;
     Unlit unlit{};
     PointSize size{};
     Clip clip{};
+    std::optional<Bounds> bounds;  ///< of the scene; by default the cloud's root
 };
 
 /// Renders a cloud with an engine. One cut, the whole cloud, is view cut, light-view cut and light cut.
@@ -84,9 +92,13 @@ inline Lit light_up(Device& device, Engine& engine, const SurfelCloud& cloud, co
                 .materials = options.materials,
                 .background = options.background,
                 .settings = options.settings,
+                .index = options.index,
                 .environment = options.environment,
-                .bounds = {glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)},
+                .bounds = options.bounds.value_or(
+                    Bounds{glm::vec3(cloud.header().min), glm::vec3(cloud.header().max)}),
                 .moving = options.moving,
+                .light_seconds = options.light_seconds,
+                .stop = options.stop,
                 .unlit = options.unlit,
                 .gl = on_device,
                 .times = times};

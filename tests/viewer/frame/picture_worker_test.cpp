@@ -107,6 +107,25 @@ TEST_F(Worker, APictureAtRestHoldsNothingOfTheOneBeforeTheMotion) {
     EXPECT_LE(largest, 1) << "a spot's light is the same in every sample";
 }
 
+TEST_F(Worker, MotionDoesNotWaitForAPictureAtRest) {
+    // A picture that would take hours is given up, also in favour of the end.
+    request_.method.engine = "reference";
+    request_.method.settings = gi::default_settings(gi::Effort::high);
+    gi::EngineSettings& settings = request_.method.settings;
+    settings.set(*gi::find_option("samples"), int64_t{1} << 20);
+    worker_->request(request_);
+    PictureRequest motion = request_;
+    motion.moving = motion.frame.moving = motion.frame.stand_in = true;
+    motion.frame.light_seconds = 0;
+    for (int i = 0; i < 3; ++i) {
+        motion.frame.camera.target.z += 1e-3;
+        const auto picture = whole(worker_->request(motion));
+        ASSERT_TRUE(picture) << "the default engine stands in for the slow one";
+        EXPECT_TRUE(picture->moving);
+    }
+    worker_->request(request_);
+}
+
 TEST_F(Worker, AnErrorIsShownAndTheNextRequestIsMadeAllTheSame) {
     request_.method.engine = "magic";
     EXPECT_EQ(whole(worker_->request(request_)), nullptr);
