@@ -35,6 +35,7 @@ struct FlyOptions {
     std::string path, report, html, frames_folder, video;
     DrawingOptions drawing;
     double soak = 0, frame_time_ms = 0, margin = 3;
+    std::optional<double> light_time_ms;
     bool wait = false, realtime = false, cold = false, flicker = false, popping = false, overwrite = false;
 };
 
@@ -137,6 +138,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     how.changes = options.popping;
     how.soak = options.soak;
     how.frame_time = options.frame_time_ms * 1e-3;
+    if (options.light_time_ms) how.light_seconds = *options.light_time_ms * 1e-3;
     if (!plan.frames_folder.empty()) how.frames_folder = plan.frames_folder;
     const std::atomic<bool> stop{false};
     std::unique_ptr<VideoWriter> video;
@@ -161,6 +163,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
     conditions.budgets = drawing.preset.budgets;
     conditions.caps = drawing.caps;
     conditions.frame_time = how.frame_time;
+    conditions.light_seconds = how.light_seconds;
     conditions.wall_seconds = flight.wall_seconds;
     conditions.soak = flight.soak;
     conditions.build = build_info();
@@ -235,6 +238,13 @@ void add_fly(CommandLine& line) {
         .add("--frame-time", options->frame_time_ms,
              "With --realtime: choose the points of cuts so that frames take this time")
         .range(1.0, 1e5)
+        .type_name("MS");
+    command
+        .add("--light-time", options->light_time_ms,
+             "Time of a frame for light that later frames show as well; 0: one step of it, the same on every "
+             "run "
+             "(default: 30 or three tenths of --frame-time; with --wait all that there is)")
+        .range(0.0, 1e6)
         .type_name("MS");
     command.flag("--cold", options->cold,
                  "Before each flight make a cold one: the system's cache of the files is dropped first");

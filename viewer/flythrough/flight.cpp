@@ -1,6 +1,7 @@
 #include "viewer/flythrough/flight.h"
 
 #include <chrono>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -157,15 +158,19 @@ struct Flying {
         return {};
     }
 
+    double light_seconds() const {
+        if (options.light_seconds) return *options.light_seconds;
+        if (options.wait) return std::numeric_limits<double>::infinity();
+        return kLightShare * (options.frame_time > 0 ? options.frame_time : kUsualFrameTime);
+    }
+
     Result<void> draw(double time, size_t lap) {
         FrameRequest request;
         request.camera = path.at(time);
         request.size = options.size;
         request.wait = options.wait;
         request.moving = true;
-        if (!options.wait)
-            request.light_seconds =
-                kLightShare * (options.frame_time > 0 ? options.frame_time : kUsualFrameTime);
+        request.light_seconds = light_seconds();
         FlownFrame frame;
         frame.time = time;
         frame.lap = lap;

@@ -27,6 +27,9 @@ struct FlightOptions {
     /// Target time of a frame, s. Without `wait`, the budgets of cuts follow it (cost_model.h). 0: budgets
     /// are fixed.
     double frame_time = 0;
+    /// Time of each frame for making light that outlasts it, s (FrameRequest::light_seconds). By default
+    /// unlimited with `wait`, and kLightShare of the frame's time otherwise.
+    std::optional<double> light_seconds;
 };
 
 struct Flight {

@@ -243,6 +243,7 @@ Json flight_report(const FlightConditions& conditions, std::span<const FlownFram
     report["settings"] = settings(conditions);
     report["size"] = {conditions.size.width, conditions.size.height};
     if (conditions.frame_time > 0) report["frame_time_ms"] = conditions.frame_time * 1e3;
+    if (conditions.light_seconds) report["light_time_ms"] = *conditions.light_seconds * 1e3;
     surroundings(conditions, report);
     report["start"] = start(conditions, frames);
     report["frames"] = frames.size();

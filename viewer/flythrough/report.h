@@ -54,8 +54,9 @@ struct FlightConditions {
     gi::EngineSettings settings;
     CutBudgets budgets;
     PipelineOptions caps;
-    double frame_time = 0;    ///< s, the target that the cuts followed; 0: no target
-    double wall_seconds = 0;  ///< duration of the flight without the writing of pictures
+    double frame_time = 0;                ///< s, the target that the cuts followed; 0: no target
+    std::optional<double> light_seconds;  ///< FlightOptions::light_seconds
+    double wall_seconds = 0;              ///< duration of the flight without the writing of pictures
     FlightStart start;
     std::optional<Soak> soak;
     std::optional<FullFlight> full;
