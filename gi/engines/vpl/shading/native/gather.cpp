@@ -65,10 +65,6 @@ struct Receivers {
     Mask shown;
 };
 
-HWY_INLINE F clamped(F v) {
-    return hn::Min(hn::Max(v, hn::Zero(Floats())), set(1.0f));
-}
-
 /// pair_share() of gather.glsl; 0 for lanes that are not `lit`.
 HWY_INLINE F pair_share(const GatherLight& light, const V3& offset, const Receivers& to, F distance2,
                         Mask& lit) {
