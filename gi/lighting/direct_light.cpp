@@ -1,11 +1,50 @@
 #include "gi/lighting/direct_light.h"
 
+#include <algorithm>
+
 #include "gi/gl_frame.h"
 #include "gi/lighting/bindings.h"
+#include "gi/lighting/native/light.h"
 #include "gi/raster/uniforms.h"
 
 namespace lucarne::gi {
-namespace {}  // namespace
+namespace {
+
+bool any_lobes(const Frame& frame) {
+    return std::ranges::any_of(frame.materials,
+                               [](const Material& material) { return material.diffuse.w > 0; });
+}
+
+Result<void> add_own_light_natively(const Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
+    LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer held, materials.map());
+    LUCARNE_ASSIGN(const MappedBuffer radiance, frame.gl.radiance.map());
+    LUCARNE_ASSIGN(const MappedBuffer background, sky.texels.map());
+    native::SkyPicture behind{background.as<const float>().data(), 1, 1, 0};
+    if (const auto* environment = frame.environment.get()) {
+        behind.width = environment->width;
+        behind.height = environment->height;
+        behind.rotation = environment->rotation;
+    }
+    native::add_own_light({frame.camera, texels.as<const GBufferTexel>().data(), held.as<const Material>(),
+                           radiance.as<glm::vec4>().data()},
+                          behind, add);
+    return {};
+}
+
+Result<void> add_light_natively(const Frame& frame, const Buffer& materials, const LightView& from,
+                                const GBuffer& seen) {
+    LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer shadows, seen.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer held, materials.map());
+    LUCARNE_ASSIGN(const MappedBuffer radiance, frame.gl.radiance.map());
+    native::add_light({frame.camera, texels.as<const GBufferTexel>().data(), held.as<const Material>(),
+                       radiance.as<glm::vec4>().data()},
+                      from.light, {from.view, shadows.as<const GBufferTexel>().data(), from.face});
+    return {};
+}
+
+}  // namespace
 
 std::vector<Material> device_materials(std::vector<Material> materials) {
     if (materials.empty()) materials.push_back({glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)});
@@ -34,6 +73,7 @@ Result<void> upload_sky(const Frame& frame, Sky& sky) {
 }
 
 Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
+    if (frame.gl.device.native_passes()) return add_own_light_natively(frame, materials, sky, add);
     const Defines defines = add ? Defines{{"LUCARNE_ADD", "1"}} : Defines{};
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/own_light.comp", defines));
     frame.gl.gbuffer.texels.bind(lighting::kBindCameraTexels);
@@ -50,6 +90,8 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky
 }
 
 Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
+    if (frame.gl.device.native_passes() && !any_lobes(frame))
+        return add_light_natively(frame, materials, from, seen);
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/light.comp"));
     frame.gl.gbuffer.texels.bind(lighting::kBindCameraTexels);
     seen.texels.bind(lighting::kBindLightTexels);

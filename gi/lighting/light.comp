@@ -17,7 +17,7 @@ void main() {
     if (pixel.x >= camera.width || pixel.y >= camera.height) return;
     uint at = pixel.y * camera.width + pixel.x;
     GBufferTexel texel = texels[at];
-    if (texel.depth <= 0.0) return;
+    if (!(texel.depth > 0.0)) return;
     vec3 position = texel_position(camera, pixel, texel);
     vec3 normal = texel_normal(texel);
     vec3 to_light;

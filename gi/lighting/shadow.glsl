@@ -41,7 +41,7 @@ float shadow_lift(vec3 position, float radius) {
 // surface that hides it; otherwise the rims of walls would catch light from outside the room.
 bool texel_blocks(ivec2 pixel, vec3 lifted, float depth, float radius) {
     GBufferTexel texel = light_texel(pixel);
-    if (texel.depth <= 0.0) return false;
+    if (!(texel.depth > 0.0)) return false;
     float caster_radius = texel_radius(texel);
     vec3 caster = texel_position(light_view, uvec2(pixel), texel);
     // The plane is infinite but the disc is not: a point nearer to the light than the disc reaches is not behind it.

@@ -38,19 +38,61 @@ HWY_INLINE TexelWords load_texels(const GBufferTexel* texels, int count) {
     return words;
 }
 
-/// view_point() relative to the view's origin. `column` and `row` are those of a picture point (middles of
-/// pixels at .5) plus the shift of the view.
-HWY_INLINE V3 view_offset(const CameraView& view, F column, F row, F depth) {
-    const F one = set(1.0f);
-    const F across = sub(over(mul(set(2.0f), column), set(static_cast<float>(view.width))), one);
-    const F down = sub(over(mul(set(2.0f), row), set(static_cast<float>(view.height))), one);
-    const auto axis = [&](float right, float up, float forward) {
-        const F offset = add(mul(set(right), across), mul(down, set(-up)));
-        return view.projection == kOrthographic ? add(offset, mul(depth, set(forward)))
-                                                : mul(depth, add(set(forward), offset));
+/// Reads `count` vec4 from 1 on; further lanes are 0.
+HWY_INLINE void load_vec4(const glm::vec4* from, int count, V3& xyz, F& w) {
+    const Floats df;
+    if (count >= static_cast<int>(hn::Lanes(df))) {
+        hn::LoadInterleaved4(df, &from->x, xyz.x, xyz.y, xyz.z, w);
+        return;
+    }
+    alignas(64) float lanes[4 * kLanes] = {};
+    std::memcpy(lanes, from, sizeof(glm::vec4) * static_cast<size_t>(count));
+    hn::LoadInterleaved4(df, lanes, xyz.x, xyz.y, xyz.z, w);
+}
+/// Writes the first `count` lanes, or all if it is larger.
+HWY_INLINE void store_vec4(const V3& xyz, F w, int count, glm::vec4* to) {
+    const Floats df;
+    if (count >= static_cast<int>(hn::Lanes(df))) {
+        hn::StoreInterleaved4(xyz.x, xyz.y, xyz.z, w, df, &to->x);
+        return;
+    }
+    alignas(64) float lanes[4 * kLanes];
+    hn::StoreInterleaved4(xyz.x, xyz.y, xyz.z, w, df, lanes);
+    std::memcpy(to, lanes, sizeof(glm::vec4) * static_cast<size_t>(count));
+}
+
+/// view_across(). `column` and `row` are those of a picture point (middles of pixels at .5) plus the shift of
+/// the view.
+HWY_INLINE V3 view_across(const CameraView& view, F column, F row) {
+    const F one = set(1.0f), two = set(2.0f);
+    const F across = sub(over(mul(two, column), set(static_cast<float>(view.width))), one);
+    const F down = sub(over(mul(two, row), set(static_cast<float>(view.height))), one);
+    const auto axis = [&](float right, float up) {
+        return add(mul(set(right), across), mul(down, set(-up)));
     };
-    return {axis(view.right.x, view.up.x, view.forward.x), axis(view.right.y, view.up.y, view.forward.y),
-            axis(view.right.z, view.up.z, view.forward.z)};
+    return {axis(view.right.x, view.up.x), axis(view.right.y, view.up.y), axis(view.right.z, view.up.z)};
+}
+/// view_ray().
+HWY_INLINE V3 view_ray(const CameraView& view, F column, F row) {
+    if (view.projection == kOrthographic)
+        return {set(view.forward.x), set(view.forward.y), set(view.forward.z)};
+    const V3 across = view_across(view, column, row);
+    return {add(set(view.forward.x), across.x), add(set(view.forward.y), across.y),
+            add(set(view.forward.z), across.z)};
+}
+/// view_point() relative to the view's origin, for the same places.
+HWY_INLINE V3 view_offset(const CameraView& view, F column, F row, F depth) {
+    if (view.projection != kOrthographic) return scaled(view_ray(view, column, row), depth);
+    const V3 across = view_across(view, column, row);
+    return {add(across.x, mul(depth, set(view.forward.x))), add(across.y, mul(depth, set(view.forward.y))),
+            add(across.z, mul(depth, set(view.forward.z)))};
+}
+/// The middles of the pixels from (x, y) on in a row, plus the shift of the view.
+HWY_INLINE F view_columns(const CameraView& view, int x) {
+    return add(hn::Iota(Floats(), static_cast<float>(x)), set(0.5f + view.right.w));
+}
+HWY_INLINE F view_row(const CameraView& view, int y) {
+    return set(static_cast<float>(y) + 0.5f + view.up.w);
 }
 
 /// Where a view shows points: pixels (middles at .5), and depth along the forward axis, m.
@@ -82,11 +124,18 @@ HWY_INLINE F pixel_heights(const CameraView& view, F depth) {
     return view.projection == kOrthographic ? height : mul(height, depth);
 }
 
+/// The radii of the surfels of texels, m.
+HWY_INLINE F texel_radii(U material) {
+    return half_value(hn::ShiftRight<16>(material));
+}
+/// The materials of texels. Surfels name one of LUCARNE_DEVICE_MATERIALS.
+HWY_INLINE hn::Vec<Ints> texel_materials(U material) {
+    return hn::BitCast(Ints(), hn::And(material, word(LUCARNE_DEVICE_MATERIALS - 1)));
+}
 /// The diffuse reflectance of texels, kd of make_reflectance().
 HWY_INLINE V3 diffuse_reflectance(const DiffuseTables& tables, U albedo, U material) {
     const Floats df;
-    // Surfels name one of LUCARNE_DEVICE_MATERIALS.
-    const auto index = hn::BitCast(Ints(), hn::And(material, word(LUCARNE_DEVICE_MATERIALS - 1)));
+    const auto index = texel_materials(material);
     const F most = hn::GatherIndex(df, tables.most.data(), index);
     const auto channel = [&](U code, size_t i) {
         const F linear =

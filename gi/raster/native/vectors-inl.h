@@ -42,6 +42,9 @@ HWY_INLINE F mul(F a, F b) {
 HWY_INLINE F over(F a, F b) {
     return hn::Div(a, b);
 }
+HWY_INLINE F clamped(F v) {
+    return hn::Min(hn::Max(v, hn::Zero(Floats())), set(1.0f));
+}
 /// Converts words below 2^31.
 HWY_INLINE F to_float(U v) {
     return hn::ConvertTo(Floats(), hn::BitCast(Ints(), v));

@@ -30,8 +30,8 @@ struct GatherLight {
     glm::vec4 normal, tangent, bitangent;
     glm::vec3 position;  ///< relative to the camera
     glm::vec3 diffuse;
-    float r2;
-    size_t map;  ///< its first texel in the atlas
+    float r2, per_area;  ///< squared radius of the footprint, and 1 / its area
+    size_t map;          ///< its first texel in the atlas
 };
 
 struct GatherJob {
@@ -43,12 +43,14 @@ struct GatherJob {
 
 inline GatherLight gather_light(const VplLight& light, const glm::vec4& eye, size_t map) {
     const MapFrame frame = frame_of(light);
+    const float r2 = std::max(light.position.w / kPi, 1e-12f);
     return {frame.normal,
             frame.tangent,
             frame.bitangent,
             glm::vec3(light.position) - glm::vec3(eye),
             glm::vec3(light.diffuse),
-            std::max(light.position.w / kPi, 1e-12f),
+            r2,
+            1 / (kPi * r2),
             map};
 }
 
@@ -61,62 +63,80 @@ namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
 /// Some pixels as receivers.
 struct Receivers {
     V3 position, normal;
-    F radius;
+    F radius, per_radius;
     Mask shown;
 };
 
-HWY_INLINE F clamped(F v) {
-    return hn::Min(hn::Max(v, hn::Zero(Floats())), set(1.0f));
-}
+// Divisions and roots take most of the time, so quotients share them. A few products are therefore larger or
+// smaller than those of the shader; they stay finite for distances from 1e-7 to 1e9 m.
 
-/// pair_share() of gather.glsl; 0 for lanes that are not `lit`.
-HWY_INLINE F pair_share(const GatherLight& light, const V3& offset, const Receivers& to, F distance2,
-                        Mask& lit) {
-    const F own = hn::Neg(dot(to.normal, offset)), lights = dot(offset, light.normal);
-    const F least = hn::Min(own, lights), most = hn::Max(own, lights);
-    lit = hn::And(lit, hn::Gt(least, mul(set(kRimPush), to.radius)));
+/// pair_share() of gather.glsl for points that face each other: `own` and `lights` are their heights over
+/// each other's planes, `per_distance` is 1 / the distance.
+HWY_INLINE F pair_share(const GatherLight& light, const Receivers& to, F own, F lights, F per_distance) {
+    const F clearance = mul(hn::Min(own, lights), to.per_radius),
+            rise = mul(hn::Max(own, lights), per_distance);
     const F opposite = clamped(hn::Neg(dot(to.normal, light.normal)));
-    const F clearance = over(least, to.radius), rise = over(most, hn::Sqrt(distance2));
-    const auto ramp = [&](F v, float first, float first_opposite, float width, float width_opposite) {
-        const auto mixed = [&](float a, float b) { return add(set(a), mul(set(b - a), opposite)); };
-        return clamped(over(sub(v, mixed(first, first_opposite)), mixed(width, width_opposite)));
-    };
-    return mul(ramp(clearance, kRimPush, 2.0f, 0.6f - kRimPush, 2.0f), ramp(rise, 0.035f, 0.1f, 0.07f, 0.1f));
+    const auto mixed = [&](float a, float b) { return add(set(a), mul(set(b - a), opposite)); };
+    const F widths[] = {mixed(0.6f - kRimPush, 2.0f), mixed(0.07f, 0.1f)};
+    const F per_widths = over(set(1.0f), mul(widths[0], widths[1]));
+    const F clear = mul(sub(clearance, mixed(kRimPush, 2.0f)), mul(widths[1], per_widths)),
+            risen = mul(sub(rise, mixed(0.035f, 0.1f)), mul(widths[0], per_widths));
+    return mul(clamped(clear), clamped(risen));
 }
 
-/// disc_form_factor() of gather.glsl.
-HWY_INLINE F disc_form_factor(const GatherLight& light, const V3& offset, const Receivers& to, F d2) {
-    const F zero = hn::Zero(Floats()), one = set(1.0f), two = set(2.0f), r2 = set(light.r2);
-    const F height = dot(offset, light.normal);
+/// disc_form_factor() of gather.glsl. `height` is that over the plane of the light, `d2` the squared
+/// distance.
+HWY_INLINE F disc_form_factor(const GatherLight& light, const V3& offset, const Receivers& to, F height,
+                              F d2) {
+    const F zero = hn::Zero(Floats()), one = set(1.0f), r2 = set(light.r2);
     const V3 lateral{sub(offset.x, mul(height, set(light.normal.x))),
                      sub(offset.y, mul(height, set(light.normal.y))),
                      sub(offset.z, mul(height, set(light.normal.z)))};
-    const F a2 = dot(lateral, lateral), sum = add(d2, r2);
-    const F s = hn::Sqrt(hn::Max(sub(mul(sum, sum), mul(mul(set(4.0f), a2), r2)), set(1e-30f)));
-    const F outside = over(mul(mul(mul(two, height), height), r2), mul(s, add(s, sub(d2, r2))));
-    const F inside = over(mul(set(0.5f), sub(add(s, r2), d2)), s);
-    const F parallel = hn::IfThenElse(hn::Gt(d2, r2), outside, inside);
-    const F lateral_share = over(mul(mul(two, height), r2), mul(s, add(sum, s)));
+    const F a2 = dot(lateral, lateral), sum = add(d2, r2), apart = sub(d2, r2);
+    const F s = hn::Sqrt(hn::Max(sub(mul(sum, sum), mul(a2, set(4 * light.r2))), set(1e-30f)));
+    // parallel = 2 height^2 r2 / (s (s + d2 - r2)) outside, (s + r2 - d2) / (2 s) inside;
+    // lateral_share = 2 height r2 / (s (d2 + r2 + s))
+    const Mask outside = hn::Gt(apart, zero);
+    const F beyond = hn::IfThenElse(outside, add(s, apart), one), around = add(sum, s);
+    const F per_s = over(one, s), per_both = mul(over(one, mul(beyond, around)), per_s);
+    const F reach = mul(height, set(2 * light.r2));
+    const F parallel = hn::IfThenElse(outside, mul(mul(reach, height), mul(around, per_both)),
+                                      mul(mul(set(0.5f), sub(s, apart)), per_s));
+    const F lateral_share = mul(reach, mul(beyond, per_both));
     const auto axis = [&](float n, F l) {
         return sub(mul(hn::Neg(parallel), set(n)), mul(lateral_share, l));
     };
     const V3 flux{axis(light.normal.x, lateral.x), axis(light.normal.y, lateral.y),
                   axis(light.normal.z, lateral.z)};
-    const F size = hn::Max(hn::Sqrt(dot(flux, flux)), set(1e-30f));
-    const F facing = dot(flux, to.normal), sine = hn::Sqrt(size), cosine = over(facing, size);
-    const F above = hn::Max(add(cosine, sine), zero);
-    const F partly = over(mul(mul(size, above), above), mul(set(4.0f), sine));
-    const F cut = hn::IfThenElse(hn::Ge(cosine, sine), facing, partly);
-    const F lossless = hn::Max(over(add(mul(size, size), facing), add(size, one)), zero);
+    // cut = size (cosine + sine)^2 / (4 sine) or facing, lossless = (size^2 + facing) / (size + 1), where
+    // cosine = facing / size
+    const F size = hn::Max(hn::Sqrt(dot(flux, flux)), set(1e-20f)), facing = dot(flux, to.normal);
+    const F steep = mul(size, hn::Sqrt(size)), above = hn::Max(add(facing, steep), zero);
+    const F four_steep = mul(set(4.0f), steep), more = add(size, one);
+    const F per_steep = over(one, mul(four_steep, more));
+    const F partly = mul(mul(above, above), mul(more, per_steep));
+    const F cut = hn::IfThenElse(hn::Ge(facing, steep), facing, partly);
+    const F lossless = hn::Max(mul(add(mul(size, size), facing), mul(four_steep, per_steep)), zero);
     return mul(set(kPi * 0.5f), add(cut, lossless));
+}
+
+/// The normals that a map's texels hold, unnormalised: map_normal() of parabolic.glsl.
+HWY_INLINE V3 blocker_normals(U texel) {
+    const auto fraction = [&](U bits) {
+        return sub(mul(to_float(hn::And(bits, word(63))), set(2 / 63.0f)), set(1.0f));
+    };
+    const F x = fraction(texel), y = fraction(hn::ShiftRight<6>(texel));
+    const F z = sub(sub(set(1.0f), hn::Abs(x)), hn::Abs(y));
+    const F fold = hn::Max(hn::Neg(z), hn::Zero(Floats()));
+    return {sub(x, hn::CopySign(fold, x)), sub(y, hn::CopySign(fold, y)), z};
 }
 
 /// vpl_sees() of gather.glsl.
 HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V3& offset,
                      const Receivers& to, Mask lit) {
     const Ints di;
-    const F zero = hn::Zero(Floats()), one = set(1.0f), half = set(0.5f),
-            side = set(static_cast<float>(input.side));
+    const auto texels = static_cast<float>(input.side);
+    const F zero = hn::Zero(Floats()), one = set(1.0f);
     const auto lift = [&](F along, F normal, float light_normal) {
         return sub(add(along, mul(normal, to.radius)), set(light_normal * light.normal.w));
     };
@@ -125,40 +145,38 @@ HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V
     const V3 receiver{dot(lifted, light.tangent), dot(lifted, light.bitangent), dot(lifted, light.normal)};
     const V3 normal{dot(to.normal, light.tangent), dot(to.normal, light.bitangent),
                     dot(to.normal, light.normal)};
-    const F scale = over(one, add(hn::Sqrt(dot(receiver, receiver)), receiver.z));
+    const F half = set(0.5f * texels);
+    const F scale = over(half, add(hn::Sqrt(dot(receiver, receiver)), receiver.z));
     const auto texel = [&](F v) {
-        const F at = mul(add(mul(mul(v, scale), half), half), side);
-        return to_int(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), sub(side, one))));
+        const F at = add(mul(v, scale), half);
+        return to_int(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), set(texels - 1))));
     };
     const auto column = texel(receiver.x), row = texel(receiver.y);
     const auto index = hn::Add(hn::Mul(row, hn::Set(di, static_cast<int32_t>(input.side))), column);
     const U nearest = hn::BitCast(
         Words(), hn::GatherIndex(di, reinterpret_cast<const int32_t*>(input.atlas) + light.map, index));
     const auto centre = [&](hn::Vec<Ints> at) {
-        return sub(over(add(mul(set(2.0f), hn::ConvertTo(Floats(), at)), one), side), one);
+        return add(mul(hn::ConvertTo(Floats(), at), set(2 / texels)), set(1 / texels - 1));
     };
     const F u = centre(column), v = centre(row), uv2 = add(mul(u, u), mul(v, v));
     const U distance_bits =
         hn::Or(hn::ShiftLeft<12>(hn::Add(hn::ShiftRight<16>(nearest), word(111u << 11))), word(0x800u));
     const F distance = hn::BitCast(Floats(), distance_bits), along = over(distance, add(one, uv2));
-    const V3 ahead{sub(mul(mul(set(2.0f), u), along), receiver.x),
-                   sub(mul(mul(set(2.0f), v), along), receiver.y),
+    const F twice = add(along, along);
+    const V3 ahead{sub(mul(u, twice), receiver.x), sub(mul(v, twice), receiver.y),
                    sub(mul(sub(one, uv2), along), receiver.z)};
-    const auto fraction = [&](U bits) {
-        const F p = over(sub(to_float(hn::And(bits, word(63))), set(31.5f)), set(31.5f));
-        return hn::And(hn::BitCast(Words(), nearest_int(mul(p, set(32767.0f)))), word(0xffffu));
-    };
-    const V3 blocker =
-        decode_octahedral(hn::Or(fraction(nearest), hn::ShiftLeft<16>(fraction(hn::ShiftRight<6>(nearest)))));
+    const V3 blocker = blocker_normals(nearest);
+    const F length = hn::Sqrt(dot(blocker, blocker));
     // 2^(code - 11)
     const U exponent = hn::Add(hn::And(hn::ShiftRight<12>(nearest), word(15)), word(127 - 11));
     const F radius = hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent));
     const F error = mul(set(kSheetTolerance), hn::Max(radius, mul(set(input.splat_angle), distance)));
-    const F width = mul(set(std::sqrt(8.0f) / static_cast<float>(input.side)), distance);
-    const F texels = add(one, hn::Max(dot(normal, blocker), zero));
+    const F width = mul(set(std::sqrt(8.0f) / texels), distance);
+    // Both sides of the test against the blocker's plane are times the length of its normal.
+    const F behind = add(mul(add(error, width), length), mul(width, hn::Max(dot(normal, blocker), zero)));
     Mask seen = hn::Or(hn::Le(receiver.z, zero), hn::RebindMask(Floats(), hn::Eq(nearest, word(kNoTexel))));
     seen = hn::Or(seen, hn::Le(dot(normal, ahead), error));
-    seen = hn::Or(seen, hn::Le(dot(blocker, ahead), add(error, mul(texels, width))));
+    seen = hn::Or(seen, hn::Le(dot(blocker, ahead), behind));
     return hn::And(lit, seen);
 }
 
@@ -166,9 +184,11 @@ HWY_INLINE Receivers receivers(const Surfaces& from, hn::Vec<Ints> columns) {
     const auto plane = [&](const std::vector<float>& values) {
         return hn::GatherIndex(Floats(), &values[kBorder], columns);
     };
+    const F radius = plane(from.radius);
     return {{plane(from.x), plane(from.y), plane(from.z)},
             {plane(from.nx), plane(from.ny), plane(from.nz)},
-            plane(from.radius),
+            radius,
+            over(set(1.0f), radius),
             hn::Gt(plane(from.depth), hn::Zero(Floats()))};
 }
 
@@ -179,15 +199,18 @@ void gather_tile(const GatherJob& job, const Receivers& to, Mask lanes, int tile
         const GatherLight& light = job.lights[i];
         const V3 offset{sub(to.position.x, set(light.position.x)), sub(to.position.y, set(light.position.y)),
                         sub(to.position.z, set(light.position.z))};
+        // Most VPLs that a pixel cannot see lie behind it, or it behind them.
+        const F own = hn::Neg(dot(to.normal, offset)), height = dot(offset, light.normal);
+        Mask lit = hn::And(lanes, hn::Gt(hn::Min(own, height), mul(set(kRimPush), to.radius)));
+        if (hn::AllFalse(Floats(), lit)) continue;
         const F d2 = dot(offset, offset);
-        Mask lit = lanes;
-        const F share = pair_share(light, offset, to, d2, lit);
+        const F share = pair_share(light, to, own, height, over(set(1.0f), hn::Sqrt(d2)));
         lit = hn::And(lit, hn::Gt(share, zero));
         if (hn::AllFalse(Floats(), lit)) continue;
         lit = sees(job.input, light, offset, to, lit);
         if (hn::AllFalse(Floats(), lit)) continue;
         const F factor = hn::IfThenElseZero(
-            lit, over(mul(share, disc_form_factor(light, offset, to, d2)), set(kPi * light.r2)));
+            lit, mul(mul(share, disc_form_factor(light, offset, to, height, d2)), set(light.per_area)));
         sum = {add(sum.x, mul(set(light.diffuse.x), factor)), add(sum.y, mul(set(light.diffuse.y), factor)),
                add(sum.z, mul(set(light.diffuse.z), factor))};
     }

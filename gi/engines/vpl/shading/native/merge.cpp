@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "gi/engines/vpl/shading/native/surfaces.h"
 #include "gi/engines/vpl/shading/native/window.h"
 #include "gi/raster/native/reflectance.h"
 #include "io/core/parallel.h"
@@ -16,7 +17,6 @@
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include "gi/engines/vpl/shading/native/history-inl.h"
-#include "gi/engines/vpl/shading/native/surfaces-inl.h"
 
 #ifndef LUCARNE_NATIVE_MERGE_ONCE
 #define LUCARNE_NATIVE_MERGE_ONCE
@@ -83,34 +83,15 @@ namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
 /// Splits a row of irradiance into planes.
 void read_irradiance(const glm::vec4* from, int width, size_t row, IrradiancePlanes& out) {
     const Floats df;
-    const auto lanes = static_cast<int>(hn::Lanes(df));
-    for (int x = 0; x < width; x += lanes) {
-        alignas(64) float rest[4 * kLanes] = {};
-        const auto* words = reinterpret_cast<const float*>(from + x);
-        if (x + lanes > width) {
-            std::memcpy(rest, words, sizeof(glm::vec4) * static_cast<size_t>(width - x));
-            words = rest;
-        }
-        F r, g, b, unused;
-        hn::LoadInterleaved4(df, words, r, g, b, unused);
+    for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(df))) {
+        V3 light;
+        F unused;
+        load_vec4(from + x, width - x, light, unused);
         const size_t at = row * out.stride + kBorder + static_cast<size_t>(x);
-        hn::StoreU(r, df, &out.channels[0][at]);
-        hn::StoreU(g, df, &out.channels[1][at]);
-        hn::StoreU(b, df, &out.channels[2][at]);
+        hn::StoreU(light.x, df, &out.channels[0][at]);
+        hn::StoreU(light.y, df, &out.channels[1][at]);
+        hn::StoreU(light.z, df, &out.channels[2][at]);
     }
-}
-
-/// Writes the first `count` lanes as vec4.
-HWY_INLINE void store_light(const V3& light, F w, int count, glm::vec4* to) {
-    const Floats df;
-    auto* words = reinterpret_cast<float*>(to);
-    if (count >= static_cast<int>(hn::Lanes(df))) {
-        hn::StoreInterleaved4(light.x, light.y, light.z, w, df, words);
-        return;
-    }
-    alignas(64) float lanes[4 * kLanes];
-    hn::StoreInterleaved4(light.x, light.y, light.z, w, df, lanes);
-    std::memcpy(words, lanes, sizeof(glm::vec4) * static_cast<size_t>(count));
 }
 
 /// Returns the mean irradiance of the tiles of some pixels. `at` is the place of the first in the planes.
@@ -161,38 +142,35 @@ HWY_INLINE V3 mean_of_tiles(const MergeJob& job, const IrradiancePlanes& from, s
     return scaled(own, over(one, count));
 }
 
-/// Writes the light of a row; `surfaces` holds that row alone, `from` its irradiance as row `row`.
-void merge_row(const MergeJob& job, const Surfaces& surfaces, const IrradiancePlanes& from, size_t row,
-               int y) {
+/// Writes the light of row y of the picture; `from` holds its irradiance as row `row`.
+void merge_row(const MergeJob& job, const IrradiancePlanes& from, size_t row, int y) {
     const Floats df;
     const Words du;
-    const auto width = static_cast<int>(job.input.camera.width), lanes = static_cast<int>(hn::Lanes(df));
+    const CameraView& camera = job.input.camera;
+    const auto width = static_cast<int>(camera.width), lanes = static_cast<int>(hn::Lanes(df));
     const F zero = hn::Zero(df), one = set(1.0f);
     for (int x = 0; x < width; x += lanes) {
         const int count = std::min(lanes, width - x);
-        const size_t pixel = static_cast<size_t>(y) * job.input.camera.width + static_cast<size_t>(x),
+        const size_t pixel = static_cast<size_t>(y) * camera.width + static_cast<size_t>(x),
                      at = kBorder + static_cast<size_t>(x);
         const TexelWords texel = load_texels(job.input.texels + pixel, count);
-        const Mask shown = hn::Gt(hn::BitCast(df, texel.depth), zero);
+        const F depth = hn::BitCast(df, texel.depth);
+        const Mask shown = hn::Gt(depth, zero);
         alignas(64) uint32_t joints[2 * kLanes] = {};
         std::memcpy(joints, job.input.joints + 2 * pixel, 2 * sizeof(uint32_t) * static_cast<size_t>(count));
         U joint[2];
         hn::LoadInterleaved2(du, joints, joint[0], joint[1]);
-        alignas(64) float own[4 * kLanes] = {};
-        std::memcpy(own, job.input.own_irradiance + pixel, sizeof(glm::vec4) * static_cast<size_t>(count));
         V3 light;
         F unused;
-        hn::LoadInterleaved4(df, own, light.x, light.y, light.z, unused);
+        load_vec4(job.input.own_irradiance + pixel, count, light, unused);
         light = mean_of_tiles(job, from, row * from.stride + at, joint, light);
         if (job.history) {
-            const auto plane = [&](const std::vector<float>& values) { return hn::LoadU(df, &values[at]); };
-            const V3 position{plane(surfaces.x), plane(surfaces.y), plane(surfaces.z)},
-                normal{plane(surfaces.nx), plane(surfaces.ny), plane(surfaces.nz)};
-            const KnownLight known =
-                with_history(*job.history, job.input.camera, position, normal, shown, light);
+            const V3 position = view_offset(camera, view_columns(camera, x), view_row(camera, y), depth);
+            const V3 normal = decode_octahedral(texel.normal);
+            const KnownLight known = with_history(*job.history, camera, position, normal, shown, light);
             light = known.irradiance;
-            store_light(choose(shown, light, {zero, zero, zero}), hn::IfThenElseZero(shown, known.frames),
-                        count, job.history->next_light + pixel);
+            store_vec4(choose(shown, light, {zero, zero, zero}), hn::IfThenElseZero(shown, known.frames),
+                       count, job.history->next_light + pixel);
             const auto stored = hn::RebindMask(du, shown);
             alignas(64) uint32_t words[2 * kLanes];
             hn::StoreInterleaved2(hn::IfThenElseZero(stored, texel.depth),
@@ -202,7 +180,7 @@ void merge_row(const MergeJob& job, const Surfaces& surfaces, const IrradiancePl
         }
         const V3 kd = scaled(diffuse_reflectance(job.tables, texel.albedo, texel.material), set(1 / kPi));
         const V3 reflected{mul(light.x, kd.x), mul(light.y, kd.y), mul(light.z, kd.z)};
-        store_light(choose(shown, reflected, {zero, zero, zero}), one, count, job.radiance + pixel);
+        store_vec4(choose(shown, reflected, {zero, zero, zero}), one, count, job.radiance + pixel);
     }
 }
 
@@ -214,11 +192,7 @@ void MergeBand(const MergeJob& job, int first, int end) {
     for (int y = std::max(0, first - job.n); y < std::min(height, end + job.n); ++y)
         read_irradiance(job.input.irradiance + static_cast<size_t>(y) * camera.width, width, row_of(y),
                         planes);
-    Surfaces surfaces(camera.width, 1);
-    for (int y = first; y < end; ++y) {
-        if (job.history) read_row(camera, job.input.texels, y, 0, surfaces);
-        merge_row(job, surfaces, planes, row_of(y), y);
-    }
+    for (int y = first; y < end; ++y) merge_row(job, planes, row_of(y), y);
 }
 
 }  // namespace lucarne::gi::vpl::native::HWY_NAMESPACE

@@ -22,13 +22,11 @@ static_assert(kLanes <= kBorder);
 inline void read_row(const CameraView& camera, const GBufferTexel* texels, int y, size_t row, Surfaces& out) {
     const Floats df;
     const auto width = static_cast<int>(camera.width);
-    const F line = set(static_cast<float>(y) + 0.5f + camera.up.w);
     for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(df))) {
         const TexelWords words =
             load_texels(texels + static_cast<size_t>(y) * camera.width + static_cast<size_t>(x), width - x);
         const F depth = hn::BitCast(df, words.depth);
-        const F column = add(hn::Iota(df, static_cast<float>(x)), set(0.5f + camera.right.w));
-        const V3 position = view_offset(camera, column, line, depth);
+        const V3 position = view_offset(camera, view_columns(camera, x), view_row(camera, y), depth);
         const V3 n = decode_octahedral(words.normal);
         const size_t at = row * out.stride + kBorder + static_cast<size_t>(x);
         hn::StoreU(position.x, df, &out.x[at]);
@@ -38,7 +36,7 @@ inline void read_row(const CameraView& camera, const GBufferTexel* texels, int y
         hn::StoreU(n.y, df, &out.ny[at]);
         hn::StoreU(n.z, df, &out.nz[at]);
         hn::StoreU(depth, df, &out.depth[at]);
-        hn::StoreU(half_value(hn::ShiftRight<16>(words.material)), df, &out.radius[at]);
+        hn::StoreU(texel_radii(words.material), df, &out.radius[at]);
     }
 }
 
