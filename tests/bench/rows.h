@@ -40,6 +40,16 @@ inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
 }
 
+/// Prints a figure without a target.
+inline void figure(const std::string& what, double value, const std::string& unit) {
+    fmt::print("{:<68} {:>9.2f} {}\n", what, value, unit);
+    std::fflush(stdout);
+}
+/// Prints why a figure is missing.
+inline void row_missing(const std::string& what, const std::string& why) {
+    fmt::print("{:<68} not measured: {}\n", what, why);
+    std::fflush(stdout);
+}
 inline void print_row(const std::string& what, double value, const std::string& unit, double target,
                       bool kept) {
     fmt::print("{:<68} {:>9.2f} {:<7} target {:>7.1f}  {}\n", what, value, unit, target,
