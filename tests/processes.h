@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,6 +69,12 @@ class Background {
     explicit Background(const std::string& command) {
         pid_ = fork();
         if (pid_ == 0) {
+            // The program ends with the one that started it, and takes signals that handle_interrupts() has
+            // blocked there.
+            prctl(PR_SET_PDEATHSIG, SIGTERM);
+            sigset_t none;
+            sigemptyset(&none);
+            sigprocmask(SIG_SETMASK, &none, nullptr);
             execl("/bin/sh", "sh", "-c", ("exec " + command).c_str(), nullptr);
             _exit(127);
         }

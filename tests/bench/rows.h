@@ -1,10 +1,12 @@
 #pragma once
 
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +28,7 @@ inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     const pid_t child = fork();
     if (child < 0) return failed("fork", "no new process");
     if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM);  // an interrupted benchmark leaves no process behind
         execv(argv[0], argv.data());
         _exit(127);
     }
