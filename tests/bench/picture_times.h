@@ -25,8 +25,13 @@ inline double monotonic_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+inline constexpr size_t kFewest = 3;  ///< pictures that make a series
+inline tl::unexpected<Error> too_few(size_t pictures) {
+    return failed("the window", fmt::format("shows {} pictures while the scene turns", pictures));
+}
+
 /// Reads the times that swap_times.cpp has written to `file` and evaluates those from `begin` to `end`,
-/// seconds of the monotonic clock. Error: fewer than three.
+/// seconds of the monotonic clock. Error: fewer than kFewest.
 inline Result<PictureTimes> times_of_swaps(const std::string& file, double begin, double end) {
     std::vector<double> gaps;
     std::ifstream in(file);
@@ -37,7 +42,7 @@ inline Result<PictureTimes> times_of_swaps(const std::string& file, double begin
         if (pictures++ > 0) gaps.push_back(1e3 * (time - last));
         last = time;
     }
-    if (gaps.size() < 2) return failed("the window", fmt::format("has shown {} pictures", pictures));
+    if (pictures < kFewest) return too_few(pictures);
     return PictureTimes{pictures, median(gaps), quantile(gaps, 0.95)};
 }
 
@@ -51,7 +56,9 @@ inline Result<PictureTimes> times_of_log(const std::string& log) {
     if (last.empty())
         return failed("lucarne view",
                       "logs no line \"while moving: N pictures, X ms apart, 95 % within Y ms\"");
-    return PictureTimes{std::stoul(last[1]), std::stod(last[2]), std::stod(last[3])};
+    const size_t pictures = std::stoul(last[1]);
+    if (pictures < kFewest) return too_few(pictures);
+    return PictureTimes{pictures, std::stod(last[2]), std::stod(last[3])};
 }
 
 }  // namespace lucarne::bench

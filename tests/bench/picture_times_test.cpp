@@ -32,6 +32,10 @@ TEST(PictureTimes, OfALogAreThoseOfItsLastLine) {
     EXPECT_DOUBLE_EQ(times->p95, 63);
 }
 
+TEST(PictureTimes, OfAnIdleWindowAreAnError) {
+    EXPECT_FALSE(times_of_log("lucarne: while moving: 0 pictures, 0.0 ms apart, 95 % within 0.0 ms\n"));
+}
+
 TEST(PictureTimes, OfALogWithoutTheLineAreAnError) {
     const auto times = times_of_log("lucarne: window: 83 frames, each 15.1 ms\n");
     ASSERT_FALSE(times);

@@ -221,9 +221,12 @@ Result<void> prepare_cloudcompare(const Stage& stage, Background& program) {
     // of the view. Without a window manager the view has to be enlarged.
     stage.screen().xdo("mousemove 380 120 sleep 0.5 click 1 sleep 0.5 key F11");
     LUCARNE_TRY(stage.window_appears(program, "^3D View 1$"));
-    const auto enlarged = stage.screen().xdo(fmt::format(
-        "search --onlyvisible --name '^3D View 1$' windowmove 0 0 windowsize {} {}", kWidth, kHeight));
-    return enlarged.code == 0 ? Result<void>() : failed("xdotool", enlarged.output);
+    const std::string enlarge = fmt::format(
+        "search --onlyvisible --name '^3D View 1$' windowmove 0 0 windowsize {} {}", kWidth, kHeight);
+    // The search fails while other windows come and go.
+    if (!eventually([&] { return stage.screen().xdo(enlarge).code == 0; }))
+        return failed("the view", "cannot be enlarged");
+    return {};
 }
 
 std::vector<Peer> peers() {
