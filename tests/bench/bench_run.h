@@ -8,13 +8,16 @@
 #include <functional>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "io/core/error.h"
+#include "io/core/interrupt.h"
+#include "io/files/temporary_folder.h"
 
 namespace lucarne::bench {
 
@@ -73,9 +76,9 @@ inline std::string read_arguments(int argc, char** argv, std::initializer_list<c
     return "";
 }
 
-/// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed.
-/// `options` are the names of the program's own options. Returns the exit status: 1 if something failed, but
-/// not for a missed target.
+/// The main function of a benchmark: runs `measure` in FOLDER or in a temporary one that is removed, also by
+/// a signal that ends the program. `options` are the names of the program's own options. Returns the exit
+/// status: 1 if something failed, but not for a missed target.
 inline int bench_main(int argc, char** argv, const std::function<Result<void>(const BenchRun&)>& measure,
                       std::initializer_list<const char*> options = {}) {
     const std::string program = std::filesystem::path(argv[0]).filename();
@@ -86,16 +89,18 @@ inline int bench_main(int argc, char** argv, const std::function<Result<void>(co
         fmt::print(stderr, "{}: {}: is unknown or has no valid number; usage: {}\n", program, wrong, usage);
         return 2;
     }
-    std::string own =
-        run.folder.empty() ? (std::filesystem::temp_directory_path() / (program + "-XXXXXX")).string() : "";
-    if (!own.empty() && !mkdtemp(own.data())) {
-        fmt::print(stderr, "{}: {}: cannot be made\n", program, own);
-        return 1;
+    std::optional<TemporaryFolder> own;
+    if (run.folder.empty()) {
+        handle_interrupts();
+        auto made = TemporaryFolder::create();
+        if (!made) {
+            fmt::print(stderr, "{}: {}\n", program, made.error().line());
+            return 1;
+        }
+        run.folder = own.emplace(std::move(*made)).path();
     }
-    if (!own.empty()) run.folder = own;
     std::filesystem::create_directories(run.folder);
     const auto done = measure(run);
-    if (!own.empty()) std::filesystem::remove_all(own);
     if (!done) fmt::print(stderr, "{}: {}\n", program, done.error().line());
     return done ? 0 : 1;
 }

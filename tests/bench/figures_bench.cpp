@@ -18,6 +18,7 @@
 #include "gi/compare/metrics.h"
 #include "gi/engines/vpl/options.h"
 #include "tests/bench/bench_run.h"
+#include "tests/bench/quantile.h"
 #include "tests/bench/scan.h"
 #include "viewer/commands/options/drawing_options.h"
 #include "viewer/frame/rgba.h"
@@ -26,16 +27,11 @@
 namespace lucarne {
 namespace {
 
-using bench::BenchRun, bench::Scan;
+using bench::BenchRun, bench::median, bench::Scan;
 
 void heading(const std::string& text) {
     fmt::print("\n{}\n", text);
     std::fflush(stdout);
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 /// A scan in its own pipeline, as in the viewer.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "tests/bench/bench_run.h"
+#include "tests/bench/quantile.h"
 #include "tests/octree/normals/pcl_normals.h"
 #include "tests/octree/normals/virtual_scans.h"
 
@@ -16,16 +17,12 @@ namespace lucarne::octree {
 namespace {
 
 using namespace testing;
+using bench::median;
 
 double cpu_seconds() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 void row(const std::string& what, double value, const char* unit, const char* target, bool kept) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +28,7 @@ inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     const pid_t child = fork();
     if (child < 0) return failed("fork", "no new process");
     if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM);  // an interrupted benchmark leaves no process behind
         execv(argv[0], argv.data());
         _exit(127);
     }
@@ -40,6 +43,16 @@ inline Result<Usage> run_lucarne(std::vector<std::string> arguments) {
     return Usage{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
 }
 
+/// Prints a figure without a target.
+inline void figure(const std::string& what, double value, const std::string& unit) {
+    fmt::print("{:<68} {:>9.2f} {}\n", what, value, unit);
+    std::fflush(stdout);
+}
+/// Prints why a figure is missing.
+inline void row_missing(const std::string& what, const std::string& why) {
+    fmt::print("{:<68} not measured: {}\n", what, why);
+    std::fflush(stdout);
+}
 inline void print_row(const std::string& what, double value, const std::string& unit, double target,
                       bool kept) {
     fmt::print("{:<68} {:>9.2f} {:<7} target {:>7.1f}  {}\n", what, value, unit, target,

@@ -27,11 +27,6 @@ struct Ground {
     uint64_t points() const { return run.points(4'000'000); }
 };
 
-void figure(const std::string& what, double value, const std::string& unit) {
-    fmt::print("{:<68} {:>9.2f} {}\n", what, value, unit);
-    std::fflush(stdout);
-}
-
 constexpr const char* kPath = LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
 constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
 

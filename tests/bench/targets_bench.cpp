@@ -15,17 +15,13 @@
 #include "gi/raster/gbuffer.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/formats.h"
+#include "tests/bench/quantile.h"
 #include "viewer/commands/options/drawing_options.h"
 #include "viewer/frame/views.h"
 #include "viewer/inputs/input.h"
 
 namespace lucarne {
 namespace {
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 Result<void> bench_normals(const bench::BenchRun& run) {
     const uint64_t points = run.points(4'000'000);
@@ -68,8 +64,8 @@ Result<FrameTimes> moving_frames(viewer::Pipeline& pipeline, viewer::FrameReques
             if (entry.name == pass) seconds += entry.seconds;
         wall.push_back(1e3 * seconds);
     }
-    times.wall = median(wall);
-    times.cpu = median(cpu);
+    times.wall = bench::median(wall);
+    times.cpu = bench::median(cpu);
     return times;
 }
 

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "tests/processes.h"
 #include "tests/temporary_folder.h"
 
 namespace lucarne::test {
@@ -22,34 +15,9 @@ class TemporaryFolder : public Folder {
     std::string operator/(const std::string& name) const { return (path() / name).string(); }
 };
 
-struct Outcome {
-    int code = -1;
-    std::string output;  ///< stdout and stderr
-};
-
-/// Runs a shell command.
-inline Outcome shell(const std::string& command) {
-    Outcome outcome;
-    FILE* pipe = popen(("( " + command + " ) 2>&1").c_str(), "r");
-    if (!pipe) return outcome;
-    std::array<char, 4096> buffer{};
-    for (size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-        outcome.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
-}
-
 /// Runs the program under test.
 inline Outcome lucarne(const std::string& arguments) {
     return shell(LUCARNE_BINARY " " + arguments);
-}
-
-inline std::string bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
 }
 
 /// A small Cornell box as a cache, made by the program itself.
