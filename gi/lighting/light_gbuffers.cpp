@@ -17,9 +17,22 @@ void LightGBuffers::begin(const Device& device, const std::vector<LightView>& vi
     const size_t fit =
         device.memory_cap() / kHeldShare / (largest * (sizeof(GBufferTexel) + sizeof(uint32_t)));
     most_ = std::clamp<size_t>(wanted, 1, std::max(kLeastHeld, fit));
+    for (Held& held : held_)
+        held.wanted = std::ranges::any_of(views, [&](const LightView& v) { return v.view == held.view; });
     if (held_.size() <= most_) return;
-    std::ranges::sort(held_, std::greater(), &Held::used);
+    std::ranges::sort(held_, std::greater(), [](const Held& h) { return std::pair(h.wanted, h.used); });
     held_.resize(most_);
+}
+
+/// Returns where a view is to be drawn: over an older state of the same view, in a new place, or over another
+/// view. Of views that are looked at in turn, the one that was looked at last is needed last.
+std::vector<LightGBuffers::Held>::iterator LightGBuffers::place_for(const LightView& view) {
+    const auto same = std::ranges::find_if(held_, [&](const Held& held) { return held.view == view.view; });
+    if (same != held_.end()) return same;
+    if (held_.size() < most_) return held_.emplace(held_.end());
+    return std::ranges::min_element(held_, {}, [](const Held& held) {
+        return held.wanted ? std::pair(true, UINT64_MAX - held.used) : std::pair(false, held.used);
+    });
 }
 
 template <class Match>
@@ -32,10 +45,7 @@ Result<const GBuffer*> LightGBuffers::find_or_draw(Device& device, const LightVi
         same->used = uses_;
         return &same->gbuffer;
     }
-    // An older state of the same view goes first, then the one that was not used for the longest time.
-    auto place = std::ranges::find_if(held_, [&](const Held& held) { return held.view == view.view; });
-    if (place == held_.end() && held_.size() < most_) place = held_.emplace(held_.end());
-    if (place == held_.end()) place = std::ranges::min_element(held_, {}, &Held::used);
+    const auto place = place_for(view);
     place->used = 0;
     const auto swap_pictures = [&] {
         std::swap(scratch_.texels, place->gbuffer.texels);
@@ -46,6 +56,7 @@ Result<const GBuffer*> LightGBuffers::find_or_draw(Device& device, const LightVi
     swap_pictures();
     LUCARNE_TRY(drawn);
     place->view = view.view;
+    place->wanted = true;
     place->cut = view.cut->fingerprint();
     place->gbuffer.width = view.view.width;
     place->gbuffer.height = view.view.height;

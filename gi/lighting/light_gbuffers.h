@@ -8,12 +8,12 @@
 
 namespace lucarne::gi {
 
-/// Draws the G-buffers of light views, which are also their shadow maps, and holds those that were used last.
+/// Draws the G-buffers of light views, which are also their shadow maps, and holds as many as possible.
 /// They take at most a quarter of the device's memory (but six of them, a point light's, are always held).
 class LightGBuffers {
  public:
-    /// Sets how many G-buffers are worth holding: `wanted` of the size of the largest of `views`. Frees
-    /// others. Call once a frame.
+    /// Sets which views will be looked at, again and again in this order, and how many G-buffers are worth
+    /// holding: `wanted` of the size of the largest view. Frees others. Call once a frame.
     void begin(const Device& device, const std::vector<LightView>& views, size_t wanted);
 
     /// Returns the G-buffer of a view; draws it unless it is held. It is valid until the next call. Errors:
@@ -31,9 +31,11 @@ class LightGBuffers {
     struct Held {
         CameraView view{};
         uint64_t cut = 0;
-        uint64_t used = 0;  ///< number of the call of look() that used it last; 0: empty
+        uint64_t used = 0;    ///< number of the call of look() that used it last; 0: empty
+        bool wanted = false;  ///< is one of the views of begin()
         GBuffer gbuffer;
     };
+    std::vector<Held>::iterator place_for(const LightView& view);
     template <class Match>
     Result<const GBuffer*> find_or_draw(Device& device, const LightView& view, const Match& match);
 

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "gi/lighting/native/light.cpp"
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
+#include "gi/lighting/native/emission-inl.h"
 #include "gi/raster/native/texels-inl.h"
 
 #ifndef LUCARNE_NATIVE_LIGHT_ONCE
@@ -39,18 +40,6 @@ HWY_INLINE V3 moved(const V3& v, const glm::vec3& by) {
     return {add(v.x, set(by.x)), add(v.y, set(by.y)), add(v.z, set(by.z))};
 }
 
-/// light_intensity() over light.strength. `cosine` is that between the direction away from the light and the
-/// light's.
-HWY_INLINE F intensity_share(const Light& light, F cosine) {
-    const F one = set(1.0f), zero = hn::Zero(Floats());
-    if (light.kind == kPointLight) return one;
-    if (light.kind == kCosineLight) return hn::Max(cosine, zero);
-    const float outer = light.position.w, width = light.direction.w - outer;
-    const F t = width > 0 ? clamped(over(sub(cosine, set(outer)), set(width)))
-                          : hn::IfThenElseZero(hn::Ge(cosine, set(outer)), one);
-    return mul(mul(t, t), sub(set(3.0f), mul(set(2.0f), t)));
-}
-
 /// light_irradiance() over light.strength; `offset` leads from the light to the points.
 HWY_INLINE F irradiance_share(const Light& light, const V3& offset, const V3& normal) {
     const F zero = hn::Zero(Floats());
@@ -60,26 +49,6 @@ HWY_INLINE F irradiance_share(const Light& light, const V3& offset, const V3& no
     const F share = mul(intensity_share(light, dot(away, light.direction)),
                         over(hn::Max(hn::Neg(dot(normal, away)), zero), distance2));
     return hn::IfThenElseZero(hn::Gt(distance2, zero), share);
-}
-
-/// Whether light_face() of offsets from the light is `face`.
-HWY_INLINE Mask goes_through(const Light& light, uint32_t face, const V3& offset) {
-    const F zero = hn::Zero(Floats());
-    const auto flip = [](Mask mask, bool wanted) { return wanted ? mask : hn::Not(mask); };
-    if (light.kind == kPointLight) {
-        const F x = hn::Abs(offset.x), y = hn::Abs(offset.y), z = hn::Abs(offset.z);
-        const Mask first = hn::And(hn::Ge(x, y), hn::Ge(x, z)), second = hn::AndNot(first, hn::Ge(y, z));
-        const Mask third = hn::AndNot(first, hn::Not(second));
-        const F along = face < 2 ? offset.x : face < 4 ? offset.y : offset.z;
-        return hn::And(face < 2   ? first
-                       : face < 4 ? second
-                                  : third,
-                       flip(hn::Gt(along, zero), face % 2 == 0));
-    }
-    const glm::vec3 side(light.extent), other = glm::cross(glm::vec3(light.direction), side);
-    if (light.kind != kCosineLight) return hn::Eq(zero, zero);
-    return hn::And(flip(hn::Lt(dot(offset, glm::vec4(side, 0)), zero), face & 1),
-                   flip(hn::Lt(dot(offset, glm::vec4(other, 0)), zero), face & 2));
 }
 
 /// Texels of the light's view at places (middles of texels at .5 less .5), clamped to the picture.

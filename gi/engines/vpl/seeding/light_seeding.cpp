@@ -4,6 +4,7 @@
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
+#include "gi/engines/vpl/shading/shading.h"
 
 namespace lucarne::gi::vpl {
 namespace {
@@ -28,8 +29,8 @@ Result<void> LightSeeding::seed(Frame& frame, const std::vector<LightView>& view
     std::vector<double> weights;
     for (const LightView& view : views) {
         LUCARNE_ASSIGN(const LightGBuffer from, gbuffer(frame, view, gbuffers));
-        materials.bind(kBindMaterials);
-        LUCARNE_ASSIGN(const double weight, map_importance(device, from, importance_));
+        LUCARNE_ASSIGN(const double weight,
+                       map_importance(device, from, materials, glossy(frame), importance_));
         weights.push_back(weight);
     }
     emitters_.running.clear();
@@ -43,10 +44,8 @@ Result<void> LightSeeding::seed(Frame& frame, const std::vector<LightView>& view
     for (size_t i = 0; i < views.size(); ++i) {
         if (shares[i] == 0) continue;
         LUCARNE_ASSIGN(const LightGBuffer from, gbuffer(frame, views[i], gbuffers));
-        if (views.size() > 1) {
-            materials.bind(kBindMaterials);
-            LUCARNE_TRY(map_importance(device, from, importance_));
-        }
+        if (views.size() > 1)
+            LUCARNE_TRY(map_importance(device, from, materials, glossy(frame), importance_));
         LUCARNE_TRY(seed_view(device, from, importance_, materials, halton_points(shares[i], seed, i), first,
                               target));
         first += shares[i];

@@ -9,6 +9,7 @@
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
+#include "gi/engines/vpl/seeding/native/importance.h"
 #include "gi/engines/vpl/vpl_light.h"
 #include "gi/raster/uniforms.h"
 #include "gi/shared/luminance.h"
@@ -86,13 +87,13 @@ void set_light_view(const Program& program, const LightGBuffer& gbuffer) {
 
 }  // namespace
 
-Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, Buffer& target) {
+namespace {
+
+Result<void> map_by_shaders(Device& device, const LightGBuffer& gbuffer, const Buffer& materials,
+                            uint32_t side, const Buffer& target) {
+    materials.bind(kBindMaterials);
     LUCARNE_ASSIGN(const Program* importance, device.program("gi/engines/vpl/seeding/importance.comp"));
     LUCARNE_ASSIGN(const Program* mip, device.program("gi/engines/vpl/seeding/importance_mip.comp"));
-    const uint32_t side = importance_side(gbuffer.view);
-    size_t texels = 0;
-    for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
-    LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
     gbuffer.seen.texels.bind(kBindGBuffer);
     target.bind(kBindImportance);
     set_light_view(*importance, gbuffer);
@@ -102,6 +103,34 @@ Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, Buffe
         mip->set("level", level);
         mip->dispatch(side >> level, side >> level);
     }
+    return {};
+}
+
+Result<void> map_natively(const LightGBuffer& gbuffer, const Buffer& materials, uint32_t side,
+                          const Buffer& target) {
+    LUCARNE_ASSIGN(const MappedBuffer of_surfels, materials.map());
+    LUCARNE_ASSIGN(const MappedBuffer texels, gbuffer.seen.texels.map());
+    LUCARNE_ASSIGN(const MappedBuffer levels, target.map());
+    native::map_importance({.light = gbuffer.light,
+                            .face = gbuffer.face,
+                            .view = gbuffer.view,
+                            .texels = texels.as<const GBufferTexel>().data(),
+                            .materials = of_surfels.as<const Material>(),
+                            .side = side},
+                           levels.as<glm::vec2>());
+    return {};
+}
+
+}  // namespace
+
+Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, const Buffer& materials,
+                              bool glossy, Buffer& target) {
+    const uint32_t side = importance_side(gbuffer.view);
+    size_t texels = 0;
+    for (uint32_t level = side; level > 0; level /= 2) texels += size_t{level} * level;
+    LUCARNE_TRY(device.reserve(target, texels * sizeof(glm::vec2), "importance map"));
+    LUCARNE_TRY(device.native_passes() && !glossy ? map_natively(gbuffer, materials, side, target)
+                                                  : map_by_shaders(device, gbuffer, materials, side, target));
     glm::vec2 sum;
     target.download((texels - 1) * sizeof(glm::vec2), std::as_writable_bytes(std::span(&sum, 1)));
     // If all is black but something is lit, VPLs are placed there evenly: surfaces may be glossy at some

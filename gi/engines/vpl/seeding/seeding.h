@@ -28,9 +28,11 @@ struct LightGBuffer {
 };
 
 /// Computes the importance map of a light view (importance.glsl: vec2 (weight, lit), all mip levels) for the
-/// materials that are bound. Returns the sum of its weights: the flux, W, that leaves the lit surfaces, with
-/// lobes counted as importance.comp says. Errors: no device memory, a shader that fails.
-Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, Buffer& target);
+/// materials of upload_materials(). Returns the sum of its weights: the flux, W, that leaves the lit
+/// surfaces, with lobes counted as importance.comp says; `glossy` says whether there are any. Errors: no
+/// device memory, a shader that fails.
+Result<double> map_importance(Device& device, const LightGBuffer& gbuffer, const Buffer& materials,
+                              bool glossy, Buffer& target);
 
 /// Places one VPL for each of `points`, in [0, 1)^2, by the importance map of a light view, starting at VPL
 /// `first` of the target. Errors as above.

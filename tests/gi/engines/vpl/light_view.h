@@ -1,6 +1,7 @@
 // Light G-buffers made by hand, for tests of seeding.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/seeding.h"
 #include "gi/engines/vpl/vpl_light.h"
+#include "gi/lighting/direct_light.h"
 #include "gi/raster/gbuffer.h"
 #include "gi/shared/surfel_code.h"
 #include "tests/gi/engines/surfel_cloud.h"
@@ -65,16 +67,16 @@ inline Result<std::vector<VplLight>> seed_on(Device& device, const SpotSight& li
     gbuffer.texels.upload_all(texels);
     LUCARNE_ASSIGN(gbuffer.ids, device.buffer(texels.size() * sizeof(uint32_t), "light ids"));
     gbuffer.ids.clear(kNoSurfel);
-    LUCARNE_ASSIGN(Buffer material_buffer, device.buffer(materials.size() * sizeof(Material), "materials"));
-    material_buffer.upload_all(materials);
+    Buffer material_buffer;
+    LUCARNE_TRY(upload_materials(device, materials, material_buffer));
     const SurfelCloud nothing(std::vector<Surfel>{});
     LUCARNE_ASSIGN(const auto loaded, load_cloud(device, nothing));
     Seeds seeds;
     const LightGBuffer view{light.spot, 0, light.view, loaded->cut, gbuffer};
     Buffer importance;
     LUCARNE_ASSIGN(seeds.lights, device.buffer(points.size() * sizeof(VplLight), "lights"));
-    material_buffer.bind(kBindMaterials);
-    LUCARNE_ASSIGN(const double weight, map_importance(device, view, importance));
+    const bool lobes = std::ranges::any_of(materials, [](const Material& m) { return m.diffuse.w > 0; });
+    LUCARNE_ASSIGN(const double weight, map_importance(device, view, material_buffer, lobes, importance));
     EXPECT_GE(weight, 0);
     LUCARNE_TRY(seed_view(device, view, importance, material_buffer, points, 0, seeds));
     settle_lights(seeds, static_cast<uint32_t>(points.size()));
