@@ -10,11 +10,6 @@
 namespace lucarne::gi {
 namespace {
 
-bool any_lobes(const Frame& frame) {
-    return std::ranges::any_of(frame.materials,
-                               [](const Material& material) { return material.diffuse.w > 0; });
-}
-
 Result<void> add_own_light_natively(const Frame& frame, const Buffer& materials, const Sky& sky, bool add) {
     LUCARNE_ASSIGN(const MappedBuffer texels, frame.gl.gbuffer.texels.map());
     LUCARNE_ASSIGN(const MappedBuffer held, materials.map());
@@ -45,6 +40,11 @@ Result<void> add_light_natively(const Frame& frame, const Buffer& materials, con
 }
 
 }  // namespace
+
+bool glossy(const Frame& frame) {
+    return std::ranges::any_of(frame.materials,
+                               [](const Material& material) { return material.diffuse.w > 0; });
+}
 
 std::vector<Material> device_materials(std::vector<Material> materials) {
     if (materials.empty()) materials.push_back({glm::vec4(1, 1, 1, 0), glm::vec4(0, 0, 0, 1)});
@@ -90,7 +90,7 @@ Result<void> add_own_light(Frame& frame, const Buffer& materials, const Sky& sky
 }
 
 Result<void> add_light(Frame& frame, const Buffer& materials, const LightView& from, const GBuffer& seen) {
-    if (frame.gl.device.native_passes() && !any_lobes(frame))
+    if (frame.gl.device.native_passes() && !glossy(frame))
         return add_light_natively(frame, materials, from, seen);
     LUCARNE_ASSIGN(const Program* program, frame.gl.device.program("gi/lighting/light.comp"));
     frame.gl.gbuffer.texels.bind(lighting::kBindCameraTexels);

@@ -10,6 +10,9 @@ namespace lucarne::gi {
 /// The direct light of a picture, in parts that engines combine. `materials` comes from upload_materials();
 /// all functions work on frame.gl.radiance. Errors: a shader that fails, no device memory.
 
+/// Whether any material has a specular lobe.
+bool glossy(const Frame& frame);
+
 /// Returns as many materials as a surfel can refer to (LUCARNE_DEVICE_MATERIALS). Surfels packed for an
 /// earlier scene may refer to materials that no longer exist; those become the default material, or a white
 /// diffuse one if `materials` is empty.

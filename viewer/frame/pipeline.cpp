@@ -21,6 +21,7 @@
 #include "octree/stream/residency.h"
 #include "octree/tree/robust_bounds.h"
 #include "viewer/frame/cut_choice.h"
+#include "viewer/frame/device_cuts.h"
 #include "viewer/frame/prepare.h"
 #include "viewer/frame/presentation.h"
 #include "viewer/frame/views.h"
@@ -38,8 +39,7 @@ constexpr double kAhead = 0.5;      // s of the camera's motion that are loaded 
 // Share of the device's memory for surfels. The shadow maps hold the light cut's surfels a second time;
 // pictures and maps take the rest.
 constexpr double kPoolShare = 0.375;
-constexpr double kFilledShare = 0.25;    // of the pool: the most that synthetic surfels take
-constexpr uint64_t kPointsOfFilled = 4;  // for each synthetic surfel a cut has at least so many points
+constexpr double kFilledShare = 0.25;                  // of the pool: the most that synthetic surfels take
 constexpr uint64_t kLeastTransit = uint64_t{1} << 20;  // enough for some nodes of usual size
 
 uint64_t pages(uint64_t surfels) {
@@ -48,9 +48,6 @@ uint64_t pages(uint64_t surfels) {
 }
 bool stopped(const FrameRequest& request) {
     return request.stop && *request.stop;
-}
-bool contains(const gi::DeviceCut& cut, uint32_t node) {
-    return std::ranges::binary_search(cut.nodes(), node, {}, &gi::CutNode::node);
 }
 uint64_t pool_bytes(uint64_t surfels) {
     return pages(surfels) * gi::SurfelPool::kPageSurfels * sizeof(gi::PackedSurfel);
@@ -75,10 +72,7 @@ struct Pipeline::State {
     void take_fillings();
     Result<void> load_fillings();
     uint64_t filled_bytes() const;
-    uint64_t filled_count() const;  ///< of all synthetic surfels
-    Result<void> build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target);
     Result<void> build_cuts(bool hold_light);
-    bool light_cuts_intact() const;
     Result<gi::Engine*> drawing_engine(const FrameRequest& request);
     Result<void> draw(gi::Engine& drawing, const FrameRequest& request);
     Result<void> draw_with(gi::Engine& drawing, const FrameRequest& request, gi::Buffer& target);
@@ -107,15 +101,8 @@ struct Pipeline::State {
     CutSet chosen;
     octree::Motion motion;
     std::vector<octree::Cut> ahead;  // view cuts for the camera's future positions
-    // The resident parts of the cuts on the device.
-    gi::DeviceCut view, light_cut;
-    std::vector<gi::DeviceCut> light_views;
+    DeviceCuts cuts;
     LocalFrame local;
-    bool cuts_stale = true;  // the device's cuts differ from the chosen and resident nodes
-    // The same for the light's cuts alone, which stay as they are while the engine reads them over several
-    // frames, unless they are torn: nodes that they consist of are gone, or they have another origin or clip.
-    bool light_cuts_stale = true, light_cuts_torn = true;
-    std::vector<gi::SceneLight> lights_of_cuts;  // the lights for which light_views were chosen
 
     std::unique_ptr<gi::Engine> engine, other;  ///< the picture's engine; the compared one, or null
     std::unique_ptr<gi::Engine> stand_in;       ///< once it was needed (FrameRequest::stand_in)
@@ -164,13 +151,6 @@ uint64_t Pipeline::State::filled_bytes() const {
     return bytes;
 }
 
-uint64_t Pipeline::State::filled_count() const {
-    uint64_t count = 0;
-    for (const octree::Filling& filling : fillings)
-        for (const octree::NodeInfo& node : filling.nodes) count += node.count;
-    return count;
-}
-
 /// Loads the source's synthetic surfels, for load_fillings(). Without them there are holes, but a picture.
 void Pipeline::State::take_fillings() {
     fillings.clear();
@@ -189,7 +169,7 @@ Result<void> Pipeline::State::load_fillings() {
             LUCARNE_ASSIGN(const bool fits, pool.load(number++, preparation->pack(filling, node)));
             if (!fits) return failed("surfel pool", "the stream holds more nodes than fit");
         }
-    cuts_stale = light_cuts_stale = light_cuts_torn = true;
+    cuts.tear();
     return {};
 }
 
@@ -239,7 +219,7 @@ void Pipeline::State::start_stream() {
     };
     repack = true;
     residency = std::make_unique<Stream>(*source, how, std::move(pack));
-    cuts_stale = light_cuts_stale = light_cuts_torn = true;
+    cuts.tear();
 }
 
 /// Loads all resident nodes again for new materials or colours, which are packed into the surfels. Nodes are
@@ -273,9 +253,9 @@ void Pipeline::State::choose_cuts(const FrameRequest& request) {
                                       [](const auto& node) { return pool_bytes(node.count); }});
     const glm::dvec3 origin = local.origin;
     local = local_frame(request.camera.position, source->header().metres_per_unit);
-    light_cuts_torn |= local.origin != origin;
+    if (local.origin != origin) cuts.tear();
     camera = camera_view(request.camera, request.size, local);
-    cuts_stale = light_cuts_stale = true;
+    cuts.changed();
 }
 
 /// Chooses cuts for what the camera will see if it continues its motion.
@@ -292,13 +272,10 @@ void Pipeline::State::look_ahead(const FrameRequest& request) {
 /// Applies the stream's events to the device.
 Result<void> Pipeline::State::apply(std::span<const Stream::Event> events) {
     for (const Stream::Event& event : events) {
-        cuts_stale = light_cuts_stale = true;
+        cuts.changed();
         if (event.kind != Stream::Kind::loaded) {
             pool.evict(event.node);
-            light_cuts_torn |= contains(light_cut, event.node) ||
-                               std::ranges::any_of(light_views, [&](const gi::DeviceCut& cut) {
-                                   return contains(cut, event.node);
-                               });
+            cuts.node_gone(event.node);
         }
         if (event.kind == Stream::Kind::evicted) continue;
         bytes_loaded += source->nodes()[event.node].payload_bytes;
@@ -337,37 +314,13 @@ Result<void> Pipeline::State::stream(const FrameRequest& request) {
     return {};
 }
 
-Result<void> Pipeline::State::build_cut(const octree::Cut& cut, const gi::Clip& clip, gi::DeviceCut& target) {
-    std::vector<gi::CutEntry> entries;
-    entries.reserve(cut.nodes.size());
-    for (const auto& node : cut.nodes) entries.push_back({node.node, node.count});
-    // A cut of few points, as a cap asks for, stays small: the synthetic surfels have no levels of detail.
-    const std::span<const octree::Filling> filled(fillings);
-    const bool small = kPointsOfFilled * filled_count() > cut.points;
-    return pool.make_cut(device, *source, entries, local.origin, target, clip,
-                         scene.look.open_holes || small ? filled.first(0) : filled);
-}
-
-/// Whether the light's cuts may stay as they are.
-bool Pipeline::State::light_cuts_intact() const {
-    return !light_cuts_torn && light_views.size() == chosen.light_views.size() &&
-           lights_of_cuts.size() == scene.lights.size();
-}
-
-/// `hold_light`: leaves the light's cuts as they are, but for the views of lights that have changed.
+/// Builds the cuts that have changed; the picture's average starts again then.
 Result<void> Pipeline::State::build_cuts(bool hold_light) {
-    const gi::Clip& clip = scene.look.clip;
-    const gi::Clip lights_clip = clip.casts ? gi::Clip{} : clip;
-    LUCARNE_TRY(build_cut(chosen.view, clip, view));
-    if (!hold_light) LUCARNE_TRY(build_cut(chosen.light, lights_clip, light_cut));
-    light_views.resize(chosen.light_views.size());
-    for (size_t i = 0; i < light_views.size(); ++i)
-        if (!hold_light || !(lights_of_cuts[i] == scene.lights[i]))
-            LUCARNE_TRY(build_cut(chosen.light_views[i], lights_clip, light_views[i]));
-    lights_of_cuts = scene.lights;
-    cuts_stale = false;
-    light_cuts_stale = hold_light;
-    light_cuts_torn = light_cuts_torn && hold_light;
+    times.begin("upload of cuts");
+    const CutParts from{device, pool, *source, fillings, scene, local.origin};
+    LUCARNE_ASSIGN(const bool built, cuts.build(chosen, from, hold_light));
+    times.end();
+    if (built) presentation.restart();
     return {};
 }
 
@@ -385,11 +338,11 @@ Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& requ
     times.begin("G-buffer");
     const gi::PointSize size{static_cast<float>(scene.look.point_size),
                              static_cast<float>(scene.look.point_pixels)};
-    LUCARNE_TRY(gi::rasterize(device, view, camera, gbuffer, size));
+    LUCARNE_TRY(gi::rasterize(device, cuts.view(), camera, gbuffer, size));
     times.end();
     if (!scene.look.single_discs) {
         times.begin("blending");
-        LUCARNE_TRY(gi::blend(device, view, camera, gbuffer, size));
+        LUCARNE_TRY(gi::blend(device, cuts.view(), camera, gbuffer, size));
         times.end();
     }
     LUCARNE_TRY(draw_with(drawing, request, presentation.sample(false)));
@@ -400,17 +353,13 @@ Result<void> Pipeline::State::draw_with(gi::Engine& drawing, const FrameRequest&
                                         gi::Buffer& target) {
     const size_t pixels = size_t{request.size.width} * request.size.height;
     LUCARNE_TRY(device.reserve(target, pixels * sizeof(glm::vec4), "the picture's radiance"));
-    gi::FrameCuts cuts{&view, {}, &light_cut};
     std::vector<gi::Light> lights;
-    for (size_t i = 0; i < light_views.size(); ++i) {
-        cuts.light_views.push_back(&light_views[i]);
-        lights.push_back(device_light(scene.lights[i], local));
-    }
+    for (const gi::SceneLight& light : scene.lights) lights.push_back(device_light(light, local));
     const auto& header = source->header();
     std::vector<gi::Material> materials;
     for (const auto& material : scene.materials)
         materials.push_back(device_material(material, scene.albedo.scale));
-    gi::GlFrame on_device{device, pool, cuts, gbuffer, target};
+    gi::GlFrame on_device{device, pool, cuts.of_frame(), gbuffer, target};
     gi::Frame frame{.camera = camera,
                     .lights = lights,
                     .materials = materials,
@@ -434,13 +383,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     LUCARNE_TRY(stream(request));
     times.end();
     LUCARNE_ASSIGN(gi::Engine* const drawing, drawing_engine(request));
-    const bool held = drawing->reads_light_cuts() && light_cuts_intact();
-    if (cuts_stale || (light_cuts_stale && !held)) {
-        times.begin("upload of cuts");
-        LUCARNE_TRY(build_cuts(held));
-        times.end();
-        presentation.restart();
-    }
+    LUCARNE_TRY(build_cuts(drawing->reads_light_cuts()));
     if (!request.accumulate || !presentation.averaged()) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
     shift_rays(camera, shifted ? presentation.accumulated() : 0);
@@ -469,14 +412,11 @@ FrameStats Pipeline::State::stats(double seconds) const {
     FrameStats result;
     result.passes = times.passes();
     result.seconds = seconds;
-    result.view_points = view.surfels();
-    result.light_points = light_cut.surfels();
+    result.view_points = cuts.view().surfels();
+    result.light_points = cuts.of_frame().light->surfels();
+    result.light_view_points = cuts.light_view_points();
     result.wanted_points = chosen.points();
-    for (const auto& cut : light_views) result.light_view_points += cut.surfels();
-    result.ready_points = result.view_points + result.light_points + result.light_view_points;
-    // Clipped nodes count as drawn.
-    result.ready_points += uint64_t{view.clipped()} + light_cut.clipped();
-    for (const auto& cut : light_views) result.ready_points += cut.clipped();
+    result.ready_points = cuts.ready_points();  // clipped nodes count as drawn
     result.bytes_loaded = bytes_loaded;
     const octree::ResidencyStats streamed = residency->stats();
     result.nodes_pending = streamed.pending;
@@ -537,7 +477,7 @@ const gi::GBuffer& Pipeline::gbuffer() const {
     return state_->gbuffer;
 }
 std::shared_ptr<const gi::CutPoints> Pipeline::points() const {
-    return state_->view.points();
+    return state_->cuts.view().points();
 }
 const gi::CameraView& Pipeline::camera() const {
     return state_->camera;
@@ -612,8 +552,9 @@ Result<void> Pipeline::set_scene(gi::Scene scene) {
                       scene.albedo.flatten != state_->scene.albedo.flatten ||
                       scene.albedo.balance != state_->scene.albedo.balance;
     state_->changed |= scene.light_inputs() != state_->scene.light_inputs();
-    state_->light_cuts_torn |= !(scene.look.clip == state_->scene.look.clip) ||
-                               scene.look.open_holes != state_->scene.look.open_holes;
+    if (!(scene.look.clip == state_->scene.look.clip) ||
+        scene.look.open_holes != state_->scene.look.open_holes)
+        state_->cuts.tear();
     state_->scene = std::move(scene);
     return {};
 }

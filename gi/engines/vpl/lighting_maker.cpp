@@ -7,8 +7,8 @@
 #include "gi/engines/vpl/footprints.h"
 #include "gi/engines/vpl/lobes.h"
 #include "gi/engines/vpl/options.h"
-#include "gi/engines/vpl/shading/shading.h"
 #include "gi/host_frame.h"
+#include "gi/lighting/direct_light.h"
 #include "io/core/random.h"
 
 namespace lucarne::gi::vpl {

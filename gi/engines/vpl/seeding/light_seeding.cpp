@@ -4,7 +4,7 @@
 
 #include "gi/engines/vpl/bindings.h"
 #include "gi/engines/vpl/seeding/halton.h"
-#include "gi/engines/vpl/shading/shading.h"
+#include "gi/lighting/direct_light.h"
 
 namespace lucarne::gi::vpl {
 namespace {

@@ -95,11 +95,6 @@ Result<void> merge_natively(const Frame& frame, const Buffer& materials, const T
 
 }  // namespace
 
-bool glossy(const Frame& frame) {
-    return std::any_of(frame.materials.begin(), frame.materials.end(),
-                       [](const Material& m) { return m.diffuse.w > 0; });
-}
-
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target) {
     LUCARNE_ASSIGN(const Program* join, frame.gl.device.program("gi/engines/vpl/shading/join.comp"));
     const size_t pixels = size_t{frame.gl.gbuffer.width} * frame.gl.gbuffer.height;

@@ -17,9 +17,6 @@ struct Tiles {
     bool glossy = false;
 };
 
-/// Whether any material has a specular lobe.
-bool glossy(const Frame& frame);
-
 /// Decides from which pixels the light of each pixel is gathered, and clears the light. `glossy` says
 /// whether any material has a specular lobe. Errors: no device memory, a shader that fails.
 Result<void> join_tiles(Frame& frame, bool glossy, Tiles& target);
