@@ -7,7 +7,7 @@ namespace lucarne::gi {
 namespace {
 
 constexpr size_t kLeastHeld = 6;  // views: the six of a point light
-constexpr size_t kHeldShare = 4;  // more views are held if they fit into this share of the device's memory
+constexpr size_t kHeldShare = 3;  // more views are held if they fit into this share of the device's memory
 
 }  // namespace
 

@@ -9,7 +9,7 @@
 namespace lucarne::gi {
 
 /// Draws the G-buffers of light views, which are also their shadow maps, and holds as many as possible.
-/// They take at most a quarter of the device's memory (but six of them, a point light's, are always held).
+/// They take at most a third of the device's memory (but six of them, a point light's, are always held).
 class LightGBuffers {
  public:
     /// Sets which views will be looked at, again and again in this order, and how many G-buffers are worth

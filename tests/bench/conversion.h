@@ -68,7 +68,7 @@ inline Result<void> bench_conversion(const bench::BenchRun& run) {
     LUCARNE_TRY(run_lucarne(
         {"generate", "survey", "-o", scan.string(), "--points", std::to_string(points), "--overwrite"}));
     LUCARNE_TRY(bench_first_picture(scan));
-    for (const auto& targets : {ConversionTargets{"without normals", "none", 13, 6.5},
+    for (const auto& targets : {ConversionTargets{"without normals", "none", 6, 6.5},
                                 ConversionTargets{"with normals", "estimate", 33, 8.5}})
         LUCARNE_TRY(bench_conversion_of(scan, static_cast<double>(points), targets));
     std::filesystem::remove(scan);

