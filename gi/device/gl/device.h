@@ -180,7 +180,8 @@ class Device {
 
     /// Compiles programs from the files in `folder`, which stands for the project's root, for developers of
     /// shaders; LUCARNE_SHADERS sets it for every device. If a file does not compile, a warning and
-    /// shader_problem() report it and the embedded file is used instead.
+    /// shader_problem() report it and the embedded file is used instead. Passes that run in C++ do not read
+    /// their shaders: set LUCARNE_NATIVE=0, too.
     void use_shader_folder(const std::filesystem::path& folder);
     /// Reads the folder again and compiles programs whose text has changed. If that fails the last good
     /// program stays. Do not call it while a Program returned by program() is in use.

@@ -39,6 +39,7 @@ struct GatherJob {
     int n;
     std::span<const GatherLight> lights;
     const GatherOutput& output;
+    float texels, texel, width;  ///< of a map: along a side; a texel's side; its angle
 };
 
 inline GatherLight gather_light(const VplLight& light, const glm::vec4& eye, size_t map) {
@@ -64,35 +65,42 @@ namespace lucarne::gi::vpl::native::HWY_NAMESPACE {
 struct Receivers {
     V3 position, normal;
     F radius, per_radius;
-    Mask shown;
 };
 
-// Divisions and roots take most of the time, so quotients share them. A few products are therefore larger or
-// smaller than those of the shader; they stay finite for distances from 1e-7 to 1e9 m.
+// Divisions are slow, so quotients share them. The common denominators are finite for distances up to 1e9 m.
 
-/// pair_share() of gather.glsl for points that face each other: `own` and `lights` are their heights over
-/// each other's planes, `per_distance` is 1 / the distance.
-HWY_INLINE F pair_share(const GatherLight& light, const Receivers& to, F own, F lights, F per_distance) {
-    const F clearance = mul(hn::Min(own, lights), to.per_radius),
-            rise = mul(hn::Max(own, lights), per_distance);
-    const F opposite = clamped(hn::Neg(dot(to.normal, light.normal)));
+/// A VPL and some pixels.
+struct Pair {
+    V3 offset;      ///< from the VPL
+    F d2;           ///< its square
+    F own, height;  ///< heights of the VPL over the planes of the pixels, and of them over its plane
+    F cosine;       ///< between the normals
+};
+HWY_INLINE Pair pair_of(const GatherLight& light, const Receivers& to) {
+    const V3 offset{sub(to.position.x, set(light.position.x)), sub(to.position.y, set(light.position.y)),
+                    sub(to.position.z, set(light.position.z))};
+    return {offset, dot(offset, offset), hn::Neg(dot(to.normal, offset)), dot(offset, light.normal),
+            dot(to.normal, light.normal)};
+}
+
+/// pair_share() of gather.glsl for points that face each other.
+HWY_INLINE F pair_share(const Receivers& to, const Pair& pair) {
+    const F clearance = mul(hn::Min(pair.own, pair.height), to.per_radius),
+            most = hn::Max(pair.own, pair.height), distance = hn::Sqrt(pair.d2);
+    const F opposite = clamped(hn::Neg(pair.cosine));
     const auto mixed = [&](float a, float b) { return add(set(a), mul(set(b - a), opposite)); };
-    const F widths[] = {mixed(0.6f - kRimPush, 2.0f), mixed(0.07f, 0.1f)};
-    const F per_widths = over(set(1.0f), mul(widths[0], widths[1]));
-    const F clear = mul(sub(clearance, mixed(kRimPush, 2.0f)), mul(widths[1], per_widths)),
-            risen = mul(sub(rise, mixed(0.035f, 0.1f)), mul(widths[0], per_widths));
+    const F width = mixed(0.6f - kRimPush, 2.0f), rise_width = mul(mixed(0.07f, 0.1f), distance);
+    const F per_widths = over(set(1.0f), mul(width, rise_width));
+    const F clear = mul(sub(clearance, mixed(kRimPush, 2.0f)), mul(rise_width, per_widths)),
+            risen = mul(sub(most, mul(mixed(0.035f, 0.1f), distance)), mul(width, per_widths));
     return mul(clamped(clear), clamped(risen));
 }
 
-/// disc_form_factor() of gather.glsl. `height` is that over the plane of the light, `d2` the squared
-/// distance.
-HWY_INLINE F disc_form_factor(const GatherLight& light, const V3& offset, const Receivers& to, F height,
-                              F d2) {
-    const F zero = hn::Zero(Floats()), one = set(1.0f), r2 = set(light.r2);
-    const V3 lateral{sub(offset.x, mul(height, set(light.normal.x))),
-                     sub(offset.y, mul(height, set(light.normal.y))),
-                     sub(offset.z, mul(height, set(light.normal.z)))};
-    const F a2 = dot(lateral, lateral), sum = add(d2, r2), apart = sub(d2, r2);
+/// disc_form_factor() of gather.glsl. The normal of the light is perpendicular to `lateral`, so the flux, a
+/// sum of both, needs no vectors.
+HWY_INLINE F disc_form_factor(const GatherLight& light, const Pair& pair) {
+    const F zero = hn::Zero(Floats()), one = set(1.0f), r2 = set(light.r2), height = pair.height;
+    const F a2 = sub(pair.d2, mul(height, height)), sum = add(pair.d2, r2), apart = sub(pair.d2, r2);
     const F s = hn::Sqrt(hn::Max(sub(mul(sum, sum), mul(a2, set(4 * light.r2))), set(1e-30f)));
     // parallel = 2 height^2 r2 / (s (s + d2 - r2)) outside, (s + r2 - d2) / (2 s) inside;
     // lateral_share = 2 height r2 / (s (d2 + r2 + s))
@@ -103,15 +111,15 @@ HWY_INLINE F disc_form_factor(const GatherLight& light, const V3& offset, const 
     const F parallel = hn::IfThenElse(outside, mul(mul(reach, height), mul(around, per_both)),
                                       mul(mul(set(0.5f), sub(s, apart)), per_s));
     const F lateral_share = mul(reach, mul(beyond, per_both));
-    const auto axis = [&](float n, F l) {
-        return sub(mul(hn::Neg(parallel), set(n)), mul(lateral_share, l));
-    };
-    const V3 flux{axis(light.normal.x, lateral.x), axis(light.normal.y, lateral.y),
-                  axis(light.normal.z, lateral.z)};
+    // The lateral part of the offset leads away from the light; `toward` is its negative dot product with the
+    // normal of the receiver.
+    const F toward = add(pair.own, mul(height, pair.cosine));
+    const F facing = sub(mul(lateral_share, toward), mul(parallel, pair.cosine));
+    const F size2 = add(mul(parallel, parallel), mul(mul(lateral_share, lateral_share), a2));
     // cut = size (cosine + sine)^2 / (4 sine) or facing, lossless = (size^2 + facing) / (size + 1), where
     // cosine = facing / size
-    const F size = hn::Max(hn::Sqrt(dot(flux, flux)), set(1e-20f)), facing = dot(flux, to.normal);
-    const F steep = mul(size, hn::Sqrt(size)), above = hn::Max(add(facing, steep), zero);
+    const F size = hn::Sqrt(hn::Max(size2, set(1e-36f))), steep = mul(size, hn::Sqrt(size));
+    const F above = hn::Max(add(facing, steep), zero);
     const F four_steep = mul(set(4.0f), steep), more = add(size, one);
     const F per_steep = over(one, mul(four_steep, more));
     const F partly = mul(mul(above, above), mul(more, per_steep));
@@ -132,31 +140,28 @@ HWY_INLINE V3 blocker_normals(U texel) {
 }
 
 /// vpl_sees() of gather.glsl.
-HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V3& offset,
-                     const Receivers& to, Mask lit) {
+HWY_INLINE Mask sees(const GatherJob& job, const GatherLight& light, const Pair& pair, const Receivers& to,
+                     Mask lit) {
     const Ints di;
-    const auto texels = static_cast<float>(input.side);
+    const GatherInput& input = job.input;
     const F zero = hn::Zero(Floats()), one = set(1.0f);
-    const auto lift = [&](F along, F normal, float light_normal) {
-        return sub(add(along, mul(normal, to.radius)), set(light_normal * light.normal.w));
-    };
-    const V3 lifted{lift(offset.x, to.normal.x, light.normal.x), lift(offset.y, to.normal.y, light.normal.y),
-                    lift(offset.z, to.normal.z, light.normal.z)};
-    const V3 receiver{dot(lifted, light.tangent), dot(lifted, light.bitangent), dot(lifted, light.normal)};
-    const V3 normal{dot(to.normal, light.tangent), dot(to.normal, light.bitangent),
-                    dot(to.normal, light.normal)};
-    const F half = set(0.5f * texels);
+    // In the frame of the map: the normal, and the point a radius above its surface.
+    const V3 normal{dot(to.normal, light.tangent), dot(to.normal, light.bitangent), pair.cosine};
+    const V3 receiver{add(dot(pair.offset, light.tangent), mul(normal.x, to.radius)),
+                      add(dot(pair.offset, light.bitangent), mul(normal.y, to.radius)),
+                      sub(add(pair.height, mul(normal.z, to.radius)), set(light.normal.w))};
+    const F half = set(0.5f * job.texels);
     const F scale = over(half, add(hn::Sqrt(dot(receiver, receiver)), receiver.z));
     const auto texel = [&](F v) {
         const F at = add(mul(v, scale), half);
-        return to_int(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), set(texels - 1))));
+        return to_int(di, hn::IfThenElseZero(lit, hn::Min(hn::Max(at, zero), set(job.texels - 1))));
     };
     const auto column = texel(receiver.x), row = texel(receiver.y);
     const auto index = hn::Add(hn::Mul(row, hn::Set(di, static_cast<int32_t>(input.side))), column);
     const U nearest = hn::BitCast(
         Words(), hn::GatherIndex(di, reinterpret_cast<const int32_t*>(input.atlas) + light.map, index));
     const auto centre = [&](hn::Vec<Ints> at) {
-        return add(mul(hn::ConvertTo(Floats(), at), set(2 / texels)), set(1 / texels - 1));
+        return add(mul(hn::ConvertTo(Floats(), at), set(job.texel)), set(0.5f * job.texel - 1));
     };
     const F u = centre(column), v = centre(row), uv2 = add(mul(u, u), mul(v, v));
     const U distance_bits =
@@ -171,7 +176,7 @@ HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V
     const U exponent = hn::Add(hn::And(hn::ShiftRight<12>(nearest), word(15)), word(127 - 11));
     const F radius = hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent));
     const F error = mul(set(kSheetTolerance), hn::Max(radius, mul(set(input.splat_angle), distance)));
-    const F width = mul(set(std::sqrt(8.0f) / texels), distance);
+    const F width = mul(set(job.width), distance);
     // Both sides of the test against the blocker's plane are times the length of its normal.
     const F behind = add(mul(add(error, width), length), mul(width, hn::Max(dot(normal, blocker), zero)));
     Mask seen = hn::Or(hn::Le(receiver.z, zero), hn::RebindMask(Floats(), hn::Eq(nearest, word(kNoTexel))));
@@ -180,76 +185,121 @@ HWY_INLINE Mask sees(const GatherInput& input, const GatherLight& light, const V
     return hn::And(lit, seen);
 }
 
-HWY_INLINE Receivers receivers(const Surfaces& from, hn::Vec<Ints> columns) {
-    const auto plane = [&](const std::vector<float>& values) {
-        return hn::GatherIndex(Floats(), &values[kBorder], columns);
-    };
-    const F radius = plane(from.radius);
-    return {{plane(from.x), plane(from.y), plane(from.z)},
-            {plane(from.nx), plane(from.ny), plane(from.nz)},
-            radius,
-            over(set(1.0f), radius),
-            hn::Gt(plane(from.depth), hn::Zero(Floats()))};
+/// Adds the light of a VPL to the lanes of a mask.
+HWY_INLINE void add_vpl(const GatherJob& job, const GatherLight& light, const Receivers& to, Mask lanes,
+                        V3& sum) {
+    const Pair pair = pair_of(light, to);
+    // Most VPLs that a pixel cannot see lie behind it, or it behind them.
+    Mask lit = hn::And(lanes, hn::Gt(hn::Min(pair.own, pair.height), mul(set(kRimPush), to.radius)));
+    if (hn::AllFalse(Floats(), lit)) return;
+    const F share = pair_share(to, pair);
+    lit = hn::And(lit, hn::Gt(share, hn::Zero(Floats())));
+    if (hn::AllFalse(Floats(), lit)) return;
+    lit = sees(job, light, pair, to, lit);
+    if (hn::AllFalse(Floats(), lit)) return;
+    const F factor =
+        hn::IfThenElseZero(lit, mul(mul(share, disc_form_factor(light, pair)), set(light.per_area)));
+    sum = {add(sum.x, mul(set(light.diffuse.x), factor)), add(sum.y, mul(set(light.diffuse.y), factor)),
+           add(sum.z, mul(set(light.diffuse.z), factor))};
 }
 
-/// Adds the light of the VPLs of a tile to the lanes of a mask.
-void gather_tile(const GatherJob& job, const Receivers& to, Mask lanes, int tile, V3& sum) {
-    const F zero = hn::Zero(Floats());
-    for (auto i = static_cast<size_t>(tile); i < job.lights.size(); i += static_cast<size_t>(job.n * job.n)) {
-        const GatherLight& light = job.lights[i];
-        const V3 offset{sub(to.position.x, set(light.position.x)), sub(to.position.y, set(light.position.y)),
-                        sub(to.position.z, set(light.position.z))};
-        // Most VPLs that a pixel cannot see lie behind it, or it behind them.
-        const F own = hn::Neg(dot(to.normal, offset)), height = dot(offset, light.normal);
-        Mask lit = hn::And(lanes, hn::Gt(hn::Min(own, height), mul(set(kRimPush), to.radius)));
-        if (hn::AllFalse(Floats(), lit)) continue;
-        const F d2 = dot(offset, offset);
-        const F share = pair_share(light, to, own, height, over(set(1.0f), hn::Sqrt(d2)));
-        lit = hn::And(lit, hn::Gt(share, zero));
-        if (hn::AllFalse(Floats(), lit)) continue;
-        lit = sees(job.input, light, offset, to, lit);
-        if (hn::AllFalse(Floats(), lit)) continue;
-        const F factor = hn::IfThenElseZero(
-            lit, mul(mul(share, disc_form_factor(light, offset, to, height, d2)), set(light.per_area)));
-        sum = {add(sum.x, mul(set(light.diffuse.x), factor)), add(sum.y, mul(set(light.diffuse.y), factor)),
-               add(sum.z, mul(set(light.diffuse.z), factor))};
+/// Shades pixels, some vectors at a time: those of one tile read the same map, which then stays in the cache.
+class Batch {
+ public:
+    /// `surfaces` holds the rows of the picture from `first_row` on.
+    Batch(const GatherJob& job, const Surfaces& surfaces, int first_row, glm::vec4* target)
+        : job_(job), surfaces_(surfaces), first_row_(first_row), target_(target) {}
+
+    /// Adds the pixels at columns and rows of the picture. Each lane gets the light of the tiles in its mask,
+    /// 0 for none.
+    void add(hn::Vec<Ints> columns, hn::Vec<Ints> rows, U tiles) {
+        const Ints di;
+        const auto int_of = [&](size_t v) { return hn::Set(di, static_cast<int32_t>(v)); };
+        const auto place = hn::Add(hn::Mul(hn::Sub(rows, hn::Set(di, first_row_)), int_of(surfaces_.stride)),
+                                   hn::Add(columns, int_of(kBorder)));
+        const auto plane = [&](const std::vector<float>& values) {
+            return hn::GatherIndex(Floats(), values.data(), place);
+        };
+        const Mask shown = hn::Gt(plane(surfaces_.depth), hn::Zero(Floats()));
+        tiles = hn::IfThenElseZero(hn::RebindMask(Words(), shown), tiles);
+        if (hn::AllTrue(Words(), hn::Eq(tiles, hn::Zero(Words())))) return;
+        const F radius = plane(surfaces_.radius), zero = hn::Zero(Floats());
+        to_[count_] = {{plane(surfaces_.x), plane(surfaces_.y), plane(surfaces_.z)},
+                       {plane(surfaces_.nx), plane(surfaces_.ny), plane(surfaces_.nz)},
+                       radius,
+                       hn::Div(set(1.0f), radius)};
+        tiles_[count_] = tiles;
+        pixels_[count_] = hn::Add(hn::Mul(rows, int_of(job_.input.camera.width)), columns);
+        sum_[count_] = {zero, zero, zero};
+        if (++count_ == kMost) shade();
     }
-}
+    /// Shades the pixels that were added last; call once at the end.
+    void shade() {
+        for (int tile = 0; tile < job_.n * job_.n; ++tile) gather_tile(tile);
+        for (size_t i = 0; i < count_; ++i) add_light(i);
+        count_ = 0;
+    }
 
-/// Adds sums to pixels; `pixel` returns that of a lane, or null after the last.
-template <class Pixel>
-HWY_INLINE void add_light(const GatherJob& job, const V3& sum, const Pixel& pixel) {
-    // Each tile alone estimates the whole light.
-    const F tiles = set(static_cast<float>(job.n * job.n));
-    alignas(64) float lanes[3][kLanes];
-    hn::Store(mul(sum.x, tiles), Floats(), lanes[0]);
-    hn::Store(mul(sum.y, tiles), Floats(), lanes[1]);
-    hn::Store(mul(sum.z, tiles), Floats(), lanes[2]);
-    for (size_t lane = 0; lane < hn::Lanes(Floats()); ++lane)
-        if (glm::vec4* light = pixel(lane))
-            *light += glm::vec4(lanes[0][lane], lanes[1][lane], lanes[2][lane], 0);
-}
+ private:
+    static constexpr size_t kMost = 16;
 
-/// Shades the pixels of a row with the VPLs of their tiles.
-void gather_row(const GatherJob& job, const Surfaces& from, int y) {
+    void gather_tile(int tile) {
+        Mask lanes[kMost];
+        size_t which[kMost], used = 0;
+        for (size_t i = 0; i < count_; ++i) {
+            lanes[used] = hn::RebindMask(Floats(), hn::TestBit(tiles_[i], word(1u << tile)));
+            which[used] = i;
+            used += !hn::AllFalse(Floats(), lanes[used]);
+        }
+        if (!used) return;
+        const auto step = static_cast<size_t>(job_.n * job_.n);
+        for (auto light = static_cast<size_t>(tile); light < job_.lights.size(); light += step)
+            for (size_t i = 0; i < used; ++i)
+                add_vpl(job_, job_.lights[light], to_[which[i]], lanes[i], sum_[which[i]]);
+    }
+    void add_light(size_t i) {
+        // Each tile alone estimates the whole light.
+        const F tiles = set(static_cast<float>(job_.n * job_.n));
+        alignas(64) float lanes[3][kLanes];
+        alignas(64) int32_t pixels[kLanes];
+        alignas(64) uint32_t masks[kLanes];
+        hn::Store(mul(sum_[i].x, tiles), Floats(), lanes[0]);
+        hn::Store(mul(sum_[i].y, tiles), Floats(), lanes[1]);
+        hn::Store(mul(sum_[i].z, tiles), Floats(), lanes[2]);
+        hn::Store(pixels_[i], Ints(), pixels);
+        hn::Store(tiles_[i], Words(), masks);
+        for (size_t lane = 0; lane < hn::Lanes(Floats()); ++lane)
+            if (masks[lane])
+                target_[pixels[lane]] += glm::vec4(lanes[0][lane], lanes[1][lane], lanes[2][lane], 0);
+    }
+
+    const GatherJob& job_;
+    const Surfaces& surfaces_;
+    int first_row_;
+    glm::vec4* target_;
+    size_t count_ = 0;
+    Receivers to_[kMost];
+    U tiles_[kMost];
+    hn::Vec<Ints> pixels_[kMost];
+    V3 sum_[kMost];
+};
+
+/// Shades the pixels of some rows with the VPLs of their tiles, tile after tile.
+void gather_pixels(const GatherJob& job, int first, int end, Batch& batch) {
     const Ints di;
     const auto width = static_cast<int>(job.input.camera.width);
-    const F zero = hn::Zero(Floats());
     const auto columns = hn::Mul(hn::Iota(di, 0), hn::Set(di, job.n));
-    glm::vec4* row = job.output.irradiance + static_cast<size_t>(y) * job.input.camera.width;
-    for (int tile = 0; tile < std::min(job.n, width); ++tile)
-        for (int x = tile; x < width; x += job.n * static_cast<int>(hn::Lanes(Floats()))) {
-            const auto index = hn::Add(columns, hn::Set(di, x));
-            const Receivers to = receivers(from, hn::Min(index, hn::Set(di, width - 1)));
-            const Mask shown = hn::And(to.shown, hn::RebindMask(Floats(), hn::Lt(index, hn::Set(di, width))));
-            if (hn::AllFalse(Floats(), shown)) continue;
-            V3 sum{zero, zero, zero};
-            gather_tile(job, to, shown, y % job.n * job.n + tile, sum);
-            add_light(job, sum, [&](size_t lane) {
-                const int at = x + job.n * static_cast<int>(lane);
-                return at < width ? row + at : nullptr;
-            });
-        }
+    const auto last = hn::Set(di, width - 1);
+    // Down before across: pixels close to each other read few texels of a map.
+    for (int tile = 0; tile < job.n * job.n; ++tile)
+        for (int x = tile % job.n; x < width; x += job.n * static_cast<int>(hn::Lanes(Floats())))
+            for (int y = first; y < end; ++y) {
+                if (y % job.n != tile / job.n) continue;
+                const auto column = hn::Add(columns, hn::Set(di, x));
+                const auto inside = hn::RebindMask(Words(), hn::Lt(column, hn::Set(di, width)));
+                batch.add(hn::Min(column, last), hn::Set(di, y),
+                          hn::IfThenElseZero(inside, word(1u << tile)));
+            }
 }
 
 /// Returns the tiles of which an isolated pixel finds no light, see missing_tiles() and window_tile() in
@@ -264,42 +314,37 @@ uint32_t lacking_tiles(const uint32_t* joint, int n, int x, int y) {
     return lacking;
 }
 
-/// Shades the isolated pixels of a row with the VPLs of the tiles that they lack.
-void gather_isolated(const GatherJob& job, const Surfaces& from, int y) {
-    const uint32_t width = job.input.camera.width, first = static_cast<uint32_t>(y) * width;
-    const auto begin = std::ranges::lower_bound(job.output.isolated, first),
-               end = std::ranges::lower_bound(job.output.isolated, first + width);
-    const F zero = hn::Zero(Floats());
-    for (auto at = begin; at < end; at += static_cast<ptrdiff_t>(hn::Lanes(Floats()))) {
-        const auto count = std::min(static_cast<ptrdiff_t>(hn::Lanes(Floats())), end - at);
-        alignas(64) int32_t columns[kLanes] = {}, lacking[kLanes] = {};
-        for (ptrdiff_t lane = 0; lane < count; ++lane) {
-            columns[lane] = static_cast<int32_t>(at[lane] - first);
-            lacking[lane] = static_cast<int32_t>(
-                lacking_tiles(job.output.joints + 2 * size_t{at[lane]}, job.n, columns[lane], y));
+/// Shades the isolated pixels of some rows with the VPLs of the tiles that they lack.
+void gather_isolated(const GatherJob& job, int first, int end, Batch& batch) {
+    const uint32_t width = job.input.camera.width;
+    const auto begin = std::ranges::lower_bound(job.output.isolated, static_cast<uint32_t>(first) * width),
+               stop = std::ranges::lower_bound(job.output.isolated, static_cast<uint32_t>(end) * width);
+    const auto lanes = static_cast<ptrdiff_t>(hn::Lanes(Floats()));
+    for (auto at = begin; at < stop; at += std::min(lanes, stop - at)) {
+        alignas(64) int32_t columns[kLanes] = {}, rows[kLanes];
+        alignas(64) uint32_t lacking[kLanes] = {};
+        std::ranges::fill(rows, first);
+        for (ptrdiff_t lane = 0; lane < std::min(lanes, stop - at); ++lane) {
+            columns[lane] = static_cast<int32_t>(at[lane] % width);
+            rows[lane] = static_cast<int32_t>(at[lane] / width);
+            lacking[lane] =
+                lacking_tiles(job.output.joints + 2 * size_t{at[lane]}, job.n, columns[lane], rows[lane]);
         }
-        const Receivers to = receivers(from, hn::Load(Ints(), columns));
-        const auto tiles = hn::Load(Ints(), lacking);
-        V3 sum{zero, zero, zero};
-        for (int tile = 0; tile < job.n * job.n; ++tile) {
-            const Mask lanes = hn::RebindMask(Floats(), hn::TestBit(tiles, hn::Set(Ints(), 1 << tile)));
-            if (!hn::AllFalse(Floats(), lanes)) gather_tile(job, to, lanes, tile, sum);
-        }
-        add_light(job, sum, [&](size_t lane) {
-            return static_cast<ptrdiff_t>(lane) < count
-                       ? job.output.own_irradiance + at[static_cast<ptrdiff_t>(lane)]
-                       : nullptr;
-        });
+        batch.add(hn::Load(Ints(), columns), hn::Load(Ints(), rows), hn::Load(Words(), lacking));
     }
 }
 
 void GatherRows(const GatherJob& job, int first, int end) {
-    Surfaces surfaces(job.input.camera.width, 1);
-    for (int y = first; y < end; ++y) {
-        read_row(job.input.camera, job.input.texels, y, 0, surfaces);
-        gather_row(job, surfaces, y);
-        if (job.n > 1) gather_isolated(job, surfaces, y);
-    }
+    Surfaces surfaces(job.input.camera.width, static_cast<size_t>(end - first));
+    for (int y = first; y < end; ++y)
+        read_row(job.input.camera, job.input.texels, y, static_cast<size_t>(y - first), surfaces);
+    Batch pixels(job, surfaces, first, job.output.irradiance);
+    gather_pixels(job, first, end, pixels);
+    pixels.shade();
+    if (job.n == 1) return;
+    Batch isolated(job, surfaces, first, job.output.own_irradiance);
+    gather_isolated(job, first, end, isolated);
+    isolated.shade();
 }
 
 }  // namespace lucarne::gi::vpl::native::HWY_NAMESPACE
@@ -313,8 +358,10 @@ void gather(const GatherInput& input, uint32_t n, const GatherOutput& output) {
     std::vector<GatherLight> lights;
     for (const VplLight& light : input.lights)
         lights.push_back(gather_light(light, input.camera.origin, lights.size() * input.side * input.side));
-    const GatherJob job{input, static_cast<int>(n), lights, output};
-    parallel_ranges(input.camera.height, 8, [&](size_t first, size_t end) {
+    const auto texels = static_cast<float>(input.side);
+    const GatherJob job{input,      static_cast<int>(n),     lights, output, texels,
+                        2 / texels, std::sqrt(8.0f) / texels};
+    parallel_ranges(input.camera.height, 32, [&](size_t first, size_t end) {
         HWY_DYNAMIC_DISPATCH(GatherRows)(job, static_cast<int>(first), static_cast<int>(end));
     });
 }
