@@ -43,6 +43,7 @@ TEST_F(LightGBuffersTest, ViewsAreHeldUntilTheyChange) {
     EXPECT_FALSE(*gbuffers_.draw_missing(*device, all));
     auto moved = all;
     moved[2] = views(6)[1];
+    gbuffers_.begin(*device, moved, moved.size());
     EXPECT_TRUE(*gbuffers_.draw_missing(*device, moved));
     EXPECT_FALSE(*gbuffers_.draw_missing(*device, moved)) << "it has been drawn";
 }

@@ -25,10 +25,12 @@ double mean_luminance(const std::vector<glm::vec4>& radiance) {
     return sum / static_cast<double>(radiance.size());
 }
 
-/// Returns how much two pictures differ, relative to their light. Some drivers give other last bits every time.
+/// Returns how much two pictures differ, relative to their light. Some drivers give other last bits every
+/// time.
 double difference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
     double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::abs(luminance(glm::dvec3(a[i])) - luminance(glm::dvec3(b[i])));
+    for (size_t i = 0; i < a.size(); ++i)
+        sum += std::abs(luminance(glm::dvec3(a[i])) - luminance(glm::dvec3(b[i])));
     return sum / static_cast<double>(a.size()) / mean_luminance(a);
 }
 constexpr double kSame = 1e-3;
