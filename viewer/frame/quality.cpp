@@ -7,7 +7,7 @@
 namespace lucarne::viewer {
 namespace {
 
-constexpr double kAim = 0.75, kFast = 0.5;  ///< of the longest time
+constexpr double kAim = 0.7, kFast = 0.5;  ///< of the longest time
 constexpr double kLeastScale = 0.25;
 
 }  // namespace
