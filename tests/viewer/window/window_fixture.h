@@ -64,7 +64,7 @@ class ViewerWindow : public testing::Test {
             xdo("key F12");
             for (int i = 0; i < 40 && times_saved() == before; ++i)
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            if (times_saved() == before) return false;
+            if (times_saved() == before || !whole()) return false;
             const auto saved = io::read_png(file);
             if (!saved || saved->width != kWidth * scale_ * resolution_ ||
                 saved->height != kHeight * scale_ * resolution_ || !wanted(*saved))
