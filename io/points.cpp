@@ -121,4 +121,23 @@ Result<void> PointSource::pick(std::span<const uint64_t>, PointBatch&) const {
     return failed(info().path, "its points can only be read one after the other");
 }
 
+Result<void> PointSource::front(size_t, size_t most, PointBatch& batch) const {
+    LUCARNE_ASSIGN(const auto reader, open());
+    batch.bytes.clear();
+    batch.count = 0;
+    return read_up_to(*reader, schema(), most, batch);
+}
+
+Result<void> read_up_to(PointReader& reader, const Schema& schema, size_t most, PointBatch& batch) {
+    PointBatch more;
+    while (batch.count < most) {
+        LUCARNE_ASSIGN(const size_t count, reader.read(more, most - batch.count));
+        if (count == 0) break;
+        const auto end = more.bytes.begin() + static_cast<std::ptrdiff_t>(count * schema.stride);
+        batch.bytes.insert(batch.bytes.end(), more.bytes.begin(), end);
+        batch.count += count;
+    }
+    return {};
+}
+
 }  // namespace lucarne::io

@@ -213,7 +213,16 @@ class PointSource {
     /// info().declared_points. Leaves out points with a non-finite coordinate. Thread-safe. Errors:
     /// unreadable; not seekable.
     virtual Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const;
+    /// Returns the number of parts whose first points can be read without the points before them: the chunks
+    /// of a LAZ file, the scans of an E57 file. At least 1.
+    virtual size_t parts() const { return 1; }
+    /// Replaces `batch` by the first points of a part, at most `most`; by fewer if the part has fewer.
+    /// Thread-safe. Errors: unreadable.
+    virtual Result<void> front(size_t part, size_t most, PointBatch& batch) const;
 };
+
+/// Appends the next points of a reader to `batch` until it has `most` points or the reader ends.
+Result<void> read_up_to(PointReader& reader, const Schema& schema, size_t most, PointBatch& batch);
 
 /// Writes batches of points. The records must have the schema that the writer was created for.
 class PointWriter {

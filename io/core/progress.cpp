@@ -11,6 +11,8 @@
 namespace lucarne {
 namespace {
 
+constexpr double kSteadySeconds = 2, kSteadyShare = 0.01;  ///< before them there is no estimate
+
 std::atomic<bool>& silent_flag() {
     static std::atomic<bool> flag{false};
     return flag;
@@ -71,11 +73,15 @@ void Progress::print(bool last) {
     } else {
         const double share = std::min(1.0, done / static_cast<double>(total_));
         const double left = rate > 0 ? (static_cast<double>(total_) - done) / rate : 0;
+        // A rate of the first moments says nothing about the rest.
+        const std::string pace =
+            elapsed >= kSteadySeconds && share >= kSteadyShare
+                ? fmt::format(", {} {}/s, {:.0f} s left", count_text(rate), unit_, std::max(0.0, left))
+                : std::string();
         const auto filled = static_cast<size_t>(share * 20);
         const std::string bar =
             terminal_ ? fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", 20 - filled) : "";
-        line = fmt::format("{}lucarne: {}: {}{:.0f} %, {} {}/s, {:.0f} s left{}", start, label_, bar,
-                           share * 100, count_text(rate), unit_, std::max(0.0, left), end);
+        line = fmt::format("{}lucarne: {}: {}{:.0f} %{}{}", start, label_, bar, share * 100, pace, end);
     }
     // fmt::print would throw if stderr cannot be written (a log on a full disk), and that must not stop the
     // work.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <thread>
 
+#include <glm/common.hpp>
 #include <tbb/task_arena.h>
 
 #include "io/core/guarded.h"
@@ -31,9 +33,22 @@ using Clock = std::chrono::steady_clock;
 struct ShownSample {
     QuickSample points;
     std::vector<QuickSurface> surface;
+    Cube root;  ///< the areas of `surface` are in its faces
+
+    void move_to(const Cube& other) {
+        const auto faces = static_cast<float>(root.size * root.size / (other.size * other.size));
+        for (QuickSurface& point : surface)
+            if (point.area != kStrayArea) point.area *= faces;
+        root = other;
+    }
 };
 
 constexpr double kFace = 1;  ///< areas are in faces of the root cube
+
+// How the sample grows while the build runs. Its rounds take a few hundredths of the time of a build.
+constexpr uint64_t kMostGrown = 1'000'000;     ///< points
+constexpr uint64_t kLeastPerPoint = 16;        ///< points in the inputs for each point of the last round
+constexpr double kSecondsBetweenRounds = 0.5;  ///< at least
 
 /// Returns the sample's records as a cache over `root` would hold them, along that root's Morton curve.
 LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const io::Schema& schema,
@@ -68,6 +83,7 @@ struct GrowingBuild::State final : BuildListener {
     ShownSample sample;
     io::Schema schema;  ///< schema of the sources
     SourceHeader header;
+    bool header_is_final = false;  ///< the build has read all points
     std::function<void()> changed;
     std::thread thread;
     std::atomic<bool> stop{false};
@@ -83,7 +99,17 @@ struct GrowingBuild::State final : BuildListener {
     mutable std::mutex mutex;  ///< guards the members below
     BuildState now;
 
+    std::thread grower;       ///< enlarges the sample until the build shows nodes
+    std::mutex making;        ///< guards `header` to `publishing` against the grower
+    std::mutex grower_mutex;  ///< with `grower_wakes`: for the pause between two rounds
+    std::condition_variable grower_wakes;
+    std::atomic<bool> grown{true};  ///< the sample grows no more
+
     Result<void> take_first();
+    ScanFacts facts_of(const QuickSample& points, const Cube& root) const;
+    ShownSample with_surface(QuickSample points, const Cube& root) const;
+    void grow();
+    void end_growing();
     void publish(std::shared_ptr<const ByteSource> file);
     void show(std::shared_ptr<const NodeSource> source);
     void work();
@@ -108,19 +134,79 @@ Result<void> GrowingBuild::State::take_first() {
     LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
     schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
 
-    LUCARNE_ASSIGN(sample.points, take_sample(*unifier, options.sample_points, options.sampling));
-    ScanFacts facts{.points = sample.points.points, .min = sample.points.min, .max = sample.points.max};
-    LUCARNE_ASSIGN(facts.root, root_cube(facts.min, facts.max));
-    header = header_of(*unifier, facts, schema);
-    const StationIds ids(header.scans, unifier->schema());
-    std::vector<std::optional<glm::dvec3>> stations(sample.points.positions.size());
-    for (size_t i = 0; i < stations.size(); ++i)
-        if (const int32_t id = ids.of(&sample.points.records[i * unifier->schema().stride]); id >= 0)
-            stations[i] = ids.stations()[static_cast<size_t>(id)];
-    sample.surface = quick_surface(sample.points.positions, facts.root, stations);
-    loose = along_curve(sample, unifier->schema(), schema, facts.root);
+    const bool sketch = options.first_points > 0 && options.first_points < options.sample_points;
+    auto taken = sketch ? take_sketch(*unifier, options.first_points, options.first_read, options.sampling)
+                        : take_sample(*unifier, options.sample_points, options.sampling);
+    LUCARNE_ASSIGN(QuickSample points, std::move(taken));
+    grown = !sketch;
+    LUCARNE_ASSIGN(const Cube root, root_cube(points.min, points.max));
+    header = header_of(*unifier, facts_of(points, root), schema);
+    sample = with_surface(std::move(points), root);
+    loose = along_curve(sample, unifier->schema(), schema, root);
     publish(nullptr);
     return {};
+}
+
+ScanFacts GrowingBuild::State::facts_of(const QuickSample& points, const Cube& root) const {
+    return {.points = points.points, .min = points.min, .max = points.max, .root = root};
+}
+
+/// Called by the grower as well, which must not read `header` here.
+ShownSample GrowingBuild::State::with_surface(QuickSample points, const Cube& root) const {
+    const auto scans = header_of(*unifier, facts_of(points, root), schema).scans;
+    const StationIds ids(scans, unifier->schema());
+    std::vector<std::optional<glm::dvec3>> stations(points.positions.size());
+    for (size_t i = 0; i < stations.size(); ++i)
+        if (const int32_t id = ids.of(&points.records[i * unifier->schema().stride]); id >= 0)
+            stations[i] = ids.stations()[static_cast<size_t>(id)];
+    auto surface = quick_surface(points.positions, root, stations);
+    return {std::move(points), std::move(surface), root};
+}
+
+/// Replaces the sample by larger ones, until the build shows nodes of its own.
+void GrowingBuild::State::grow() {
+    const log::Operation::Scope scope(operation);
+    tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
+    const uint64_t most =
+        std::max(options.sample_points, std::min(kMostGrown, sample.points.points / kLeastPerPoint));
+    uint64_t points = options.first_points, read = options.first_read;
+    while (!grown && points < most) {
+        {
+            std::unique_lock lock(grower_mutex);
+            grower_wakes.wait_for(lock, std::chrono::duration<double>(kSecondsBetweenRounds),
+                                  [&] { return grown.load(); });
+        }
+        points = std::min(2 * points, most);
+        read *= 2;
+        auto taken = arena.execute(
+            [&] { return take_sketch(*unifier, points, read, [&](uint64_t, uint64_t) { return !grown; }); });
+        if (!taken) return;  // the build will report the error
+        if (taken->positions.size() <= sample.points.positions.size()) continue;
+        taken->min = glm::min(taken->min, sample.points.min);
+        taken->max = glm::max(taken->max, sample.points.max);
+        const auto root = root_cube(taken->min, taken->max);
+        if (!root) return;
+        ShownSample larger = arena.execute([&] { return with_surface(std::move(*taken), *root); });
+        const std::lock_guard lock(making);
+        if (grown) return;
+        if (header_is_final)
+            larger.move_to(header.root);
+        else
+            header = header_of(*unifier, facts_of(larger.points, *root), schema);
+        sample = std::move(larger);
+        loose = along_curve(sample, unifier->schema(), schema, header.root);
+        publish(nullptr);
+    }
+}
+
+/// Lets the sample grow no more. Waits for a round that is being made.
+void GrowingBuild::State::end_growing() {
+    {
+        const std::lock_guard lock(grower_mutex);
+        grown = true;
+    }
+    grower_wakes.notify_all();
+    if (grower.joinable()) grower.join();
 }
 
 /// Makes a source of the current state.
@@ -140,14 +226,18 @@ void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
 }
 
 void GrowingBuild::State::scanned(const SourceHeader& facts) {
+    const std::lock_guard lock(making);
     header = facts;
     header.schema = schema;
+    header_is_final = true;
+    sample.move_to(header.root);
     loose = along_curve(sample, unifier->schema(), schema, header.root);
     publish(nullptr);
 }
 
 void GrowingBuild::State::building(const io::Schema& records) {
     if (records != schema) throw std::logic_error("the build's records differ from the sample's");
+    end_growing();
 }
 
 void GrowingBuild::State::settled(std::span<const format::Entry> nodes) {
@@ -198,6 +288,7 @@ Result<std::shared_ptr<const NodeSource>> GrowingBuild::State::build() {
 void GrowingBuild::State::work() {
     const log::Operation::Scope scope(operation);
     auto cache = guarded("the build", [&] { return build(); });
+    end_growing();
     entries = {};
     roots.clear();
     end(std::move(cache));
@@ -234,13 +325,23 @@ GrowingBuild::~GrowingBuild() {
 
 void GrowingBuild::stop() {
     state_->stop = true;
+    state_->grown = true;
 }
 
 void GrowingBuild::begin(std::function<void()> changed) {
     state_->changed = std::move(changed);
-    auto started = guarded("the build",
-                           [&] { state_->thread = std::thread([state = state_.get()] { state->work(); }); });
-    if (!started) state_->end(tl::make_unexpected(std::move(started).error()));
+    State* state = state_.get();
+    if (!state->grown) {
+        // If it cannot start, the sample stays as it is.
+        [[maybe_unused]] const auto grows = guarded("the sample", [&] {
+            state->grower = std::thread(
+                [state] { [[maybe_unused]] const auto end = guarded("the sample", [&] { state->grow(); }); });
+        });
+    }
+    auto started = guarded("the build", [&] { state->thread = std::thread([state] { state->work(); }); });
+    if (started) return;
+    state->end_growing();
+    state->end(tl::make_unexpected(std::move(started).error()));
 }
 
 void GrowingBuild::wait() {

@@ -32,6 +32,10 @@ struct GrowingOptions {
     uint64_t sample_points = 400'000;  ///< points of the first source's sample
     Sampling sampling;                 ///< called while the sample is taken; may end it
     double seconds_between = 1.5;      ///< least time between two sources of a running build
+    /// Points of the first source, if it is to come before a sample of `sample_points` can be read, and how
+    /// many points may be read for it. Then the sample grows while the build runs: each round doubles it.
+    /// 0: the first source is the whole sample.
+    uint64_t first_points = 0, first_read = 0;
 };
 
 /// A scan that is shown at once and converted meanwhile. Its source is first a sample of the whole scan; then
@@ -49,8 +53,8 @@ class GrowingBuild {
     GrowingBuild(const GrowingBuild&) = delete;
     GrowingBuild& operator=(const GrowingBuild&) = delete;
 
-    /// Starts converting in the background. `changed` is called from that thread with every new source and at
-    /// the end.
+    /// Starts converting in the background. `changed` is called from the threads of the build, one call at a
+    /// time, with every new source and at the end.
     void begin(std::function<void()> changed);
     /// Ends the build at its next step; returns at once. The source stays unchanged.
     void stop();

@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "io/core/log.h"
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 
@@ -14,6 +15,8 @@ namespace {
 
 constexpr size_t kPiece = 4096;  ///< points that one task picks
 constexpr uint64_t kLeastOfInput = 64;
+constexpr uint64_t kMostFrontBytes = uint64_t{32} << 20;
+constexpr uint64_t kLeastOfFront = 1024;  ///< points; opening a part costs as much as reading some hundred
 
 /// Returns the index of the point of run number `rank`. It is at a random position in the run: equal steps
 /// would sample a scanner's lines in stripes.
@@ -91,21 +94,42 @@ Result<std::vector<std::byte>> read_through(const Unifier& inputs, size_t input,
     }
 }
 
-}  // namespace
+/// The front of one part of an input.
+struct Front {
+    size_t input = 0, part = 0;
+    uint64_t read = 0, keep = 0;  ///< points
+};
 
-Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling) {
-    QuickSample sample;
-    for (size_t i = 0; i < inputs.inputs(); ++i) sample.points += inputs.source(i).info().declared_points;
-    Steps steps(sampling, sample.points);
-    for (size_t i = 0; i < inputs.inputs(); ++i) {
-        const double share = static_cast<double>(inputs.source(i).info().declared_points) /
-                             static_cast<double>(std::max<uint64_t>(1, sample.points));
-        const auto wanted = std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
-        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable()
-                                               ? pick(inputs, i, wanted, steps)
-                                               : read_through(inputs, i, wanted, steps));
-        sample.records.insert(sample.records.end(), records.begin(), records.end());
-    }
+/// Returns the fronts of parts that are spread evenly over the input.
+std::vector<Front> fronts_of(const Unifier& inputs, size_t input, uint64_t wanted, uint64_t read) {
+    const size_t parts = inputs.source(input).parts();
+    const size_t used =
+        static_cast<size_t>(std::clamp<uint64_t>(read / kLeastOfFront, 1, std::max<size_t>(1, parts)));
+    std::vector<Front> fronts;
+    for (size_t i = 0; i < used; ++i)
+        fronts.push_back({input, static_cast<size_t>(static_cast<unsigned __int128>(i) * parts / used),
+                          std::max<uint64_t>(1, read / used), std::max<uint64_t>(1, wanted / used)});
+    return fronts;
+}
+
+/// Keeps every k-th point of a front.
+Result<std::vector<std::byte>> read_front(const Unifier& inputs, const Front& front, Steps& steps) {
+    io::PointBatch batch;
+    std::vector<std::byte> storage, kept;
+    const io::PointSource& source = inputs.source(front.input);
+    const uint64_t most = std::max<uint64_t>(1, kMostFrontBytes / source.schema().stride);
+    LUCARNE_TRY(source.front(front.part, static_cast<size_t>(std::min(front.read, most)), batch));
+    LUCARNE_TRY(steps.add(batch.count));
+    const auto records = inputs.convert(front.input, batch, storage);
+    const size_t stride = inputs.schema().stride;
+    const size_t step = std::max<size_t>(1, batch.count / static_cast<size_t>(front.keep));
+    for (size_t i = 0; i < batch.count; i += step)
+        kept.insert(kept.end(), &records[i * stride], &records[i * stride] + stride);
+    return kept;
+}
+
+/// Returns positions and bounds of the sample's records.
+Result<QuickSample> with_positions(const Unifier& inputs, QuickSample sample) {
     const size_t stride = inputs.schema().stride, count = sample.records.size() / stride;
     if (count == 0) return rejected(inputs.source(0).info().path, "has no points");
     sample.positions.resize(count);
@@ -118,6 +142,73 @@ Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Samp
         sample.max = glm::max(sample.max, p);
     }
     return sample;
+}
+
+uint64_t points_of(const Unifier& inputs) {
+    uint64_t points = 0;
+    for (size_t i = 0; i < inputs.inputs(); ++i) points += inputs.source(i).info().declared_points;
+    return points;
+}
+
+/// The part of `most` that an input gets.
+uint64_t share_of(const Unifier& inputs, size_t input, uint64_t all, uint64_t most) {
+    const double share = static_cast<double>(inputs.source(input).info().declared_points) /
+                         static_cast<double>(std::max<uint64_t>(1, all));
+    return std::max(kLeastOfInput, static_cast<uint64_t>(share * static_cast<double>(most)));
+}
+
+}  // namespace
+
+Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling) {
+    QuickSample sample;
+    sample.points = points_of(inputs);
+    Steps steps(sampling, sample.points);
+    for (size_t i = 0; i < inputs.inputs(); ++i) {
+        const uint64_t wanted = share_of(inputs, i, sample.points, most);
+        LUCARNE_ASSIGN(const auto records, inputs.source(i).seekable()
+                                               ? pick(inputs, i, wanted, steps)
+                                               : read_through(inputs, i, wanted, steps));
+        sample.records.insert(sample.records.end(), records.begin(), records.end());
+    }
+    return with_positions(inputs, std::move(sample));
+}
+
+Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t read,
+                                const Sampling& sampling) {
+    QuickSample sample;
+    sample.points = points_of(inputs);
+    if (inputs.inputs() == 1 && (sample.points <= read || inputs.source(0).seekable()))
+        return take_sample(inputs, most, sampling);
+    Steps steps(sampling, std::min(read, sample.points));
+    std::vector<Front> fronts;  // one for each seekable input
+    for (size_t i = 0; i < inputs.inputs(); ++i) {
+        const uint64_t wanted = share_of(inputs, i, sample.points, most);
+        if (inputs.source(i).seekable()) {
+            fronts.push_back({i, 0, 0, wanted});
+            continue;
+        }
+        const auto more = fronts_of(inputs, i, wanted, share_of(inputs, i, sample.points, read));
+        fronts.insert(fronts.end(), more.begin(), more.end());
+    }
+    std::vector<Result<std::vector<std::byte>>> taken(fronts.size());
+    parallel_ranges(fronts.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            taken[i] = fronts[i].read ? read_front(inputs, fronts[i], steps)
+                                      : pick(inputs, fronts[i].input, fronts[i].keep, steps);
+    });
+    std::vector<Error> broken;
+    for (auto& records : taken) {
+        if (records)
+            sample.records.insert(sample.records.end(), records->begin(), records->end());
+        else if (records.error().kind == ErrorKind::input_rejected)
+            broken.push_back(std::move(records).error());
+        else
+            return tl::unexpected(std::move(records).error());
+    }
+    if (!broken.empty() && (inputs.inputs() == 1 || sample.records.empty()))
+        return tl::unexpected(std::move(broken.front()));
+    for (const Error& error : broken) log::warn("{}; it is left out of the first pictures", error.line());
+    return with_positions(inputs, std::move(sample));
 }
 
 }  // namespace lucarne::octree

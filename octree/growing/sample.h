@@ -29,4 +29,11 @@ using Sampling = std::function<bool(uint64_t done, uint64_t total)>;
 /// for any number of threads. Errors: unreadable inputs, no points; `sampling` ended it.
 Result<QuickSample> take_sample(const Unifier& inputs, uint64_t most, const Sampling& sampling = {});
 
+/// Like take_sample, but reads at most about `read` points of the inputs that cannot seek: the fronts of
+/// parts (PointSource::front) spread over each input, in parallel. So the cost depends on `most` and `read`,
+/// not on the files, and the points cover the inputs less evenly. If several inputs are given, one that
+/// cannot be read is left out with a warning.
+Result<QuickSample> take_sketch(const Unifier& inputs, uint64_t most, uint64_t read,
+                                const Sampling& sampling = {});
+
 }  // namespace lucarne::octree

@@ -57,6 +57,19 @@ void drop_curtains(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_sit
         drop(site, crowding < kRough ? kSilhouette : kCurtain);
 }
 
+/// Narrows the discs at outer edges, such as that of a window's reveal. There a disc of the usual size would
+/// reach one and a half spacings into the air and shade what lies beyond. In a corner it ends behind the
+/// other side, and its size keeps the corner closed. The station tells which of the two a crease is.
+void narrow_at_edges(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
+    for (const SideNormal& side : surface.sides) {
+        const glm::dvec3& ray = ray_of_site[side.site];
+        const double facing = glm::dot(glm::dvec3(side.normal), ray);
+        if (!(std::abs(facing) > kGrazing * glm::length(ray)) || side.rises == (facing > 0)) continue;
+        float& area = surface.areas[side.site];
+        area = std::min(area, side.edge_area);
+    }
+}
+
 /// Drops the sides of creases that turn far and have no station.
 void drop_doubtful_sides(ChunkSurface& surface, std::span<const glm::dvec3> ray_of_site) {
     std::erase_if(surface.sides, [&](const SideNormal& side) {
@@ -100,7 +113,10 @@ Result<ChunkEstimate> estimate_chunk(ChunkCache& cache, size_t chunk, const Norm
     LUCARNE_ASSIGN(auto surface, estimate_surface(neighbours, options.neighbours));
     neighbours.drop_indices();
     LUCARNE_ASSIGN(const auto rays, rays_to_stations(cache, chunk, options, neighbours));
-    if (!rays.empty()) drop_curtains(surface, rays);
+    if (!rays.empty()) {
+        drop_curtains(surface, rays);
+        narrow_at_edges(surface, rays);
+    }
     drop_doubtful_sides(surface, rays);
     ChunkOrientation orientation;
     if (options.normals) {

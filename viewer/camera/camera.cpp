@@ -64,11 +64,20 @@ void CameraRig::look_along(double yaw, double pitch) {
     position_ = pivot_ - forward() * distance;
 }
 
-void CameraRig::fit(const std::array<glm::dvec3, 2>& box) {
-    const double radius = std::max(glm::distance(box[0], box[1]) / 2, 1e-6);
+void CameraRig::fit(const std::array<glm::dvec3, 2>& box, const PictureShape& shape) {
+    std::array<glm::dvec3, 8> corners;
+    for (size_t i = 0; i < corners.size(); ++i)
+        corners[i] = {box[i & 1].x, box[i >> 1 & 1].y, box[i >> 2 & 1].z};
+    const ViewAxes axes{right(), up(), forward()};
+    constexpr double kLeast = 2e-6;  // world units: a single point has a size
     pivot_ = (box[0] + box[1]) / 2.0;
-    position_ = pivot_ - forward() * (radius / std::sin(vertical_fov_ / 2));
-    if (orthographic()) height_ = 2 * radius;
+    if (orthographic()) {
+        const ParallelFit fit = parallel_fit(corners, axes, shape, kLeast);
+        position_ = fit.position;
+        height_ = fit.height;
+    } else {
+        position_ = fitting_position(corners, axes, vertical_fov_, shape, kLeast);
+    }
 }
 
 glm::dvec3 CameraRig::forward() const {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "gi/scene/scene.h"
+#include "viewer/camera/fitting.h"
 
 namespace lucarne::viewer {
 
@@ -41,8 +42,9 @@ class CameraRig {
     void set_clearance(double distance) { clearance_ = distance; }
     /// Looks at the pivot from the given direction and keeps the distance.
     void look_along(double yaw, double pitch);
-    /// Shows the whole box and keeps the direction of the view. The box's centre becomes the pivot.
-    void fit(const std::array<glm::dvec3, 2>& box);
+    /// Shows the whole box in the free part of the picture and keeps the direction of the view. The box's
+    /// centre becomes the pivot.
+    void fit(const std::array<glm::dvec3, 2>& box, const PictureShape& shape);
 
     /// Turns about the pivot, which stays where it is in the picture. Angles are radians to the left and up.
     /// The pitch stops short of straight up and straight down.

@@ -167,7 +167,10 @@ std::string fit_text(const FrameStats& stats) {
 /// Opens the input. With --first opens only what can be drawn at once.
 Result<std::shared_ptr<const octree::NodeSource>> open_source(const RenderOptions& options) {
     if (!options.first) return open_input(options.input);
-    LUCARNE_ASSIGN(const auto open, open_growing(options.input));
+    Opening opening;
+    opening.first_points = 200'000;
+    opening.first_read = 1'000'000;
+    LUCARNE_ASSIGN(const auto open, open_growing(options.input, opening));
     return open.source;
 }
 

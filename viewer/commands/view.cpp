@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "io/core/log.h"
-#include "octree/tree/robust_bounds.h"
 #include "viewer/commands/commands.h"
 #include "viewer/commands/options/drawing_options.h"
 #include "viewer/commands/options/input_options.h"
@@ -36,7 +35,8 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     StartingView start;
     LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
     LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
-    start.box = octree::robust_bounds(source);
+    start.site = survey_site(source);
+    start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;
     return start;
 }

@@ -57,16 +57,24 @@ Result<Files> open_files(const InputOptions& options) {
     return files;
 }
 
+/// `leave_out`: a scan that is rejected is left out with a warning if there are others.
 Result<Scans> open_scans(const InputOptions& options,
-                         std::span<const std::shared_ptr<const ByteSource>> files) {
+                         std::span<const std::shared_ptr<const ByteSource>> files, bool leave_out = false) {
     Scans scans;
     std::vector<io::ScanInfo> infos;
+    std::optional<Error> first_error;
     for (const auto& file : files) {
         auto scan = io::open_scan(file, options.read);
+        if (!scan && leave_out && files.size() > 1 && scan.error().kind == ErrorKind::input_rejected) {
+            log::warn("{}; it is left out", scan.error().line());
+            first_error = first_error.value_or(scan.error());
+            continue;
+        }
         if (!scan) return tl::unexpected(io::with_salvage_advice(scan.error(), file->path(), options.read));
         infos.push_back((*scan)->info());
         scans.inputs.push_back(std::move(*scan));
     }
+    if (scans.inputs.empty()) return tl::unexpected(std::move(*first_error));
     const KeptCache kept(infos, io::options_text(options.read));
     scans.build.read_options = io::options_text(options.read);
     if (!options.no_cache) {
@@ -134,7 +142,7 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
         LUCARNE_ASSIGN(open.source, open_parts(options, files));
         return open;
     }
-    LUCARNE_ASSIGN(Scans scans, open_scans(options, files.all));
+    LUCARNE_ASSIGN(Scans scans, open_scans(options, files.all, true));
     open.source = scans.cache;
     if (open.source) return open;
     open.folder = std::move(scans.folder);
@@ -142,6 +150,8 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
     growing.build = std::move(scans.build);
     growing.build.memory = kMemoryBeside;
     growing.sample_points = opening.sample_points;
+    growing.first_points = opening.first_points;
+    growing.first_read = opening.first_read;
     growing.sampling = opening.sampling;
     // A temporary folder is removed with the program, together with its contents.
     if (opening.resumable && !open.folder) growing.build.resume = octree::Resume::go_on;

@@ -25,7 +25,10 @@ struct InputOptions {
 /// How a window opens scans that it shows while they are converted.
 struct Opening {
     uint64_t sample_points = 400'000;  ///< of scans without a cache
-    octree::Sampling sampling;         ///< is told of the progress of sampling, and may end it
+    /// Points of the first source, and how many points may be read for it
+    /// (octree::GrowingOptions::first_points).
+    uint64_t first_points = 0, first_read = 0;
+    octree::Sampling sampling;  ///< is told of the progress of sampling, and may end it
     /// An interrupted conversion keeps its finished stages, and the next conversion continues from them.
     bool resumable = false;
 };

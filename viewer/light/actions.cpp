@@ -9,6 +9,7 @@
 
 #include "viewer/light/edits.h"
 #include "viewer/light/lighting.h"
+#include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -28,6 +29,19 @@ bool has_light(const Lighting& model) {
 template <gi::LightKind Kind>
 void add(const Lighting& model) {
     add_light(model, Kind);
+}
+template <Mood Of>
+void light_as(const Lighting& model) {
+    remember_lights(model);
+    set_mood(model.view.scene, Of, model.view.site, model.view.rig.camera());
+    const std::string engine(engine_of(Of));
+    if (Of == Mood::scan_colours || model.view.method.engine == engine_of(Mood::scan_colours))
+        model.view.method.engine = engine;
+    model.lights.selected = 0;
+    model.view.scene_changed();
+}
+bool has_site(const Lighting& model) {
+    return !model.view.site.outline.empty();
 }
 bool is_on(const Lighting& model) {
     return has_light(model) && model.lights.selected < model.view.scene.lights.size() &&
@@ -57,6 +71,19 @@ std::span<const Action<const Lighting>> light_actions() {
         Entry{{GLFW_KEY_3, kAltShift}, "Light/Add", "Sun", add<Kind::directional>},
         Entry{{GLFW_KEY_4, kAltShift}, "Light/Add", "Rectangle", add<Kind::rectangle>},
         Entry{{GLFW_KEY_5, kAltShift}, "Light/Add", "Disc", add<Kind::disc>},
+        Entry{{GLFW_KEY_1, GLFW_MOD_SHIFT},
+              "Light/Mood",
+              "Scan colours",
+              light_as<Mood::scan_colours>,
+              has_site},
+        Entry{{GLFW_KEY_2, GLFW_MOD_SHIFT}, "Light/Mood", "Daylight", light_as<Mood::daylight>, has_site},
+        Entry{{GLFW_KEY_3, GLFW_MOD_SHIFT}, "Light/Mood", "Evening", light_as<Mood::evening>, has_site},
+        Entry{{GLFW_KEY_4, GLFW_MOD_SHIFT},
+              "Light/Mood",
+              "Raking light",
+              light_as<Mood::raking_light>,
+              has_site},
+        Entry{{GLFW_KEY_5, GLFW_MOD_SHIFT}, "Light/Mood", "Museum", light_as<Mood::museum>, has_site},
         Entry{{GLFW_KEY_D, GLFW_MOD_ALT}, "Light", "Duplicate", duplicate_light, has_light},
         Entry{{GLFW_KEY_DELETE, GLFW_MOD_ALT}, "Light", "Delete", remove_light, has_light},
         Entry{{GLFW_KEY_Z, GLFW_MOD_ALT}, "Light", "Undo", undo_lights, can_undo},

@@ -16,6 +16,8 @@ namespace {
 using Source = std::shared_ptr<const octree::NodeSource>;
 
 constexpr uint64_t kSamplePoints = 400'000;      ///< for all scans that are opened at once
+constexpr uint64_t kFirstPoints = 60'000;        ///< of these, for the first picture
+constexpr uint64_t kFirstRead = 500'000;         ///< points that are read for it where files cannot seek
 constexpr uint64_t kLeastSamplePoints = 20'000;  ///< for one scan
 /// Each scan keeps one or two files open, and a process may have 1024.
 constexpr size_t kMostScans = 400;
@@ -54,7 +56,12 @@ std::string ScanRow::name() const {
     const std::filesystem::path first(paths.front());
     std::string name = first.filename().string();
     if (name.empty()) name = paths.front();
-    return paths.size() == 1 ? name : fmt::format("{} and {} more", name, paths.size() - 1);
+    if (paths.size() == 1) return name;
+    const std::filesystem::path whole = std::filesystem::path(folder).lexically_normal();
+    const std::string named = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+    if (!named.empty() && named != "." && named != "..")
+        return fmt::format("{} ({} scans)", named, paths.size());
+    return fmt::format("{} and {} more", name, paths.size() - 1);
 }
 
 /// The internal state of a row.
@@ -108,6 +115,8 @@ Result<Opened> open_paths(const InputOptions& how, bool together, Watch& watch, 
     Opening opening;
     opening.resumable = true;
     opening.sample_points = sample_points;
+    opening.first_points = sample_points * kFirstPoints / kSamplePoints;
+    opening.first_read = sample_points * kFirstRead / kSamplePoints;
     opening.sampling = [&watch](uint64_t done, uint64_t total) {
         watch.share = total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
         return !watch.cancelled;
@@ -149,13 +158,15 @@ void ScanSet::open(std::vector<std::string> paths, bool together) {
     for (std::string& path : paths) open_one({std::move(path)}, false);
 }
 
-void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t instead_of) {
+void ScanSet::open_one(std::vector<std::string> paths, bool together, uint64_t instead_of,
+                       std::string folder) {
     if (paths.empty()) return;
     const uint64_t id = next_id_++;
     ScanRow row;
     row.id = id;
     row.stage = "opening";
     row.paths = paths;
+    row.folder = std::move(folder);
     const auto place = std::ranges::find(rows_, instead_of, &ScanRow::id);
     const bool full = rows_.size() >= kMostScans;
     if (full) {
@@ -276,7 +287,8 @@ void ScanSet::take_opened() {
         if (!row) continue;  // removed meanwhile; a build that has not started is dropped at once
         if (one && !one->instead.empty()) {
             if (one->together) {
-                open_one(std::move(one->instead), true, id);
+                std::string folder = row->paths.size() == 1 ? row->paths.front() : std::string();
+                open_one(std::move(one->instead), true, id, std::move(folder));
             } else {
                 for (std::string& path : one->instead) open_one({std::move(path)}, false, id);
             }

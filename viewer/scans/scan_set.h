@@ -17,6 +17,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/job_queue.h"
 #include "viewer/inputs/input.h"
+#include "viewer/opening/site.h"
 
 namespace lucarne::viewer {
 
@@ -33,6 +34,7 @@ enum class ScanState {
 struct ScanRow {
     uint64_t id = 0;
     std::vector<std::string> paths;
+    std::string folder;  ///< whose scans these are, if one folder was opened; empty otherwise
     ScanState state = ScanState::opening;
     bool visible = true;
     uint64_t points = 0;            ///< number of points in its files
@@ -43,7 +45,7 @@ struct ScanRow {
     double share = 0;               ///< finished share of the stage, 0 to 1
     std::optional<Error> error;     ///< why it failed or was not finished
 
-    std::string name() const;  ///< the first file's name and the number of further files
+    std::string name() const;  ///< the folder or first file, and the number of files
     bool busy() const {
         return state == ScanState::opening || state == ScanState::sample || state == ScanState::converting;
     }
@@ -53,6 +55,7 @@ struct ScanRow {
 struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
+    Site site;
     std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;
     double scene_size() const { return std::max(glm::distance(box[0], box[1]), 1e-6); }  ///< its diagonal
@@ -100,7 +103,8 @@ class ScanSet {
     struct Item;
     struct Shared;
     struct Joined;
-    void open_one(std::vector<std::string> paths, bool together, uint64_t instead_of = 0);
+    void open_one(std::vector<std::string> paths, bool together, uint64_t instead_of = 0,
+                  std::string folder = {});
     void push_opening(uint64_t id, InputOptions how, bool together, uint64_t sample_points);
     void take_opened();
     void take_builds();

@@ -6,6 +6,7 @@
 
 #include "viewer/camera/camera.h"
 #include "viewer/picking/pick.h"
+#include "viewer/ui/side_bar.h"
 
 namespace lucarne::viewer {
 
@@ -37,6 +38,15 @@ inline CameraRig::Ray cursor_ray(const CameraRig& rig) {
     const ImGuiIO& io = ImGui::GetIO();
     return rig.ray({2.0 * io.MousePos.x / io.DisplaySize.x - 1, 1 - 2.0 * io.MousePos.y / io.DisplaySize.y},
                    static_cast<double>(io.DisplaySize.x) / io.DisplaySize.y);
+}
+
+/// Returns the window's shape, and the part of it beside the side bar and below the menu bar.
+inline PictureShape picture_shape(const SideBar& side_bar) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    PictureShape shape{static_cast<double>(size.x) / size.y, {}};
+    shape.free.left = -1 + 2 * side_bar.pixels(ImGui::GetFontSize(), size.x) / size.x;
+    shape.free.top = 1 - 2 * static_cast<double>(ImGui::GetFrameHeight()) / size.y;
+    return shape;
 }
 
 /// Returns a length for drawing over the picture: `dots` pixels on a screen of scale 1, scaled with the text.

@@ -10,6 +10,7 @@
 #include "viewer/camera/navigation.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/presets.h"
+#include "viewer/opening/site.h"
 #include "viewer/ui/side_bar.h"
 
 namespace lucarne::viewer {
@@ -23,6 +24,7 @@ struct View {
     std::array<glm::dvec3, 2> box{};  ///< bounding box of the open scans, world units
     CameraRig rig;
     gi::SceneCamera home;  ///< the starting view
+    Site site;             ///< what the open scans show
     Navigation navigation;
 
     gi::Scene scene;

@@ -114,6 +114,7 @@ void ViewSession::take_extent() {
     if (!start) return;
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;
+    model_.view.site = start->site;
     model_.view.rig.set_clearance(model_.view.scene_size);
     const bool first = !std::exchange(placed_, true);
     if (first) model_.view.navigation.set_scene(start->scene_size(), start->metres_per_unit);

@@ -27,7 +27,9 @@ struct E57 {
 
 class E57Reader final : public PointReader {
  public:
-    explicit E57Reader(const E57& e57) : e57_(e57) {}
+    explicit E57Reader(const E57& e57) : E57Reader(e57, 0, e57.document.scans.size()) {}
+    /// Reads only the scans [first, last).
+    E57Reader(const E57& e57, size_t first, size_t last) : e57_(e57), next_(first), last_(last) {}
 
     Result<size_t> read(PointBatch& batch, size_t most) override {
         const Schema& schema = e57_.layout.schema;
@@ -66,8 +68,8 @@ class E57Reader final : public PointReader {
  private:
     bool open_next() {
         const auto& scans = e57_.document.scans;
-        while (next_ < scans.size() && scans[next_].records == 0) ++next_;
-        if (next_ == scans.size()) return false;
+        while (next_ < last_ && scans[next_].records == 0) ++next_;
+        if (next_ >= last_) return false;
         scan_ = next_++;
         records_.emplace(e57_.file, e57_.sections[scan_], scans[scan_], e57_.salvage);
         return true;
@@ -75,7 +77,7 @@ class E57Reader final : public PointReader {
 
     const E57& e57_;
     std::optional<e57::RecordReader> records_;
-    size_t scan_ = 0, next_ = 0;
+    size_t scan_ = 0, next_, last_;
     uint64_t dropped_ = 0, invalid_ = 0;
     Losses lost_;
 };
@@ -145,6 +147,13 @@ class E57Source final : public PointSource {
     const Schema& schema() const override { return e57_.layout.schema; }
     const ScanInfo& info() const override { return info_; }
     Result<std::unique_ptr<PointReader>> open() const override { return std::make_unique<E57Reader>(e57_); }
+    size_t parts() const override { return std::max<size_t>(1, e57_.document.scans.size()); }
+    Result<void> front(size_t part, size_t most, PointBatch& batch) const override {
+        E57Reader reader(e57_, part, std::min(part + 1, e57_.document.scans.size()));
+        batch.bytes.clear();
+        batch.count = 0;
+        return read_up_to(reader, schema(), batch_limit(schema(), most), batch);
+    }
 
  private:
     E57 e57_;

@@ -147,6 +147,17 @@ class LasSource final : public PointSource {
         return std::make_unique<WatchedReader>(std::move(reader), info_.path, bounds_, schema_, warned_);
     }
     bool seekable() const override { return !compressed_; }
+    size_t parts() const override {
+        return compressed_ ? std::max<size_t>(1, compressed_->chunks.size()) : 1;
+    }
+    Result<void> front(size_t part, size_t most, PointBatch& batch) const override {
+        if (!compressed_ || compressed_->chunks.empty()) return PointSource::front(part, most, batch);
+        LUCARNE_ASSIGN(const auto raw, laz::decode_chunk(*compressed_, part, batch_limit(schema_, most)));
+        batch.count = raw.size() / header_.record_length;
+        batch.bytes.resize(batch.count * schema_.stride);
+        las::decode(header_, raw.data(), batch.count, batch.bytes.data(), schema_.stride);
+        return {};
+    }
     Result<void> pick(std::span<const uint64_t> indices, PointBatch& batch) const override {
         if (compressed_) return PointSource::pick(indices, batch);
         batch.bytes.resize(indices.size() * schema_.stride);
@@ -198,9 +209,9 @@ class LasSource final : public PointSource {
     /// read in order, so then a block is the front of a chunk.
     Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
         if (compressed_) {
-            constexpr uint64_t kDecoded = 400'000, kDecodedBytes = uint64_t{16} << 20;  // in all; per block
+            constexpr uint64_t kDecoded = 4096, kDecodedBytes = uint64_t{16} << 20;
             const size_t chunk = block * compressed_->chunks.size() / blocks;
-            const uint64_t most = std::min(kDecoded / blocks, kDecodedBytes / header_.record_length);
+            const uint64_t most = std::min(kDecoded, kDecodedBytes / header_.record_length);
             return laz::decode_chunk(*compressed_, chunk, std::max<uint64_t>(most, 1));
         }
         constexpr uint64_t kBlockPoints = 256;

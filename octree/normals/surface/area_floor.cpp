@@ -42,10 +42,20 @@ std::array<float, kPrefixSteps> area_floors(std::span<const float> inherited_are
     std::array<float, kPrefixSteps> floors{};
     if (!(surface > 0) || !std::isfinite(surface)) return floors;
     const size_t own = own_areas_in_prefix_order.size();
+    const auto is_known = [](float a) { return a > 0 && std::isfinite(a); };
+    if (std::none_of(inherited_areas.begin(), inherited_areas.end(), is_known) &&
+        std::none_of(own_areas_in_prefix_order.begin(), own_areas_in_prefix_order.end(), is_known)) {
+        // All have the same share, as where the cache has no areas: nothing to bisect.
+        for (size_t step = 0; step < kPrefixSteps; ++step) {
+            const size_t shown = inherited_areas.size() + std::min(own, std::max<size_t>(1, own >> step));
+            if (shown > 0) floors[step] = static_cast<float>(surface / static_cast<double>(shown));
+        }
+        return floors;
+    }
     std::vector<float> areas;
     areas.reserve(inherited_areas.size() + own);
     const auto add = [&](std::span<const float> values) {
-        for (const float a : values) areas.push_back(a > 0 && std::isfinite(a) ? a : 0.0f);
+        for (const float a : values) areas.push_back(is_known(a) ? a : 0.0f);
     };
     float previous = 0.0f;
     for (size_t step = 0; step < kPrefixSteps; ++step) {

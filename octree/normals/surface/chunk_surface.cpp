@@ -13,6 +13,7 @@
 #include "octree/normals/surface/crease.h"
 #include "octree/normals/surface/surface_sample.h"
 #include "octree/normals/surface/surface_share.h"
+#include "octree/tree/footprint.h"
 
 namespace lucarne::octree {
 namespace {
@@ -44,6 +45,8 @@ constexpr double kVerySparse = 24, kFarWindow = 4;
 constexpr float kCrowded = 8;
 /// A very sparse site that is more crowded than this is an outlier.
 constexpr float kMostCrowded = 64;
+/// At an outer edge a disc may reach this many spacings over it.
+constexpr float kOverEdge = 0.5f;
 constexpr size_t kStepSites = 256;  ///< sites whose steps are compared: a piece of the Morton curve
 
 /// The median distance from one site to the next along the Morton curve, for each kStepSites sites.
@@ -64,6 +67,14 @@ std::vector<double> median_steps(const ChunkNeighbours& neighbours) {
         }
     });
     return medians;
+}
+
+/// Returns the area with which the disc of a point reaches kOverEdge over the line where its side ends.
+float edge_area(const Side& side, float spacing) {
+    const auto n = glm::vec3(side.plane.normal);
+    const float slope = glm::length(side.other - n * glm::dot(side.other, n));
+    const float radius = std::abs(side.offset) / slope + kOverEdge * spacing;
+    return std::numbers::pi_v<float> / kCoverageRaw * radius * radius;
 }
 
 /// Estimates the surface at one site after another; one per thread.
@@ -167,7 +178,8 @@ class SiteEstimator {
             if (area > most && !fitter_.lies_in_plane_of_others(nearest)) area = most;
         }
         surface_.normals[site] = whole != glm::vec3(0.0f) ? whole : fit.normal;
-        if (whole != glm::vec3(0.0f)) sides_.push_back({site, fit.normal});
+        if (whole != glm::vec3(0.0f))
+            sides_.push_back({site, fit.normal, side->rises, edge_area(*side, spacing)});
         if (apart) apart_.push_back(site);
         if (crowding > kCrowded) crowded_.push_back({site, crowding});
         return 0;

@@ -32,6 +32,8 @@ struct CrowdedSite {
 struct SideNormal {
     uint32_t site = 0;
     glm::vec3 normal{0.0f};  ///< the sign is arbitrary
+    bool rises = false;      ///< beyond the crease the surface turns to the side of `normal`
+    float edge_area = 0;     ///< largest area of the site if the crease is an outer edge
 };
 
 /// The estimated surface at each site of a chunk.

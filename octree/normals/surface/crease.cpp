@@ -91,6 +91,7 @@ std::optional<Side> fit_side(const Patch& patch, const SurfaceFit& whole, float 
     const bool below = glm::dot(other.normal, middle) < offset, across = below != (0 < offset);
     const float least = kLeastOffset * spacing;
     side.offset = static_cast<float>(offset);
+    side.rises = glm::dot(side.plane.normal, middle_of(rest)) > level;
     if (std::abs(side.offset) < (across ? std::max(2 * limit, least) : least))
         side.offset = below ? least : -least;
     return side;

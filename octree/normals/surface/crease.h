@@ -19,6 +19,7 @@ struct Side {
     Range layer{0, 0};      ///< their heights over the tangent plane through the point
     glm::vec3 other{0.0f};  ///< the normal of the plane of all other points
     float offset = 0;       ///< other . x = offset on that plane; x is relative to the point
+    bool rises = false;     ///< the other points lie on the side of `plane` to which its normal points
 };
 
 /// Finds the side of a crease on which a point lies. `whole`: the fit without creases. `spacing`: the

@@ -1,15 +1,19 @@
 #include "octree/growing/growing_build.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <numbers>
 #include <semaphore>
 #include <set>
+#include <utility>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "io/core/random.h"
 #include "octree/cache/cache.h"
+#include "octree/growing/sample.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/footprint.h"
 #include "tests/octree/test_sources.h"
@@ -234,6 +238,100 @@ TEST(GrowingBuild, AFailedBuildSaysWhyAndItsLastSourceStays) {
     EXPECT_NE((*build)->state().error.error().line().find("does not exist"), std::string::npos);
     EXPECT_EQ((*build)->state().source, first);
     EXPECT_FALSE(numbers_in(*first).empty());
+}
+
+/// Wraps a scan whose points cannot be read.
+class BrokenSource final : public io::PointSource {
+ public:
+    explicit BrokenSource(std::unique_ptr<io::PointSource> whole) : whole_(std::move(whole)) {}
+    const io::Schema& schema() const override { return whole_->schema(); }
+    const io::ScanInfo& info() const override { return whole_->info(); }
+    Result<std::unique_ptr<io::PointReader>> open() const override {
+        return rejected("broken", "has a chunk of compressed points that is damaged");
+    }
+
+ private:
+    std::unique_ptr<io::PointSource> whole_;
+};
+
+GrowingOptions growing_options(const std::filesystem::path& output) {
+    GrowingOptions options = options_for(output);
+    options.first_points = 5'000;
+    options.first_read = 20'000;
+    options.sample_points = 40'000;
+    return options;
+}
+
+TEST(GrowingBuild, ItsSampleGrowsWhileTheBuildReads) {
+    const TempFolder folder;
+    constexpr uint64_t kPoints = 400'000;
+    // The build cannot read the last point before the sample has grown. Samples do not read that far.
+    std::promise<void> grown;
+    const auto waits = grown.get_future().share();
+    io::Schema schema;
+    schema.position = io::PositionType::f64;
+    schema.stride = 24;
+    schema.add("number", io::ScalarType::u64);
+    GrowingBuild::Inputs inputs;
+    inputs.push_back(
+        std::make_unique<ComputedSource>(schema, kPoints, [=](uint64_t index, std::byte* record) {
+            if (index == kPoints - 1) waits.wait_for(std::chrono::minutes(1));
+            Random random(3, index);
+            for (int axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, 20 * random.uniform());
+            io::store(record + 24, index);
+        }));
+    const auto build = GrowingBuild::open(std::move(inputs), growing_options(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    std::vector<uint64_t> points = {(*build)->state().source->nodes()[0].subtree_count};
+    EXPECT_EQ(points.front(), 5'000u);
+    bool told = false;
+    (*build)->begin([&] {
+        const auto source = (*build)->state().source;
+        points.push_back(source->nodes()[0].subtree_count);
+        EXPECT_TRUE(is_directory(source->nodes()));
+        if (points.back() == 40'000 && !std::exchange(told, true)) grown.set_value();
+    });
+    (*build)->wait();
+    EXPECT_TRUE((*build)->state().finished);
+    EXPECT_TRUE(std::is_sorted(points.begin(), points.end())) << "a later source has fewer points";
+    EXPECT_THAT(std::set<uint64_t>(points.begin(), points.end()),
+                ::testing::IsSupersetOf({5'000u, 10'000u, 20'000u, 40'000u, unsigned{kPoints}}));
+}
+
+TEST(GrowingBuild, IsStoppedWhileItsSampleGrows) {
+    const TempFolder folder;
+    const auto build = GrowingBuild::open(inputs_of(500'000, false), growing_options(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    (*build)->begin([] {});
+    (*build)->stop();
+    (*build)->wait();
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.luc"));
+}
+
+TEST(Sketch, OneBrokenInputAmongManyIsLeftOut) {
+    for (const bool all : {false, true}) {
+        GrowingBuild::Inputs inputs;
+        std::vector<const io::PointSource*> sources;
+        for (int i = 0; i < 30; ++i) {
+            inputs.push_back(scene(10'000));
+            if (all || i == 7) inputs.back() = std::make_unique<BrokenSource>(std::move(inputs.back()));
+            sources.push_back(inputs.back().get());
+        }
+        const auto unifier = Unifier::create(sources);
+        ASSERT_TRUE(unifier);
+        const auto sketch = take_sketch(*unifier, 3'000, 30'000);
+        ASSERT_EQ(sketch.has_value(), !all);
+        if (!sketch) continue;
+        const io::Attribute* scan = unifier->schema().find(io::names::scan);
+        ASSERT_TRUE(scan);
+        std::set<int> seen;
+        for (size_t i = 0; i < sketch->positions.size(); ++i)
+            seen.insert(io::load<uint16_t>(&sketch->records[i * unifier->schema().stride + scan->offset]));
+        EXPECT_EQ(seen.size(), 29u);
+        EXPECT_FALSE(seen.contains(7));
+        EXPECT_GE(sketch->positions.size(), 2'900u);
+        EXPECT_LE(sketch->positions.size(), 3'600u);
+    }
 }
 
 }  // namespace

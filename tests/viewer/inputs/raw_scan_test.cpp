@@ -87,6 +87,18 @@ TEST_F(RawScan, TheFirstPictureConvertsNothing) {
     EXPECT_EQ(files(), before + 1);
 }
 
+TEST_F(RawScan, OneBrokenFileAmongSeveralDoesNotStopTheFirstPicture) {
+    const std::string broken = folder_ / "b.las", other = folder_ / "c.las";
+    std::ofstream(broken) << bytes_of(scan_).substr(0, 300);
+    generate(other, 2);
+    const Outcome outcome =
+        lucarne("render --first " + scan_ + " " + broken + " " + other + kSmall + "-o " + picture_);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("b.las"));
+    EXPECT_THAT(outcome.output, HasSubstr("it is left out"));
+    EXPECT_NE(lucarne("render --first " + broken + " " + broken + kSmall + "-o " + picture_).code, 0);
+}
+
 TEST_F(RawScan, InAFolderThatCannotBeWrittenItsCacheGoesToTheUsersOwn) {
     const std::string read_only = folder_ / "scans", cache = folder_ / "cache", out = folder_ / "out";
     for (const std::string& made : {read_only, cache, out}) std::filesystem::create_directory(made);

@@ -52,5 +52,36 @@ TEST(Actions, RunByTheirKeyWithWhatIsHeldDownBesideItAndOnlyWhereEnabled) {
     EXPECT_TRUE(model.commands.empty()) << "there is no picture to save";
 }
 
+TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
+    ViewModel model(10);
+    const auto actions = bound_actions(model);
+    const KeyChord colours{GLFW_KEY_1, GLFW_MOD_SHIFT}, daylight{GLFW_KEY_2, GLFW_MOD_SHIFT};
+    run_actions(actions, std::array{daylight});
+    EXPECT_TRUE(model.view.scene.lights.empty()) << "nothing is open";
+    model.view.site.outline = {glm::dvec3(0), glm::dvec3(1)};
+    model.view.site.box = {glm::dvec3(0), glm::dvec3(1)};
+    model.view.method.engine = "direct";
+    run_actions(actions, std::array{daylight});
+    ASSERT_EQ(model.view.scene.lights.size(), 1u);
+    EXPECT_TRUE(model.view.scene.environment);
+    EXPECT_EQ(model.view.method.engine, "direct") << "the chosen engine stays";
+    run_actions(actions, std::array{colours});
+    EXPECT_EQ(model.view.method.engine, "unlit");
+    run_actions(actions, std::array{daylight});
+    EXPECT_EQ(model.view.method.engine, "vpl");
+}
+
+TEST(Actions, GoInsideIsOnlyPossibleWhereARoomWasFound) {
+    ViewModel model(10);
+    for (const BoundAction& action : bound_actions(model)) {
+        if (std::string(action.name) != "Go inside") continue;
+        EXPECT_FALSE(action.enabled());
+        model.view.site.inside.emplace();
+        EXPECT_TRUE(action.enabled());
+        return;
+    }
+    FAIL() << "there is no such action";
+}
+
 }  // namespace
 }  // namespace lucarne::viewer

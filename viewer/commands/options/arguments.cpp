@@ -1,13 +1,55 @@
 #include "viewer/commands/options/arguments.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <set>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace lucarne::viewer {
+namespace {
+
+/// Returns how many letters have to be inserted, deleted or replaced to turn one word into the other
+/// (Levenshtein 1966).
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t above_left = std::exchange(row[0], i + 1);
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t replaced = above_left + (a[i] != b[j]);
+            above_left = row[j + 1];
+            row[j + 1] = std::min({replaced, above_left + 1, row[j] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// Returns a remedy that names the word most like a mistyped one, or `otherwise` if none is like it.
+std::string did_you_mean(std::string_view word, std::span<const std::string> known,
+                         const std::string& otherwise) {
+    const size_t most = std::max<size_t>(1, word.size() / 3);
+    const auto best = std::ranges::min_element(
+        known, {}, [&](const std::string& name) { return edit_distance(word, name); });
+    if (best == known.end() || edit_distance(word, *best) > most) return otherwise;
+    return fmt::format("did you mean {}?", *best);
+}
+
+/// Returns the long names of a command's options, with their hyphens.
+std::vector<std::string> option_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+}  // namespace
 
 Argument& Argument::required(bool is_required) {
     option_->required(is_required);
@@ -148,6 +190,8 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
     : app_(std::make_unique<CLI::App>(description)) {
     app_->name(program);
     app_->require_subcommand(1);
+    app_->set_version_flag("--version", fmt::format("{} {}", program, LUCARNE_VERSION),
+                           "Print the version and exit");
 }
 
 CommandLine::~CommandLine() = default;
@@ -157,8 +201,31 @@ Arguments CommandLine::add(const std::string& name, const std::string& help) {
 }
 
 Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    std::vector<std::string> names;
+    for (const Arguments& command : commands_) names.push_back(command.app_->get_name());
+    const bool a_word = !words.empty() && !words[0].starts_with('-');
+    if (a_word && std::ranges::find(names, words[0]) == names.end()) {
+        std::error_code unreadable;
+        if (std::filesystem::exists(words[0], unreadable)) {
+            words.insert(words.begin(), "view");
+        } else {
+            return bad_arguments("arguments", fmt::format("'{}' is neither a command nor a file", words[0]),
+                                 did_you_mean(words[0], names, "see lucarne --help"));
+        }
+    }
+    std::ranges::reverse(words);  // as CLI11 takes them
     try {
-        app_->parse(argc, argv);
+        app_->parse(words);
+    } catch (const CLI::ExtrasError& error) {
+        std::string remedy = "see lucarne --help";
+        for (const Arguments& command : commands_) {
+            if (!*command.app_) continue;
+            remedy = fmt::format("see lucarne {} --help", command.app_->get_name());
+            const auto extras = command.app_->remaining();
+            if (!extras.empty()) remedy = did_you_mean(extras[0], option_names(*command.app_), remedy);
+        }
+        return bad_arguments("arguments", error.what(), remedy);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() != 0) return bad_arguments("arguments", error.what(), "see lucarne --help");
         app_->exit(error);  // prints the help

@@ -9,6 +9,8 @@
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
 #include "octree/tree/robust_bounds.h"
+#include "viewer/opening/first_view.h"
+#include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -71,6 +73,30 @@ std::string preset_names() {
     return names;
 }
 
+std::string mood_names() {
+    std::string names;
+    for (const MoodInfo& mood : moods()) names += fmt::format("\n  {:<14}{}", mood.name, mood.help);
+    return names;
+}
+
+/// Lights the scene for what the scan shows. Scenes without cameras of their own get the first view.
+Result<void> take_mood(const DrawingOptions& options, const octree::NodeSource& source, double aspect,
+                       bool own_cameras, gi::Scene& scene) {
+    LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
+    const Site site = survey_site(source);
+    const PictureShape shape{aspect, {}};
+    if (!own_cameras) {
+        scene.cameras = {first_view(site, shape)};
+        const gi::SceneCamera outside = outside_view(site, shape);
+        if (outside.name != scene.cameras[0].name) scene.cameras.push_back(outside);
+        const glm::dvec3& eye = scene.cameras[0].position;
+        log::info("{}: camera '{}' at {:.2f} {:.2f} {:.2f}", site_name(site.kind), scene.cameras[0].name,
+                  eye.x, eye.y, eye.z);
+    }
+    set_mood(scene, mood, site, scene.cameras[0]);
+    return {};
+}
+
 bool all_have_normals(const octree::NodeSource& source) {
     return std::ranges::all_of(source.roots(), [&](uint32_t root) {
         const io::Schema& schema = source.part_of(root).header.schema;
@@ -98,6 +124,8 @@ void warn_of_extent(const octree::SourceHeader& header) {
 void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
         .type_name("FILE");
+    command.add("--mood", options.mood, "Light for what the scan shows, and a camera to see it; see below")
+        .type_name("NAME");
     command.add("--engine", options.render.engine, "Method of lighting, see below")
         .show_default(std::string(gi::default_engine().name))
         .type_name("NAME");
@@ -122,7 +150,7 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
                  "Do not load nodes ahead of a moving camera (for measurements)");
     add_look_options(command, options.look);
     add_light_options(command, options.light);
-    command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names());
+    command.footer("Engines:" + engine_names() + "\nPresets:" + preset_names() + "\nMoods:" + mood_names());
 }
 
 Result<void> take_render_settings(DrawingOptions& options) {
@@ -138,6 +166,10 @@ Result<void> take_render_settings(DrawingOptions& options) {
     }
     gi::RenderSettings usual;
     usual.engine = gi::default_engine().name;
+    if (!options.mood.empty()) {
+        LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
+        usual.engine = engine_of(mood);
+    }
     usual.preset = kDefaultPreset;
     fill(options.render, usual);
     return {};
@@ -168,15 +200,18 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
     const auto [low, high] = octree::robust_bounds(source);
     LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
-    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit,
-                                        static_cast<double>(size.width) / size.height);
+    const double aspect = static_cast<double>(size.width) / size.height;
+    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit, aspect);
+    bool own_cameras = false;
     if (!options.scene.empty()) {
         const auto cameras = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
-        if (scene.cameras.empty()) scene.cameras = cameras;
+        own_cameras = !scene.cameras.empty();
+        if (!own_cameras) scene.cameras = cameras;
         if (scene.comparison && scene.comparison->engine.empty())
             scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     }
+    if (!options.mood.empty()) LUCARNE_TRY(take_mood(options, source, aspect, own_cameras, scene));
     if (options.exposure) scene.exposure_ev = options.exposure;
     LUCARNE_TRY(apply(options.look, scene.look));
     LUCARNE_TRY(apply(options.light, scene));

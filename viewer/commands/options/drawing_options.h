@@ -18,6 +18,7 @@ namespace lucarne::viewer {
 /// The options that `render`, `view` and `fly` share: lighting, picture size and memory caps.
 struct DrawingOptions {
     std::string scene;          ///< path; empty: gi::default_scene
+    std::string mood;           ///< light and camera for what the scan shows; empty: the scene's
     gi::RenderSettings render;  ///< engine, preset, and single settings that override the preset
     std::string size = "1280x720";
     std::string points;
@@ -28,9 +29,9 @@ struct DrawingOptions {
     bool no_prefetch = false;
 };
 
-/// Declares --scene --engine --preset --size --points --exposure --memory --device-memory --no-prefetch, the
-/// options of every engine, and those of add_look_options() and add_light_options(). `options` must outlive
-/// the command.
+/// Declares --scene --mood --engine --preset --size --points --exposure --memory --device-memory
+/// --no-prefetch, the options of every engine, and those of add_look_options() and add_light_options().
+/// `options` must outlive the command.
 void add_drawing_options(Arguments& command, DrawingOptions& options);
 
 /// Completes options.render: what the command line leaves open comes from the scene file, else from the
@@ -47,7 +48,9 @@ struct Drawing {
 /// unknown preset or engine, a malformed size or amount of memory.
 Result<Drawing> resolve(const DrawingOptions& options);
 
-/// Loads the scene file, or makes the default scene for this cloud. The scene has at least one camera.
+/// Loads the scene file, or makes the default scene for this cloud. The scene has at least one camera. A mood
+/// replaces the scene's light, and the cameras of scenes without any: the first one is then the first view of
+/// what the scan shows, and is logged. `size` in the options is the picture's.
 /// Errors: those of reading the file; ErrorKind::arguments if no point has the attribute that colours are
 /// requested from.
 Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);

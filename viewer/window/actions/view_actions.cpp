@@ -5,6 +5,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "viewer/opening/first_view.h"
+#include "viewer/ui/on_screen.h"
 #include "viewer/window/actions/actions.h"
 
 namespace lucarne::viewer {
@@ -18,7 +20,16 @@ void go_home(ViewModel& model) {
     model.view.go_to(model.view.home);
 }
 void fit(ViewModel& model) {
-    model.view.rig.fit(model.view.box);
+    model.view.rig.fit(model.view.box, picture_shape(model.view.side_bar));
+}
+void go_inside(ViewModel& model) {
+    model.view.go_to(inside_view(model.view.site, picture_shape(model.view.side_bar)));
+}
+bool has_inside(const ViewModel& model) {
+    return model.view.site.inside.has_value();
+}
+void go_outside(ViewModel& model) {
+    model.view.go_to(outside_view(model.view.site, picture_shape(model.view.side_bar)));
 }
 bool has_picture(const ViewModel& model) {
     return model.view.picture != nullptr;
@@ -28,7 +39,7 @@ bool has_picture(const ViewModel& model) {
 template <int kYaw, int kPitch>
 void look(ViewModel& model) {
     model.view.rig.look_along(kYaw * kRight, kPitch * kRight);
-    model.view.rig.fit(model.view.box);
+    fit(model);
 }
 
 void toggle_projection(ViewModel& model) {
@@ -77,6 +88,8 @@ std::span<const Action<ViewModel>> view_actions() {
     static constexpr std::array kActions = {
         Entry{{GLFW_KEY_HOME}, kMenu, "Back to the first view", go_home, has_picture},
         Entry{{GLFW_KEY_0}, kMenu, "Fit all", fit, has_picture},
+        Entry{{GLFW_KEY_END}, kMenu, "Go inside", go_inside, has_inside},
+        Entry{{GLFW_KEY_END, GLFW_MOD_SHIFT}, kMenu, "Go outside", go_outside, has_picture},
         Entry{{GLFW_KEY_9}, kMenu, "Orthographic", toggle_projection, nullptr, orthographic},
         Entry{{GLFW_KEY_1}, kSides, "Front", look<1, 0>, has_picture},
         Entry{{GLFW_KEY_2}, kSides, "Back", look<-1, 0>, has_picture},

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "gi/engines/vpl/shadow_maps/native/map_frame.h"
 #include "gi/engines/vpl/shadow_maps/queue.h"
@@ -42,10 +43,24 @@ struct CasterTables {
     }
 };
 
+/// Tables of the rays through the middles of a map's columns, u from -1 to 1; rows have the same. They save a
+/// division at each texel.
+struct MapColumns {
+    std::vector<float> squares, rays;  ///< u^2 and 2 u
+    explicit MapColumns(uint32_t side) : squares(side), rays(side) {
+        for (uint32_t x = 0; x < side; ++x) {
+            const float u = (2 * static_cast<float>(x) + 1) / static_cast<float>(side) - 1;
+            squares[x] = u * u;
+            rays[x] = 2 * u;
+        }
+    }
+};
+
 struct SplatJob {
     const SplatMemory& memory;
     const SplatLayout& layout;
     const CasterTables& tables;
+    const MapColumns& columns;
     uint32_t first_map, map_end;
 };
 
@@ -270,24 +285,25 @@ HWY_INLINE void draw(const SplatJob& job, const MapDiscs& discs, size_t lane, ui
     const RowFloats df;
     const RowWords du;
     const auto row_of = [&](float v) { return hn::Set(df, v); };
-    const Row zero = hn::Zero(df), one = row_of(1.0f), two = row_of(2.0f);
+    const Row zero = hn::Zero(df), one = row_of(1.0f);
     const Row cx = row_of(discs.x[lane]), cy = row_of(discs.y[lane]), cz = row_of(discs.z[lane]);
     const Row nx = row_of(discs.nx[lane]), ny = row_of(discs.ny[lane]), nz = row_of(discs.nz[lane]);
     const Row offset = row_of(discs.offset[lane]), radius2 = row_of(discs.radius2[lane]),
               core2 = row_of(discs.core2[lane]), lowest = row_of(discs.lowest[lane]);
     const auto surface = hn::Set(du, discs.surface[lane]);
-    const float side = static_cast<float>(job.layout.side);
-    const int first_column = discs.x0[lane] & ~7;  // vectors stay within their row
+    // Vectors begin at the disc, so most discs need one in each row. The last one of a row may overlap the
+    // one before it: a texel that is taken twice keeps its value.
+    const int last_vector = static_cast<int>(job.layout.side) - kRowLanes;
     const Row begin = row_of(static_cast<float>(discs.x0[lane])),
               end = row_of(static_cast<float>(discs.x1[lane]));
     for (int y = discs.y0[lane]; y <= discs.y1[lane]; ++y) {
-        const Row v = row_of((2 * static_cast<float>(y) + 1) / side - 1), v2 = hn::Mul(v, v),
-                  ray_y = hn::Mul(two, v);
-        for (int x = first_column; x <= discs.x1[lane]; x += kRowLanes) {
+        const Row v2 = row_of(job.columns.squares[static_cast<size_t>(y)]),
+                  ray_y = row_of(job.columns.rays[static_cast<size_t>(y)]);
+        for (int next = discs.x0[lane]; next <= discs.x1[lane]; next += kRowLanes) {
+            const int x = std::min(next, last_vector);
             const Row column = hn::Iota(df, static_cast<float>(x));
-            const Row u = hn::Sub(hn::Div(hn::Add(hn::Mul(two, column), one), row_of(side)), one);
-            const Row uv2 = hn::Add(hn::Mul(u, u), v2);
-            const Row ray_x = hn::Mul(two, u), ray_z = hn::Sub(one, uv2);
+            const Row uv2 = hn::Add(hn::LoadU(df, job.columns.squares.data() + x), v2);
+            const Row ray_x = hn::LoadU(df, job.columns.rays.data() + x), ray_z = hn::Sub(one, uv2);
             const Row t =
                 hn::Div(offset, hn::Add(hn::Add(hn::Mul(nx, ray_x), hn::Mul(ny, ray_y)), hn::Mul(nz, ray_z)));
             const Row hit_z = hn::Mul(t, ray_z);
@@ -356,10 +372,11 @@ namespace lucarne::gi::vpl::native {
 HWY_EXPORT(DrawMaps);
 void splat(const SplatMemory& memory, const SplatLayout& layout) {
     const CasterTables tables(layout.cut_size, layout.splat_angle);
+    const MapColumns columns(layout.side);
     const auto maps = static_cast<uint32_t>(memory.lights.size());
     parallel_ranges(maps, kGroup, [&](size_t first, size_t end) {
         HWY_DYNAMIC_DISPATCH(DrawMaps)
-        ({memory, layout, tables, static_cast<uint32_t>(first), static_cast<uint32_t>(end)});
+        ({memory, layout, tables, columns, static_cast<uint32_t>(first), static_cast<uint32_t>(end)});
     });
 }
 

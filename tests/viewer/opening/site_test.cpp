@@ -1,0 +1,198 @@
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "viewer/opening/first_view.h"
+#include "viewer/opening/moods.h"
+#include "viewer/opening/occupancy.h"
+
+namespace lucarne::viewer {
+namespace {
+
+using glm::dvec3;
+using Box = std::array<dvec3, 2>;
+
+/// Points on the faces of a box, evenly by area.
+void add_faces(std::vector<dvec3>& points, const Box& box, size_t count, bool with_roof, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit;
+    const dvec3 side = box[1] - box[0];
+    const double area[3] = {side.y * side.z, side.x * side.z, side.x * side.y};
+    while (count > 0) {
+        const double pick = unit(random) * (area[0] + area[1] + area[2]);
+        const int axis = pick < area[0] ? 0 : pick < area[0] + area[1] ? 1 : 2;
+        const bool far = unit(random) < .5;
+        if (axis == 2 && far && !with_roof) continue;
+        dvec3 p = box[0] + side * dvec3(unit(random), unit(random), unit(random));
+        p[axis] = box[far][axis];
+        points.push_back(p);
+        --count;
+    }
+}
+
+std::vector<dvec3> terrain(size_t count) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit;
+    std::vector<dvec3> points;
+    for (size_t i = 0; i < count; ++i) {
+        const double x = 400 * unit(random), y = 400 * unit(random);
+        points.emplace_back(x, y, 20 * std::sin(x / 60) * std::cos(y / 80));
+    }
+    return points;
+}
+
+const Box kRoom = {dvec3(100, 200, 10), dvec3(105, 212, 13)};
+
+Site room(double metres_per_unit = 1) {
+    std::vector<dvec3> points;
+    const Box box = {kRoom[0] / metres_per_unit, kRoom[1] / metres_per_unit};
+    add_faces(points, box, 60000, true, 1);
+    return survey_site(points, box, metres_per_unit);
+}
+
+/// Where a point appears: -1 to 1 to the right and up.
+glm::dvec2 place(const gi::SceneCamera& camera, const dvec3& point, double aspect) {
+    const dvec3 forward = normalize(camera.target - camera.position);
+    const dvec3 right = normalize(cross(forward, camera.up)), up = cross(right, forward);
+    const dvec3 to = point - camera.position;
+    const double half = dot(to, forward) * std::tan(camera.vertical_fov / 2);
+    EXPECT_GT(half, 0);
+    return {dot(to, right) / (half * aspect), dot(to, up) / half};
+}
+
+TEST(Site, ARoomIsSeenFromWithinAlongItsLength) {
+    for (const double unit : {1.0, .3048}) {
+        const Site site = room(unit);
+        ASSERT_EQ(site.kind, SiteKind::interior);
+        ASSERT_TRUE(site.inside);
+        const dvec3 eye = site.inside->eye * unit;
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GT(eye[axis], kRoom[0][axis]) << axis;
+            EXPECT_LT(eye[axis], kRoom[1][axis]) << axis;
+        }
+        EXPECT_NEAR(eye.z - kRoom[0].z, 1.6, .3);
+        EXPECT_GT(std::abs(site.inside->ahead.y), .9) << "along the longer side";
+        EXPECT_GT(site.inside->free_ahead * unit, 8) << "from the far end";
+        ASSERT_FALSE(site.inside->lamps.empty());
+        for (const dvec3& lamp : site.inside->lamps) {
+            EXPECT_GT(lamp.z * unit, kRoom[0].z + 1.5);
+            EXPECT_LT(lamp.z * unit, kRoom[1].z);
+        }
+    }
+}
+
+TEST(Site, ARoomWithoutCeilingIsSeenFromOutside) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 60000, false, 2);
+    const Site site = survey_site(points, kRoom, 1);
+    EXPECT_NE(site.kind, SiteKind::interior);
+    EXPECT_FALSE(site.inside);
+}
+
+TEST(Site, AHouseOnItsGroundIsSeenFromOutsideAndCanBeEntered) {
+    std::vector<dvec3> points;
+    const Box house = {dvec3(0, 0, 0), dvec3(12, 9, 4)};
+    add_faces(points, house, 40000, true, 3);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-20, 32);
+    for (int i = 0; i < 60000; ++i) {
+        const double x = unit(random), y = unit(random);
+        if (x < -1 || x > 13 || y < -1 || y > 10) points.emplace_back(x, y, 0);
+    }
+    const Site site = survey_site(points, {dvec3(-20, -20, 0), dvec3(32, 32, 4)}, 1);
+    EXPECT_NE(site.kind, SiteKind::interior);
+    ASSERT_TRUE(site.inside);
+    EXPECT_GT(site.inside->eye.x, 0);
+    EXPECT_LT(site.inside->eye.x, 12);
+}
+
+TEST(Site, AMountainIsTerrain) {
+    const Site site = survey_site(terrain(50000), {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1);
+    EXPECT_EQ(site.kind, SiteKind::terrain);
+    EXPECT_FALSE(site.inside);
+}
+
+TEST(Site, BadCloudsGiveADefinedView) {
+    const double nan = std::nan("");
+    const std::vector<std::vector<dvec3>> clouds = {{}, {dvec3(3)}, {dvec3(nan), dvec3(1)}};
+    for (const auto& points : clouds)
+        for (const Box& box : {Box{dvec3(3), dvec3(3)}, Box{dvec3(INFINITY), dvec3(-INFINITY)},
+                               Box{dvec3(nan), dvec3(nan)}, Box{dvec3(0), dvec3(1e12, 1, 1)}}) {
+            const Site site = survey_site(points, box, 1);
+            const gi::SceneCamera camera = first_view(site, {});
+            EXPECT_TRUE(std::isfinite(length(camera.position) + length(camera.target)));
+            EXPECT_GT(distance(camera.position, camera.target), 0);
+        }
+}
+
+TEST(FirstView, AllPointsFillTheFreePartOfThePicture) {
+    const std::vector<dvec3> mountain = terrain(20000);
+    const Site site = survey_site(mountain, {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1);
+    const FreePart free{-.4, 1, -1, .95};
+    for (const double aspect : {.6, 1.0, 16.0 / 9}) {
+        const gi::SceneCamera camera = outside_view(site, {aspect, free});
+        glm::dvec2 low(2), high(-2);
+        for (const dvec3& point : site.outline) {
+            low = min(low, place(camera, point, aspect));
+            high = max(high, place(camera, point, aspect));
+        }
+        EXPECT_GE(low.x, free.left);
+        EXPECT_LE(high.x, free.right);
+        EXPECT_GE(low.y, free.bottom);
+        EXPECT_LE(high.y, free.top);
+        const glm::dvec2 filled = (high - low) / glm::dvec2(free.right - free.left, free.top - free.bottom);
+        EXPECT_GT(std::max(filled.x, filled.y), .9) << aspect;
+    }
+}
+
+TEST(FirstView, ParallelPicturesFitAsWell) {
+    const std::vector<dvec3> corners = {dvec3(0), dvec3(4, 2, 3)};
+    const ViewAxes front{dvec3(1, 0, 0), dvec3(0, 0, 1), dvec3(0, 1, 0)};
+    const FreePart free{0, 1, -1, 1};
+    const ParallelFit fit = parallel_fit(corners, front, {2, free}, 1e-6);
+    for (const dvec3& corner : corners) {
+        const dvec3 to = corner - fit.position;
+        EXPECT_GT(to.y, 0);
+        EXPECT_GE(to.x / fit.height, 0) << "half the width of a picture twice as wide as high is its height";
+        EXPECT_LE(to.x / fit.height, 1);
+        EXPECT_LE(std::abs(to.z / fit.height), .5);
+    }
+}
+
+TEST(Occupancy, RaysStopAtTheFirstOccupiedCell) {
+    const std::vector<dvec3> points(20, dvec3(7.5, .5, .5));
+    const OccupancyGrid grid(points, {dvec3(0), dvec3(8, 1, 1)});
+    const OccupancyGrid::Sight hit = grid.look({.5, .5, .5}, {1, 0, 0});
+    EXPECT_TRUE(hit.blocked);
+    EXPECT_NEAR(hit.distance, 7, grid.cell());
+    const OccupancyGrid::Sight missed = grid.look({.5, .5, .5}, {-1, 0, 0});
+    EXPECT_FALSE(missed.blocked);
+    EXPECT_NEAR(missed.distance, .5, 1e-6);
+}
+
+TEST(Moods, EveryMoodLightsEveryKindOfSite) {
+    const Site sites[] = {room(), survey_site(terrain(20000), {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1)};
+    for (const Site& site : sites)
+        for (const MoodInfo& info : moods()) {
+            gi::Scene scene = gi::default_scene(site.box[0], site.box[1]);
+            set_mood(scene, info.mood, site, first_view(site, {}));
+            EXPECT_FALSE(scene.lights.empty()) << info.name;
+            for (const gi::SceneLight& light : scene.lights) {
+                EXPECT_GT(light.strength.x, 0) << info.name;
+                EXPECT_TRUE(std::isfinite(length(light.position)));
+            }
+            const auto again = gi::parse_scene(gi::write_scene(scene), "mood.json");
+            ASSERT_TRUE(again) << again.error().line();
+            EXPECT_EQ(again->lights.size(), scene.lights.size());
+            ASSERT_TRUE(find_mood(info.name));
+        }
+    EXPECT_FALSE(find_mood("gloom"));
+    EXPECT_EQ(usual_mood(sites[0]), Mood::evening);
+    EXPECT_EQ(usual_mood(sites[1]), Mood::daylight);
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

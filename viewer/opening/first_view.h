@@ -1,0 +1,17 @@
+#pragma once
+
+#include "gi/scene/scene.h"
+#include "viewer/camera/fitting.h"
+#include "viewer/opening/site.h"
+
+namespace lucarne::viewer {
+
+/// Returns the camera that shows all of a site from outside, in the free part of the picture: objects from
+/// the front left and above, terrain obliquely from the south.
+gi::SceneCamera outside_view(const Site& site, const PictureShape& shape);
+/// Returns the camera at the standing place, which looks along the room. Requires site.inside.
+gi::SceneCamera inside_view(const Site& site, const PictureShape& shape);
+/// Returns the view that a scan opens with: of interiors from inside, of others from outside.
+gi::SceneCamera first_view(const Site& site, const PictureShape& shape);
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,224 @@
+#include "viewer/opening/moods.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "gi/registry.h"
+#include "gi/scene/photometry.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr std::array kMoods = {
+    MoodInfo{Mood::scan_colours, "scan-colours", "the points' own colours, with ambient occlusion"},
+    MoodInfo{Mood::daylight, "daylight", "sun and sky"},
+    MoodInfo{Mood::evening, "evening", "warm lamps in rooms, a low sun outside"},
+    MoodInfo{Mood::raking_light, "raking-light", "grazing light, which shows relief"},
+    MoodInfo{Mood::museum, "museum", "spots from above, before a dark background"},
+};
+
+// Kelvin.
+constexpr double kBulb = 3600, kGallery = 4300, kLowSun = 3400, kNoonSun = 5800;
+
+constexpr double kSunRadius = glm::radians(.265);
+
+gi::Backdrop gradient(const glm::dvec3& top, const glm::dvec3& bottom) {
+    return {gi::Backdrop::Kind::gradient, top, bottom};
+}
+const gi::Backdrop kSoftGrey = gradient(glm::dvec3(.62, .65, .69), glm::dvec3(.34, .35, .37));
+const gi::Backdrop kSky = gradient(glm::dvec3(.38, .53, .72), glm::dvec3(.78, .82, .86));
+const gi::Backdrop kDusk = gradient(glm::dvec3(.10, .12, .20), glm::dvec3(.42, .31, .28));
+const gi::Backdrop kDark = gradient(glm::dvec3(.10, .10, .11), glm::dvec3(.03, .03, .035));
+
+/// A sky of one colour, which does not cover the backdrop.
+std::shared_ptr<const gi::Environment> sky_of(const glm::dvec3& radiance) {
+    auto sky = std::make_shared<gi::Environment>();
+    sky->texels = {glm::vec3(radiance)};
+    sky->scale = radiance;
+    return sky;
+}
+
+/// A colour whose luminance is 1.
+glm::dvec3 white_of(double kelvin) {
+    const glm::dvec3 colour = gi::black_body_colour(kelvin);
+    return colour / gi::luminance(colour);
+}
+
+glm::dvec3 middle_of(const Site& site) {
+    return (site.box[0] + site.box[1]) / 2.0;
+}
+
+/// Returns a horizontal direction `degrees` to the left of the camera's view, seen from the middle of the
+/// site, raised by `elevation` degrees.
+glm::dvec3 left_of_view(const gi::SceneCamera& camera, double degrees, double elevation) {
+    const glm::dvec3 back = camera.position - camera.target;
+    const double yaw = (back.x == 0 && back.y == 0 ? -std::numbers::pi / 2 : std::atan2(back.y, back.x)) -
+                       glm::radians(degrees);
+    const double rise = glm::radians(elevation);
+    return {std::cos(yaw) * std::cos(rise), std::sin(yaw) * std::cos(rise), std::sin(rise)};
+}
+/// The north-west, where maps have their light from.
+glm::dvec3 north_west(double elevation) {
+    const double rise = glm::radians(elevation);
+    return {-std::cos(rise) * std::numbers::sqrt2 / 2, std::cos(rise) * std::numbers::sqrt2 / 2,
+            std::sin(rise)};
+}
+
+gi::SceneLight sun_from(const Site& site, const glm::dvec3& towards, const glm::dvec3& irradiance) {
+    gi::SceneLight sun;
+    sun.kind = gi::LightKind::directional;
+    sun.name = "sun";
+    const double away = glm::distance(site.box[0], site.box[1]);
+    sun.target = middle_of(site);
+    sun.position = sun.target + towards * std::max(away, 1e-3);
+    sun.strength = irradiance;
+    sun.angular_radius = kSunRadius;
+    return sun;
+}
+
+/// A spot outside a site that covers all of it, and makes a mid-grey surface in its middle `share` of
+/// mid-grey.
+gi::SceneLight spot_on(const Site& site, const char* name, const glm::dvec3& towards,
+                       const glm::dvec3& colour, double share) {
+    const double radius = std::max(glm::distance(site.box[0], site.box[1]) / 2, 1e-3);
+    gi::SceneLight spot;
+    spot.name = name;
+    spot.target = middle_of(site);
+    spot.position = spot.target + towards * (2.5 * radius);
+    spot.angle = 2 * std::asin(1.1 / 2.5);
+    spot.softness = .3;
+    const double metres = 2.5 * radius * site.metres_per_unit;
+    // A surface of albedo .5 that faces the spot leaves L = (.5 / pi) I / d^2 = .18 share.
+    spot.strength = colour * (share * .18 * std::numbers::pi / .5 * metres * metres);
+    return spot;
+}
+
+/// The lamps of a room: lights of one kind at the free places, which share `lumens`.
+std::vector<gi::SceneLight> lamps_in(const Site& site, gi::LightKind kind, double kelvin, double lumens) {
+    std::vector<gi::SceneLight> lamps;
+    const double metre = 1 / site.metres_per_unit;
+    for (const glm::dvec3& place : site.inside->lamps) {
+        gi::SceneLight& lamp = lamps.emplace_back();
+        lamp.kind = kind;
+        lamp.name = fmt::format("lamp {}", lamps.size());
+        lamp.position = place;
+        lamp.target = place - glm::dvec3(0, 0, metre);
+        lamp.angle = glm::radians(130.0);
+        lamp.softness = .6;
+        lamp.strength = white_of(kelvin);
+        gi::set_luminous_flux(lamp, lumens, site.metres_per_unit);
+    }
+    return lamps;
+}
+
+/// The light that a room of this size needs, lm: about 100 lx on the ground covered by the box.
+double lumens_for(const Site& site) {
+    const glm::dvec3 sides = (site.box[1] - site.box[0]) * site.metres_per_unit;
+    return std::clamp(100 * sides.x * sides.y, 500.0, 1e6) /
+           static_cast<double>(std::max<size_t>(site.inside->lamps.size(), 1));
+}
+
+struct Light {
+    std::vector<gi::SceneLight> lights;
+    glm::dvec3 sky{0.0};
+    gi::Backdrop backdrop;
+};
+
+bool in_rooms(const Site& site) {
+    return site.kind == SiteKind::interior && site.inside;
+}
+
+Light daylight(const Site& site, const gi::SceneCamera& camera) {
+    glm::dvec3 towards = left_of_view(camera, 50, 42);
+    if (site.kind == SiteKind::terrain) towards = north_west(40);
+    if (in_rooms(site)) {  // from the side of the room, as through its windows
+        const glm::dvec3 ahead = site.inside->ahead;
+        towards = normalize(glm::dvec3(-ahead.y, ahead.x, .7) - .4 * ahead);
+    }
+    return {{sun_from(site, towards, white_of(kNoonSun) * 850.0)}, {62, 76, 98}, kSky};
+}
+
+Light evening(const Site& site, const gi::SceneCamera& camera) {
+    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::point, kBulb, lumens_for(site)), {}, kDark};
+    const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(9) : left_of_view(camera, 65, 9);
+    return {{sun_from(site, towards, white_of(kLowSun) * 220.0)}, {14, 18, 30}, kDusk};
+}
+
+Light raking(const Site& site, const gi::SceneCamera& camera) {
+    if (in_rooms(site)) {
+        auto lamps = lamps_in(site, gi::LightKind::point, kGallery, lumens_for(site));
+        const double height = .35 / site.metres_per_unit;
+        for (auto& lamp : lamps) lamp.target.z += site.inside->floor + height - lamp.position.z;
+        for (auto& lamp : lamps) lamp.position.z = site.inside->floor + height;
+        return {std::move(lamps), {}, kDark};
+    }
+    const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(12) : left_of_view(camera, 80, 10);
+    return {{sun_from(site, towards, white_of(kNoonSun) * 850.0)}, glm::dvec3(6), kDark};
+}
+
+Light museum(const Site& site, const gi::SceneCamera& camera) {
+    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::spot, kGallery, lumens_for(site)), {}, kDark};
+    return {{spot_on(site, "key", left_of_view(camera, 45, 45), white_of(kGallery), 1),
+             spot_on(site, "fill", left_of_view(camera, -60, 25), white_of(kNoonSun), .2),
+             spot_on(site, "rim", left_of_view(camera, 170, 50), white_of(kNoonSun), .6)},
+            glm::dvec3(.004),
+            kDark};
+}
+
+}  // namespace
+
+std::span<const MoodInfo> moods() {
+    return kMoods;
+}
+
+Result<Mood> find_mood(std::string_view name) {
+    std::string known;
+    for (const MoodInfo& info : kMoods) {
+        if (info.name == name) return info.mood;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", info.name);
+    }
+    return bad_arguments("--mood", fmt::format("unknown mood '{}'", name), "choose one of: " + known);
+}
+
+Mood usual_mood(const Site& site) {
+    return in_rooms(site) ? Mood::evening : Mood::daylight;
+}
+
+std::string_view engine_of(Mood mood) {
+    return mood == Mood::scan_colours ? std::string_view("unlit") : gi::default_engine().name;
+}
+
+void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera) {
+    Light light;
+    switch (mood) {
+        case Mood::scan_colours:  // lights stay for the engines that use them
+            scene.look.unlit.shading = gi::Shading::occlusion;
+            scene.look.backdrop = kSoftGrey;
+            return;
+        case Mood::daylight:
+            light = daylight(site, camera);
+            break;
+        case Mood::evening:
+            light = evening(site, camera);
+            break;
+        case Mood::raking_light:
+            light = raking(site, camera);
+            break;
+        case Mood::museum:
+            light = museum(site, camera);
+            break;
+    }
+    scene.lights = std::move(light.lights);
+    scene.environment = light.sky == glm::dvec3(0.0) ? nullptr : sky_of(light.sky);
+    scene.environment_on = true;
+    scene.look.backdrop = light.backdrop;
+    scene.exposure_ev.reset();
+}
+
+}  // namespace lucarne::viewer

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "gi/scene/scene.h"
+#include "viewer/opening/site.h"
+
+namespace lucarne::viewer {
+
+/// Light of one kind for any site.
+enum class Mood : uint8_t {
+    scan_colours,  ///< the points' own colours with ambient occlusion
+    daylight,      ///< sun and sky
+    evening,       ///< warm lamps in rooms; a low sun outside
+    raking_light,  ///< grazing light from the left, which shows relief
+    museum         ///< spots from above before a dark background
+};
+struct MoodInfo {
+    Mood mood;
+    std::string_view name;  ///< on the command line
+    std::string_view help;
+};
+std::span<const MoodInfo> moods();
+/// Errors (ErrorKind::arguments): there is no mood of that name.
+Result<Mood> find_mood(std::string_view name);
+
+/// Returns the light that a site is first shown in.
+Mood usual_mood(const Site& site);
+/// Returns the engine that shows a mood: `unlit` for scan colours, the default engine for the others.
+std::string_view engine_of(Mood mood);
+
+/// Replaces the scene's lights, sky, backdrop and exposure. Light comes from the left of `camera`'s view of
+/// objects, and from the north-west for terrain. All strengths are physical: a mood looks the same whatever
+/// the site's size and unit.
+void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCamera& camera);
+
+}  // namespace lucarne::viewer

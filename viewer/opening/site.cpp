@@ -1,0 +1,104 @@
+#include "viewer/opening/site.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "octree/tree/robust_bounds.h"
+#include "viewer/opening/occupancy.h"
+#include "viewer/opening/standing_place.h"
+
+namespace lucarne::viewer {
+namespace {
+
+constexpr size_t kMostNodes = 64;
+constexpr size_t kEnoughPoints = 100000;
+constexpr size_t kMostOutline = 5000;
+
+/// Share of the places to stand that are in rooms from which a scan is one of rooms.
+constexpr double kInterior = .5;
+/// Height over width up to which a single layer is terrain, and the share of its columns that are thin.
+constexpr double kFlat = .35, kThinColumns = .8;
+constexpr int kThin = 3;  ///< cells
+
+/// Returns positions in the coarsest nodes, level by level, world units.
+std::vector<glm::dvec3> coarse_points(const octree::NodeSource& source) {
+    std::vector<glm::dvec3> points;
+    std::vector<uint32_t> open = source.roots();
+    const auto nodes = source.nodes();
+    for (size_t next = 0; next < open.size() && next < kMostNodes && points.size() < kEnoughPoints; ++next) {
+        const uint32_t node = open[next];
+        for (uint32_t octant = 0; octant < 8; ++octant)
+            if (const uint32_t child = nodes[node].child(octant); child != octree::kNoNode)
+                open.push_back(child);
+        const auto data = source.load(node);
+        if (!data) continue;  // the picture lacks it as well
+        const octree::SourcePart part = source.part_of(node);
+        const io::Schema& schema = part.header.schema;
+        for (uint32_t i = 0; i < data->count; ++i)
+            points.push_back(io::position_of(schema, &data->records[size_t{i} * schema.stride]) * part.scale);
+    }
+    return points;
+}
+
+/// Whether the grid contains one layer, much wider than high.
+bool is_terrain(const OccupancyGrid& grid, const std::array<glm::dvec3, 2>& box) {
+    const glm::dvec3 sides = box[1] - box[0];
+    if (sides.z > kFlat * std::max(sides.x, sides.y)) return false;
+    const glm::ivec3 size = grid.size();
+    size_t columns = 0, thin = 0;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            int low = size.z, high = -1;
+            for (int z = 0; z < size.z; ++z)
+                if (grid.occupied({x, y, z})) low = std::min(low, z), high = z;
+            if (high < 0) continue;
+            ++columns;
+            thin += high - low < kThin;
+        }
+    return columns > 1 && static_cast<double>(thin) >= kThinColumns * static_cast<double>(columns);
+}
+
+/// Returns what a view of all has to contain: the cells with points, or the corners of the box if there are
+/// none.
+std::vector<glm::dvec3> outline_of(const OccupancyGrid& grid, const std::array<glm::dvec3, 2>& box) {
+    std::vector<glm::dvec3> all = grid.occupied_middles(), some;
+    for (size_t i = 0; i < std::min(all.size(), kMostOutline); ++i)
+        some.push_back(all[i * all.size() / std::min(all.size(), kMostOutline)]);
+    if (!some.empty()) return some;
+    for (int corner = 0; corner < 8; ++corner)
+        some.emplace_back(box[corner & 1].x, box[corner >> 1 & 1].y, box[corner >> 2 & 1].z);
+    return some;
+}
+
+}  // namespace
+
+std::string_view site_name(SiteKind kind) {
+    static constexpr std::array<std::string_view, 3> kNames = {"object", "terrain", "interior"};
+    return kNames[static_cast<size_t>(kind)];
+}
+
+Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
+                 double metres_per_unit) {
+    Site site;
+    site.box = box;
+    if (!std::isfinite(glm::length(box[0]) + glm::length(box[1])))
+        site.box = {glm::dvec3(-1), glm::dvec3(1)};  // an empty cloud: nothing to frame
+    site.metres_per_unit = metres_per_unit;
+    const OccupancyGrid grid(points, site.box);
+    site.outline = outline_of(grid, site.box);
+    const Standing standing = find_standing_place(grid, metres_per_unit);
+    site.inside = standing.best;
+    if (standing.enclosed_share >= kInterior)
+        site.kind = SiteKind::interior;
+    else if (is_terrain(grid, site.box))
+        site.kind = SiteKind::terrain;
+    return site;
+}
+
+Site survey_site(const octree::NodeSource& source) {
+    return survey_site(coarse_points(source), octree::robust_bounds(source), source.header().metres_per_unit);
+}
+
+}  // namespace lucarne::viewer

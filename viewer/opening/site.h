@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "octree/tree/source.h"
+
+namespace lucarne::viewer {
+
+/// What a scan shows, which decides from where and in which light it is seen first.
+enum class SiteKind : uint8_t {
+    object,   ///< seen from outside: a statue, a façade, a house with its surroundings
+    terrain,  ///< one layer, much wider than high
+    interior  ///< rooms, seen from within
+};
+std::string_view site_name(SiteKind kind);
+
+/// A place to stand in a room. World units, directions are unit vectors.
+struct StandingPlace {
+    glm::dvec3 eye{0.0};
+    glm::dvec3 ahead{0.0, 1.0, 0.0};  ///< horizontal, along the room
+    double free_ahead = 0;            ///< distance to what stands there
+    double floor = 0, ceiling = 0;    ///< z, at the eye
+    std::vector<glm::dvec3> lamps;    ///< free places below the ceiling along the room, where lamps light it
+};
+
+/// What is known about a scan before it is shown.
+struct Site {
+    SiteKind kind = SiteKind::object;
+    std::array<glm::dvec3, 2> box{};  ///< robust bounds
+    double metres_per_unit = 1;
+    std::vector<glm::dvec3> outline;      ///< points that a view of all has to contain; at least one
+    std::optional<StandingPlace> inside;  ///< if there is a room
+};
+
+/// Looks at a sample of the coarsest nodes (up to 64 of them are loaded, so it may block). Nodes that cannot
+/// be read are left out. An empty cloud is an object around its box.
+Site survey_site(const octree::NodeSource& source);
+
+/// The same for points that are known already, in a box (world units).
+Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
+                 double metres_per_unit);
+
+}  // namespace lucarne::viewer

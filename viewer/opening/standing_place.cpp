@@ -1,0 +1,164 @@
+#include "viewer/opening/standing_place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace lucarne::viewer {
+namespace {
+
+// Lengths in metres.
+constexpr double kEyeHeight = 1.6;
+constexpr double kLeastHeight = 1.9;  ///< free height for a person to stand
+constexpr double kWideEnough = 2;     ///< distance to the nearest wall from which a place gets no better
+constexpr double kElbowRoom = 0.7;    ///< distance to what stands beside and behind the eye
+constexpr double kLampSpacing = 5;
+constexpr double kHighestLamp = 4;  ///< above the floor
+
+constexpr size_t kMostPlaces = 3000;  ///< places to stand that are examined
+constexpr int kAzimuths = 24;
+constexpr double kWalled = .8;  ///< share of blocked directions from which a place is in a room
+constexpr size_t kMostLamps = 3;
+
+glm::dvec3 direction(double azimuth, double elevation) {
+    return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+            std::sin(elevation)};
+}
+double azimuth_of(int i) {
+    return 2 * std::numbers::pi * i / kAzimuths;
+}
+
+struct Place {
+    glm::dvec3 eye;
+    double floor, ceiling;
+};
+
+/// Returns the places to stand above the cells of one column.
+void stand_in_column(const OccupancyGrid& grid, int x, int y, double metre, std::vector<Place>& places) {
+    const glm::ivec3 size = grid.size();
+    for (int z = 0; z < size.z; ++z) {
+        if (!grid.occupied({x, y, z}) || grid.occupied({x, y, z + 1})) continue;
+        const double floor = grid.middle({x, y, z}).z;
+        int above = z + 1;
+        while (above < size.z && !grid.occupied({x, y, above})) ++above;
+        const double ceiling = grid.middle({x, y, above}).z;
+        const bool high_enough = ceiling - floor >= kLeastHeight * metre || above == size.z;
+        const double top = grid.middle({x, y, size.z}).z - grid.cell() / 2;
+        if (high_enough && floor + kEyeHeight * metre < top) {  // else it is a roof
+            const glm::dvec3 middle = grid.middle({x, y, z});
+            places.push_back({{middle.x, middle.y, floor + kEyeHeight * metre}, floor, ceiling});
+        }
+        z = above - 1;
+    }
+}
+
+std::vector<Place> places_to_stand(const OccupancyGrid& grid, double metre) {
+    const glm::ivec3 size = grid.size();
+    std::vector<Place> places;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) stand_in_column(grid, x, y, metre, places);
+    if (places.size() <= kMostPlaces) return places;
+    std::vector<Place> some;
+    for (size_t i = 0; i < kMostPlaces; ++i) some.push_back(places[i * places.size() / kMostPlaces]);
+    return some;
+}
+
+/// Whether walls stand around a place, and something is above it.
+bool enclosed(const OccupancyGrid& grid, const glm::dvec3& eye) {
+    int around = 0, above = grid.look(eye, {0, 0, 1}).blocked;
+    for (int i = 0; i < kAzimuths; ++i) {
+        around += grid.look(eye, direction(azimuth_of(i), 0.1)).blocked;
+        around += grid.look(eye, direction(azimuth_of(i), 0.5)).blocked;
+        above += grid.look(eye, direction(azimuth_of(i), 1.0)).blocked;
+    }
+    return around >= kWalled * 2 * kAzimuths && above >= kWalled * (kAzimuths + 1);
+}
+
+/// The visible area around a place times the distance to the nearest thing, because every place in a convex
+/// room sees the same area.
+double roominess(const OccupancyGrid& grid, const glm::dvec3& eye, double metre) {
+    double area = 0, nearest = kWideEnough * metre;
+    for (int i = 0; i < kAzimuths; ++i) {
+        const double distance = grid.look(eye, direction(azimuth_of(i), 0)).distance;
+        area += distance * distance;
+        nearest = std::min(nearest, distance);
+    }
+    return area * nearest;
+}
+
+/// Returns the horizontal direction in which a picture shows the most space.
+glm::dvec3 along_the_room(const OccupancyGrid& grid, const glm::dvec3& eye) {
+    std::array<double, kAzimuths> free{};
+    for (int i = 0; i < kAzimuths; ++i) free[i] = grid.look(eye, direction(azimuth_of(i), 0)).distance;
+    int best = 0;
+    double most = -1;
+    for (int i = 0; i < kAzimuths; ++i) {
+        double sum = free[i];  // the middle counts twice
+        for (int beside = -2; beside <= 2; ++beside) sum += free[(i + beside + kAzimuths) % kAzimuths];
+        if (sum > most) best = i, most = sum;
+    }
+    return direction(azimuth_of(best), 0);
+}
+
+/// Steps back as far as the room allows.
+glm::dvec3 step_back(const OccupancyGrid& grid, const glm::dvec3& eye, const glm::dvec3& ahead,
+                     double metre) {
+    const glm::dvec3 aside(-ahead.y, ahead.x, 0);
+    const double room = std::max(kElbowRoom * metre, grid.cell()), step = grid.cell() / 2;
+    glm::dvec3 at = eye;
+    for (double left = grid.look(eye, -ahead).distance - room; left > step; left -= step) {
+        const glm::dvec3 next = at - ahead * step;
+        if (grid.look(next, aside).distance < room || grid.look(next, -aside).distance < room) break;
+        at = next;
+    }
+    return at;
+}
+
+std::vector<glm::dvec3> places_of_lamps(const OccupancyGrid& grid, const StandingPlace& place, double metre) {
+    const double length = place.free_ahead;
+    const auto count =
+        std::clamp(static_cast<size_t>(length / (kLampSpacing * metre)), size_t{1}, kMostLamps);
+    std::vector<glm::dvec3> lamps;
+    for (size_t i = 0; i < count; ++i) {
+        glm::dvec3 at =
+            place.eye + place.ahead * (length * (static_cast<double>(i) + .5) / static_cast<double>(count));
+        const double height = place.eye.z + grid.look(at, {0, 0, 1}).distance - place.floor;
+        at.z = place.floor + std::min(.8 * height, kHighestLamp * metre);
+        lamps.push_back(at);
+    }
+    return lamps;
+}
+
+}  // namespace
+
+Standing find_standing_place(const OccupancyGrid& grid, double metres_per_unit) {
+    const double metre = 1 / metres_per_unit;
+    Standing found;
+    if (grid.empty() || grid.cell() > kLeastHeight * metre) return found;  // cells hide rooms
+    const std::vector<Place> places = places_to_stand(grid, metre);
+    double most = 0;
+    size_t in_rooms = 0;
+    const Place* best = nullptr;
+    for (const Place& place : places) {
+        if (!enclosed(grid, place.eye)) continue;
+        ++in_rooms;
+        const double score = roominess(grid, place.eye, metre);
+        if (score > most) most = score, best = &place;
+    }
+    if (!best) return found;
+    found.enclosed_share = static_cast<double>(in_rooms) / static_cast<double>(places.size());
+    StandingPlace place;
+    place.ahead = along_the_room(grid, best->eye);
+    place.eye = step_back(grid, best->eye, place.ahead, metre);
+    place.free_ahead = grid.look(place.eye, place.ahead).distance;
+    place.floor = best->floor;
+    place.ceiling = best->ceiling;
+    place.lamps = places_of_lamps(grid, place, metre);
+    found.best = place;
+    return found;
+}
+
+}  // namespace lucarne::viewer
