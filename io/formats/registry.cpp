@@ -21,10 +21,30 @@ auto formats() {
                       &ptx_format(), &obj_format(), &text_format(), &txt_format(), &csv_format()};
 }
 
-/// Names a format that Lucarne does not read, for a better message than "unknown".
-std::string_view foreign_format(std::string_view head) {
-    if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return "a picture";
-    if (head.starts_with("PK\x03\x04") || head.starts_with("\x1f\x8b")) return "a compressed archive";
+/// A format that Lucarne does not read, for a better message than "unknown".
+struct Foreign {
+    std::string_view what, todo;
+};
+Foreign foreign_format(std::string_view head, uint64_t file_bytes) {
+    constexpr std::string_view kConvert = "convert it to LAS or PLY";
+    if (head.starts_with("\x89PNG") || head.starts_with("\xff\xd8\xff")) return {"a picture", kConvert};
+    if (head.starts_with("\x1f\x8b")) return {"compressed by gzip", "unpack it with gunzip"};
+    if (head.starts_with("PK\x03\x04")) return {"a zip archive", "unpack it"};
+    if (head.starts_with("7z\xbc\xaf\x27\x1c")) return {"a 7z archive", "unpack it"};
+    // STL: text, or 80 bytes of anything, the number of triangles and 50 bytes for each.
+    constexpr size_t kStlHead = 84, kStlTriangle = 50;
+    constexpr std::string_view kMesh = "convert it to PLY or OBJ";
+    auto rest = without_mark(head);
+    const auto word = next_word(rest);
+    if (same_letters(word, "solid") && lower(head).find("facet normal") != head.npos)
+        return {"an STL mesh", kMesh};
+    if (head.size() > kStlHead &&
+        file_bytes ==
+            kStlHead + kStlTriangle * uint64_t{load<uint32_t>(reinterpret_cast<const std::byte*>(&head[80]))})
+        return {"an STL mesh", kMesh};
+    if (same_letters(word, "ncols") && lower(head).find("cellsize") != head.npos)
+        return {"a raster grid (ESRI ASCII)",
+                "convert its cells to points, for example with gdal_translate -of XYZ"};
     return {};
 }
 
@@ -51,12 +71,14 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
         if (!told && format->recognises(head)) told = format;
         if (!named && format->extension == extension) named = format;
     }
-    const auto foreign = told ? std::string_view() : foreign_format(head);
     // Any text may be rows of numbers. If its name belongs to another format, it counts as that format,
     // unless the user has described the columns.
     const bool rows = told && told->open == text_format().open;
-    if (named && foreign.empty() &&
-        (!told || (rows && options.columns.empty() && named->open != told->open))) {
+    const Foreign foreign = told && !rows ? Foreign{} : foreign_format(head, file->size());
+    if (!foreign.what.empty())
+        return rejected(path.string(), fmt::format("is {}, which cannot be read", foreign.what),
+                        std::string(foreign.todo));
+    if (named && (!told || (rows && options.columns.empty() && named->open != told->open))) {
         auto scan = named->by_name ? named->open(file, options)
                                    : rejected(path.string(),
                                               fmt::format("is named {} and has no such header", extension));
@@ -65,10 +87,7 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
         return scan;
     }
     if (told) return told->open(file, options);
-    return rejected(path.string(),
-                    foreign.empty() ? "is in no format that can be read"
-                                    : fmt::format("is {}, which cannot be read", foreign),
-                    "convert it to LAS or PLY");
+    return rejected(path.string(), "is in no format that can be read", "convert it to LAS or PLY");
 }
 
 std::string_view first_statement(std::string_view head) {

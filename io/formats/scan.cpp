@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include "io/core/counted.h"
+#include "io/formats/common/color_depth.h"
 #include "io/formats/mesh/source.h"
 
 namespace lucarne::io {
@@ -30,6 +31,7 @@ Result<Contents> survey(const PointSource& scan, const std::function<void(uint64
     const Schema& schema = scan.schema();
     Contents contents{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     LUCARNE_ASSIGN(const auto reader, scan.open());
+    ColorDepth depth(schema);
     PointBatch batch;
     for (;;) {
         LUCARNE_ASSIGN(const size_t count, reader->read(batch, kBatchPoints));
@@ -40,8 +42,10 @@ Result<Contents> survey(const PointSource& scan, const std::function<void(uint64
             contents.max = glm::max(contents.max, p);
         }
         contents.points += count;
+        depth.add(std::span(batch.bytes).first(count * schema.stride));
         if (progress) progress(count);
     }
+    contents.color_bits = depth.bits();
     contents.losses = scan.info().losses;
     add_losses(contents.losses, reader->losses());
     return contents;

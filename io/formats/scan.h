@@ -52,6 +52,7 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
 struct Contents {
     uint64_t points = 0;
     glm::dvec3 min{0.0}, max{0.0};  ///< valid only if there are points
+    uint32_t color_bits = 0;        ///< that the colours of all points need: may be more than a sample did
     Losses losses;                  ///< including those of the info
 };
 /// Makes that pass. Calls `progress` with the number of further points seen.

@@ -169,10 +169,13 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                    Unifier::create(options.inputs, options.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(inputs));
     warn_of_differences(inputs);
-    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs));
-    const uint32_t added = normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
-    const NodeLimits limits(inputs.schema().stride + added);
-    const MemoryPlan::Work need{inputs.schema().stride + added, limits.leaf, normals.has_value(), threads};
+    const auto added_bytes = [](std::optional<bool> normals) -> uint32_t {
+        return normals ? (*normals ? 5 : 2) : 0;  // normal_oct and area
+    };
+    // The most that may have to be estimated; only the scan tells whether every point has its own normal.
+    LUCARNE_ASSIGN(const auto most, wanted_normals(options.normals, inputs, false));
+    const uint32_t widest = inputs.schema().stride + added_bytes(most);
+    const MemoryPlan::Work need{widest, NodeLimits(widest).leaf, most.has_value(), threads};
     LUCARNE_ASSIGN(const auto memory, MemoryPlan::create(options.memory, need));
 
     BuildReport report;
@@ -183,10 +186,20 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
                        return resumable(work, "scan", ScanFacts::restore,
                                         [&] { return scan_and_count(inputs, memory, counted); });
                    }));
+    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.normals, inputs, facts.without_normal == 0));
+    if (normals && !*normals && facts.without_normal == facts.points)
+        return bad_arguments(options.inputs[0]->info().path, "has no normals to keep",
+                             "use --normals estimate");
+    if (normals && !*normals && facts.without_normal > 0)
+        log::warn("{} of {} points have no normal to keep, and get no light; --normals auto estimates theirs",
+                  facts.without_normal, facts.points);
+    const NodeLimits limits(inputs.schema().stride + added_bytes(normals));
     SourceHeader bare = header_of(inputs, facts, inputs.schema());
     bare.options = options.read_options;
     for (const auto* input : options.inputs) warn_of_assumed_unit(input->info(), bare.metres_per_unit);
-    if (options.listener) options.listener->scanned(bare);
+    if (options.listener)
+        options.listener->scanned(bare,
+                                  normals ? with_estimates(inputs.schema(), *normals) : inputs.schema());
     LUCARNE_ASSIGN(
         ChunkStore store, timed(report, "chunk", [&] {
             return resumable(
@@ -235,6 +248,7 @@ Result<BuildReport> build_cache(const BuildOptions& options) {
     work.done();
     report.points = facts.points;
     report.dropped = facts.dropped;
+    report.estimated_normals = normals.value_or(false) ? facts.without_normal : 0;
     report.inputs = facts.inputs;
     report.chunks = store.chunks().size();
     report.nodes = writer.nodes();

@@ -13,7 +13,7 @@
 namespace lucarne::octree {
 
 enum class NormalsMode {
-    automatic,  ///< keep the inputs' own where every input has them, else estimate
+    automatic,  ///< keep the inputs' own; estimate those of points that have none
     keep,       ///< keep the inputs' own; only areas are estimated
     estimate,   ///< estimate; the inputs' own stay as an attribute of another name
     none        ///< neither normals nor areas
@@ -46,6 +46,7 @@ struct BuildReport {
     uint64_t points = 0;
     /// Points that were read but left out: invalid ones and those with a coordinate that is not a number.
     uint64_t dropped = 0;
+    uint64_t estimated_normals = 0;  ///< points whose normal was estimated because their input gave none
     std::vector<io::Contents> inputs;
     uint64_t nodes = 0, chunks = 0, bytes = 0;
     uint64_t filled = 0;  ///< synthetic surfels in holes

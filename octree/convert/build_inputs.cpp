@@ -21,7 +21,7 @@ bool in_stated_unit(const io::ScanInfo& scan) {
 
 }  // namespace
 
-Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs) {
+Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs, bool complete) {
     size_t without = inputs.inputs();
     for (size_t i = inputs.inputs(); i-- > 0;)
         if (!inputs.has_normals(i)) without = i;
@@ -30,7 +30,7 @@ Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inpu
         case NormalsMode::none:
             return std::optional<bool>();
         case NormalsMode::automatic:
-            return std::optional(!all);
+            return std::optional(!all || !complete);
         case NormalsMode::estimate:
             return std::optional(true);
         case NormalsMode::keep:
@@ -97,6 +97,17 @@ void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& s
         scan.color_bits = 16;
 }
 
+void adjust_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema,
+                   const io::Contents& contents) {
+    widen_colour(scan, own, schema);
+    const io::Attribute* color = own.find(io::names::color);
+    if (!color || color->type == io::ScalarType::u8 || contents.color_bits <= scan.color_bits) return;
+    log::warn("{}: has colours over {}, although those of the sample were not; its white is taken as {}",
+              scan.path, io::color_white(scan.color_bits), io::color_white(contents.color_bits));
+    scan.color_bits = contents.color_bits;
+    scan.notes.color_bits = contents.color_bits;
+}
+
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema) {
     SourceHeader header{
         .schema = schema, .root = facts.root, .min = facts.min, .max = facts.max, .points = facts.points};
@@ -104,8 +115,9 @@ SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::
     for (size_t i = 0; i < inputs.inputs(); ++i) {
         header.scans.push_back(inputs.source(i).info());
         if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = header.metres_per_unit;
-        widen_colour(header.scans.back(), inputs.source(i).schema(), schema);
-        if (i < facts.inputs.size()) header.scans.back().losses = facts.inputs[i].losses;
+        const auto contents = i < facts.inputs.size() ? facts.inputs[i] : io::Contents{};
+        adjust_colour(header.scans.back(), inputs.source(i).schema(), schema, contents);
+        if (i < facts.inputs.size()) header.scans.back().losses = contents.losses;
     }
     return header;
 }

@@ -9,8 +9,10 @@
 
 namespace lucarne::octree {
 
-/// Decides what to estimate: empty for nothing, true for normals and areas, false for areas only.
-Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs);
+/// Decides what to estimate: empty for nothing, true for normals and areas, false for areas only. `complete`:
+/// every point has a usable normal of its own (PointNormals), as far as is known yet. Errors: normals are to
+/// be kept, and an input has none.
+Result<std::optional<bool>> wanted_normals(NormalsMode mode, const Unifier& inputs, bool complete);
 
 /// Returns the metres per unit of all inputs: the unit that most inputs with points state, the first of these
 /// in a tie, and metres if none states one.
@@ -30,6 +32,10 @@ void warn_of_differences(std::span<const io::ScanInfo> scans);
 /// Adjusts a scan's description to the records of a cache. `own` is the scan's schema, `schema` the cache's.
 /// Where 8-bit colours became 16-bit ones because of another scan, they span all 16 bits (RecordMap).
 void widen_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema);
+/// Does the same for a scan that was read. Colours larger than those of the sample, from which the scan's
+/// colour bits were guessed, correct them.
+void adjust_colour(io::ScanInfo& scan, const io::Schema& own, const io::Schema& schema,
+                   const io::Contents& contents);
 
 /// Returns the header of a cache of these inputs with records of `schema`.
 SourceHeader header_of(const Unifier& inputs, const ScanFacts& facts, const io::Schema& schema);

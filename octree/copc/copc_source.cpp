@@ -11,6 +11,7 @@
 #include "octree/copc/node_order.h"
 #include "octree/copc/node_surface.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/point_normals.h"
 
 namespace lucarne::octree {
 namespace {
@@ -46,11 +47,20 @@ class CopcSource final : public NodeSource {
     io::copc::File file_;
     SourceHeader header_;
     uint32_t file_stride_ = 0;
-    /// Where estimated normals are stored; null: the file has its own.
+    /// Where estimated normals are stored; null: every point has its own.
     const io::Attribute* normal_ = nullptr;
     std::vector<NodeInfo> nodes_;
     std::vector<uint32_t> in_file_;  ///< index of each node in the file
 };
+
+/// Returns whether the points have normals of their own, judged from the root node, which is spread over all.
+Result<bool> has_all_normals(const io::PointSource& scan) {
+    const PointNormals normals(scan.schema());
+    io::PointBatch batch;
+    LUCARNE_TRY(scan.front(0, size_t{1} << 16, batch));
+    return normals.missing(std::span(batch.bytes).first(batch.count * scan.schema().stride),
+                           scan.schema().stride) == 0;
+}
 
 Result<void> CopcSource::describe() {
     const io::PointSource& scan = file_.scan();
@@ -58,7 +68,8 @@ Result<void> CopcSource::describe() {
     LUCARNE_ASSIGN(const Unifier names, Unifier::create({&scan}));
     header_.schema = names.schema();
     file_stride_ = header_.schema.stride;
-    if (!names.has_normals(0)) {
+    LUCARNE_ASSIGN(const bool complete, has_all_normals(scan));
+    if (!names.has_normals(0) || !complete) {
         header_.schema.add(std::string(io::names::normal_oct), io::ScalarType::u8, 3);
         normal_ = &header_.schema.attributes.back();
     }

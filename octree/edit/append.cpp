@@ -115,7 +115,7 @@ Result<SourceHeader> header_with(const CacheFile& cache, const Unifier& inputs, 
     for (auto& scan : header.scans) widen_colour(scan, before.schema, header.schema);
     for (size_t i = 1; i < inputs.inputs(); ++i) {  // the cache is input 0
         header.scans.push_back(inputs.source(i).info());
-        widen_colour(header.scans.back(), inputs.source(i).schema(), header.schema);
+        adjust_colour(header.scans.back(), inputs.source(i).schema(), header.schema, facts.inputs[i - 1]);
         if (!header.scans.back().unit_stated) header.scans.back().metres_per_unit = before.metres_per_unit;
         header.scans.back().losses = facts.inputs[i - 1].losses;
     }
@@ -194,6 +194,13 @@ Result<EditReport> append_to_cache(const std::vector<const io::PointSource*>& sc
     LUCARNE_ASSIGN(const ScanFacts facts, scan_inputs(inputs, kBatchBytes, 1));
     sources.erase(sources.begin());  // removes the cache
     for (const auto* scan : sources) warn_of_assumed_unit(scan->info(), before.metres_per_unit);
+    const bool lit = before.schema.find(io::names::area) && !before.schema.find(io::names::normal_oct);
+    if (lit && facts.without_normal > 0)
+        log::warn(
+            "{} of the new points have no normal, and the cache keeps those of its scans; they get no light "
+            "until "
+            "the scans are converted together",
+            facts.without_normal);
     Change change;
     LUCARNE_ASSIGN(change.header, header_with(*opened.cache, inputs, facts));
     change.added = added_points(inputs, change.header.schema, before.scans.size(), kBatchBytes);

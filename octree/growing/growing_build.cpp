@@ -21,6 +21,7 @@
 #include "octree/growing/sample.h"
 #include "octree/growing/tree_top.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/point_normals.h"
 #include "octree/tree/radix_sort.h"
 #include "octree/tree/station_ids.h"
 
@@ -116,7 +117,7 @@ struct GrowingBuild::State final : BuildListener {
     void end(Result<std::shared_ptr<const NodeSource>> cache);
     Result<std::shared_ptr<const NodeSource>> build();
 
-    void scanned(const SourceHeader& facts) override;
+    void scanned(const SourceHeader& facts, const io::Schema& records) override;
     void building(const io::Schema& records) override;
     void settled(std::span<const format::Entry> nodes) override;
     void pending(const Pending& node, std::span<const std::byte> shown, const CacheWriter& writer) override;
@@ -131,14 +132,16 @@ Result<void> GrowingBuild::State::take_first() {
     LUCARNE_ASSIGN(unifier,
                    Unifier::create(std::move(sources), options.build.normals == NormalsMode::estimate));
     LUCARNE_TRY(check_units(*unifier));
-    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier));
-    schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
-
+    LUCARNE_TRY(wanted_normals(options.build.normals, *unifier, true));  // fails before anything is read
     const bool sketch = options.first_points > 0 && options.first_points < options.sample_points;
     auto taken = sketch ? take_sketch(*unifier, options.first_points, options.first_read, options.sampling)
                         : take_sample(*unifier, options.sample_points, options.sampling);
     LUCARNE_ASSIGN(QuickSample points, std::move(taken));
     grown = !sketch;
+    const bool complete =
+        PointNormals(unifier->schema()).missing(points.records, unifier->schema().stride) == 0;
+    LUCARNE_ASSIGN(const auto normals, wanted_normals(options.build.normals, *unifier, complete));
+    schema = normals ? with_estimates(unifier->schema(), *normals) : unifier->schema();
     LUCARNE_ASSIGN(const Cube root, root_cube(points.min, points.max));
     header = header_of(*unifier, facts_of(points, root), schema);
     sample = with_surface(std::move(points), root);
@@ -151,9 +154,9 @@ ScanFacts GrowingBuild::State::facts_of(const QuickSample& points, const Cube& r
     return {.points = points.points, .min = points.min, .max = points.max, .root = root};
 }
 
-/// Called by the grower as well, which must not read `header` here.
+/// Called by the grower as well, which must not read `header` or `schema` here.
 ShownSample GrowingBuild::State::with_surface(QuickSample points, const Cube& root) const {
-    const auto scans = header_of(*unifier, facts_of(points, root), schema).scans;
+    const auto scans = header_of(*unifier, facts_of(points, root), unifier->schema()).scans;
     const StationIds ids(scans, unifier->schema());
     std::vector<std::optional<glm::dvec3>> stations(points.positions.size());
     for (size_t i = 0; i < stations.size(); ++i)
@@ -225,10 +228,10 @@ void GrowingBuild::State::show(std::shared_ptr<const NodeSource> source) {
     if (changed) changed();
 }
 
-void GrowingBuild::State::scanned(const SourceHeader& facts) {
+void GrowingBuild::State::scanned(const SourceHeader& facts, const io::Schema& records) {
     const std::lock_guard lock(making);
     header = facts;
-    header.schema = schema;
+    header.schema = schema = records;  // a few points without a normal may not be in the sample
     header_is_final = true;
     sample.move_to(header.root);
     loose = along_curve(sample, unifier->schema(), schema, header.root);

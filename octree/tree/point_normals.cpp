@@ -28,4 +28,11 @@ glm::vec3 PointNormals::of(const std::byte* record) const {
     return decode_normal(io::load<NormalCode>(record + estimated_->offset)).value_or(glm::vec3(0.0f));
 }
 
+size_t PointNormals::missing(std::span<const std::byte> records, size_t stride) const {
+    if (!own_ && !estimated_) return records.size() / stride;
+    size_t missing = 0;
+    for (size_t at = 0; at < records.size(); at += stride) missing += of(&records[at]) == glm::vec3(0.0f);
+    return missing;
+}
+
 }  // namespace lucarne::octree

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include <glm/vec3.hpp>
 
 #include "io/points.h"
@@ -15,6 +17,8 @@ class PointNormals {
 
     /// A unit vector, or zero where the point has no normal.
     glm::vec3 of(const std::byte* record) const;
+    /// Returns how many of these records have no normal.
+    size_t missing(std::span<const std::byte> records, size_t stride) const;
 
  private:
     const io::Attribute *own_ = nullptr, *estimated_ = nullptr;  ///< in the schema, which outlives this

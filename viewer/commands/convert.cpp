@@ -110,11 +110,17 @@ Result<void> write_report(const std::string& path, bool overwrite, const octree:
     for (const auto& stage : report.stages)
         stages.push_back(
             {{"name", stage.name}, {"wall_seconds", stage.wall_seconds}, {"cpu_seconds", stage.cpu_seconds}});
-    const nlohmann::json root{{"points", report.points},     {"dropped", report.dropped},
-                              {"nodes", report.nodes},       {"chunks", report.chunks},
-                              {"bytes", report.bytes},       {"filled", report.filled},
-                              {"stages", std::move(stages)}, {"left_out", losses_json(summary.losses)},
-                              {"inputs", summary.inputs},    {"rejected", aside.json()}};
+    const nlohmann::json root{{"points", report.points},
+                              {"dropped", report.dropped},
+                              {"nodes", report.nodes},
+                              {"chunks", report.chunks},
+                              {"bytes", report.bytes},
+                              {"filled", report.filled},
+                              {"estimated_normals", report.estimated_normals},
+                              {"stages", std::move(stages)},
+                              {"left_out", losses_json(summary.losses)},
+                              {"inputs", summary.inputs},
+                              {"rejected", aside.json()}};
     return write_file(path, json_text(root), overwrite);
 }
 
@@ -192,6 +198,8 @@ Result<void> convert(ConvertOptions options) {
     if (report.filled > 0)
         log::info("{} fill holes of the scan; they are drawn, but never exported",
                   counted(report.filled, "synthetic surfels"));
+    if (report.estimated_normals > 0)
+        log::info("normals of {} were estimated", counted(report.estimated_normals, "points"));
     const Summary summary(build.inputs, report.inputs);
     log::info("{}: {} in {}, {}, in {:.2f} s ({:.2f} CPU-s){}", build.output.string(),
               counted(report.points, "points"), counted(report.nodes, "nodes"), bytes_text(report.bytes),
@@ -224,7 +232,8 @@ void add_convert(CommandLine& line) {
              {"keep", NormalsMode::keep},
              {"estimate", NormalsMode::estimate},
              {"none", NormalsMode::none}},
-            "auto: keep the inputs' normals and estimate missing ones; keep: require normals in all inputs; "
+            "auto: keep the inputs' normals, and estimate those of points that have none (or zero, or NaN); "
+            "keep: require normals in all inputs; "
             "estimate: estimate all normals and keep the inputs' as normal_in_file; none: no normals")
         .show_default("auto");
     command

@@ -63,6 +63,8 @@ json scan_json(const io::ScanInfo& info, const io::Schema& schema, const io::Con
     described["unit_stated"] = info.unit_stated;
     described["stations"] = std::move(stations);
     described["attributes"] = attributes_json(schema);
+    if (schema.find(io::names::color))
+        described["color_bits"] = std::max(info.color_bits, contents ? contents->color_bits : 0u);
     described["left_out"] = losses_json(contents ? contents->losses : info.losses);
     const json notes = json::parse(io::notes_text(info.notes));
     for (const char* list : {"scans", "images", "mesh"})

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/formats/common/text.h"
+#include "io/formats/common/units.h"
 
 namespace lucarne::viewer {
 
@@ -26,10 +27,9 @@ constexpr std::array<std::pair<double, std::string_view>, 7> kUnits = {{{1, "m"}
 }  // namespace
 
 std::optional<double> metres_of(const std::string& unit) {
-    for (const auto& [metres, name] : kUnits)
-        if (unit == name || (unit == "us-ft" && name == "US ft")) return metres;
     const auto metres = io::parse_number<double>(unit);
-    return metres && *metres > 1e-9 && *metres < 1e9 ? metres : std::nullopt;
+    if (!metres) return io::metres_of_name(unit);
+    return *metres > 1e-9 && *metres < 1e9 ? metres : std::nullopt;
 }
 
 std::string unit_name(double metres_per_unit) {

@@ -36,6 +36,21 @@ inline std::string_view next_word(std::string_view& line) {
     return word;
 }
 
+/// Returns the text without the blanks around it.
+constexpr std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+/// Returns a name without blanks and quotes around it: some programs quote file names that hold blanks.
+constexpr std::string_view without_quotes(std::string_view name) {
+    name = trimmed(name);
+    const bool quoted =
+        name.size() >= 2 && name.front() == name.back() && (name.front() == '"' || name.front() == '\'');
+    return quoted ? trimmed(name.substr(1, name.size() - 2)) : name;
+}
+
 /// Converts ASCII letters to lower case.
 inline std::string lower(std::string_view text) {
     std::string result(text);

@@ -176,6 +176,24 @@ void write_colors(const Scan& scan, const ScanLayout& layout, const RecordReader
 
 }  // namespace
 
+double largest_color(const Scan& scan, RecordReader& reader) {
+    constexpr uint64_t kSampled = uint64_t{1} << 18;  // records
+    const auto fields = scan.find(kColorFields);
+    double largest = 0;
+    for (uint64_t done = 0; fields && done < kSampled;) {
+        const auto count = reader.read(kBlockRecords);
+        if (!count || *count == 0) break;  // the pass over the points will report the error
+        Column column;
+        for (const size_t field : *fields) {
+            to_doubles(scan.fields[field], reader.column(field), *count, column);
+            for (size_t i = 0; i < *count; ++i)
+                if (std::isfinite(column[i])) largest = std::max(largest, column[i]);
+        }
+        done += *count;
+    }
+    return largest;
+}
+
 Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
                         const RecordReader& reader, size_t count, std::byte* to) {
     std::array<Column, 3> p;

@@ -47,9 +47,11 @@ struct Scan {
     std::optional<Pose> pose;
     std::optional<std::array<double, 2>> intensity_limits;
     std::optional<double> color_maximum;  ///< the largest of the three channel limits
+    double largest_color = 0;             ///< largest colour component in a sample, if no limits are stated
     /// The lowest and highest corner of its points in its own frame, as the file states them, right or wrong.
     std::optional<std::array<glm::dvec3, 2>> bounds;
 
+    bool states_color() const { return color_maximum && *color_maximum > 0; }
     /// Returns the index of the field `name`; nothing if there is none.
     std::optional<size_t> find(std::string_view name) const;
     /// Returns the indices of all three fields; nothing if one is missing.

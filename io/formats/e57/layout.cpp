@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/common/color_depth.h"
 #include "io/formats/common/format.h"
 
 namespace lucarne::io::e57 {
@@ -13,7 +14,7 @@ namespace {
 using Names = std::array<std::string_view, 3>;
 constexpr Names kCartesian = {"cartesianX", "cartesianY", "cartesianZ"};
 constexpr Names kSpherical = {"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
-constexpr Names kColor = {"colorRed", "colorGreen", "colorBlue"};
+constexpr Names kColor = kColorFields;
 constexpr Names kNormal = {"nor:normalX", "nor:normalY", "nor:normalZ"};
 
 /// The range of the values that an attribute must hold, over all scans.
@@ -72,17 +73,15 @@ struct ColorKind {
 
 ColorKind color_kind(const Scan& scan, const std::array<size_t, 3>& fields) {
     Range range;
-    int64_t declared = 0;
     bool whole = true;
     for (const size_t i : fields) {
         range.include(scan.fields[i]);
         whole = whole && scan.fields[i].kind == Field::Kind::integer;
-        declared = std::max(declared, scan.fields[i].maximum);
     }
     ColorKind kind;
     kind.type = range.type();
-    const double likely = !whole ? 1.0 : declared > 255 && declared < 65536 ? 65535.0 : 255.0;
-    kind.white = scan.color_maximum && *scan.color_maximum > 0 ? *scan.color_maximum : likely;
+    kind.white =
+        scan.states_color() ? *scan.color_maximum : color_white(color_bits_of(scan.largest_color, whole));
     // Some files state the limits of the data instead. Limits that need all of 8 or 16 bits therefore count
     // as the full range.
     if (kind.white > 127 && kind.white <= 255)

@@ -34,6 +34,11 @@ struct Layout {
     std::vector<ScanLayout> scans;
 };
 
+inline constexpr std::array<std::string_view, 3> kColorFields = {"colorRed", "colorGreen", "colorBlue"};
+/// Returns the largest colour component of the first records of a scan: of all of them, for most scans. 0 if
+/// there is none.
+double largest_color(const Scan& scan, RecordReader& reader);
+
 /// Returns a layout with the union of the scans' fields. Scans without records are ignored. Errors: scans
 /// without coordinates, more than kMostFields attributes in all.
 Result<Layout> make_layout(const std::string& file, const Document& document);

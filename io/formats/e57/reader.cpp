@@ -246,6 +246,12 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
         e57.sections.push_back(section.value_or(e57::Section{}));
     }
     LUCARNE_TRY(check_apart(name, header, e57));
+    for (size_t i = 0; i < e57.sections.size(); ++i) {
+        e57::Scan& scan = e57.document.scans[i];
+        if (scan.records == 0 || scan.states_color() || !scan.find(e57::kColorFields)) continue;
+        e57::RecordReader records(file, e57.sections[i], scan, options.salvage);
+        scan.largest_color = e57::largest_color(scan, records);
+    }
     LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
         log::warn("{}: it has more bytes than its header promises; they are ignored", name);

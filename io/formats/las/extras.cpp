@@ -180,6 +180,30 @@ Result<std::vector<std::byte>> descriptor_of(const std::string& path, const Attr
     return entry;
 }
 
+/// Returns the entries of a normal: three, which other programs know, unless the source had one.
+Result<std::vector<std::byte>> descriptors_of_normal(const std::string& path, const Attribute& normal,
+                                                     const Schema& fields, const Vlr* kept,
+                                                     std::set<std::string>& taken) {
+    const bool parts = normal.components == 3 && is_float(normal.type);
+    if (!parts || !kept_entry(kept, normal, normal.name).empty())
+        return descriptor_of(path, normal, fields, kept, taken);
+    std::array<std::string, 3> theirs = {"NormalX", "NormalY", "NormalZ"};
+    const auto entries = kept ? entries_of(kept->data) : std::span<const std::byte>();
+    for (size_t at = 0; at < entries.size(); at += kDescriptorBytes)
+        if (is_normal(entries.subspan(at))) {
+            for (size_t k = 0; k < 3; ++k)
+                theirs[k] = printable(extra_name(entries.subspan(at + k * kDescriptorBytes)));
+            break;
+        }
+    std::vector<std::byte> described;
+    for (const std::string& name : theirs) {
+        const Attribute part{name, normal.type, 1, 0};
+        LUCARNE_ASSIGN(const auto entry, descriptor_of(path, part, fields, kept, taken));
+        described.insert(described.end(), entry.begin(), entry.end());
+    }
+    return described;
+}
+
 /// Returns the record, and creates it if it is missing.
 Vlr& extra_record(Header& header) {
     const auto found = std::find_if(header.vlrs.begin(), header.vlrs.end(),
@@ -190,6 +214,23 @@ Vlr& extra_record(Header& header) {
 }
 
 }  // namespace
+
+bool is_normal(std::span<const std::byte> entries) {
+    if (entries.size() < 3 * kDescriptorBytes) return false;
+    const auto first = extra_type(entries);
+    if (!first || !is_float(first->type)) return false;
+    for (const std::string_view stem : {"normal", "n"}) {
+        bool all = true;
+        for (size_t k = 0; all && k < 3; ++k) {
+            const auto entry = entries.subspan(k * kDescriptorBytes, kDescriptorBytes);
+            const auto type = extra_type(entry);
+            all = type && type->type == first->type && type->components == 1 && scaling(entry) == kPlain &&
+                  same_letters(extra_name(entry), std::string(stem) + "xyz"[k]);
+        }
+        if (all) return true;
+    }
+    return false;
+}
 
 ExtraName name_of_extra(const Schema& fields, std::span<const std::byte> descriptor) {
     const std::string name = extra_name(descriptor);
@@ -275,7 +316,8 @@ Result<void> describe_extras(const std::string& path, Header& header, const std:
     for (const Attribute& a : extra) {
         bytes += a.bytes();
         if (a.name != "extra_bytes" || a.type != ScalarType::u8) {
-            LUCARNE_ASSIGN(const auto entry, descriptor_of(path, a, fields, kept, names));
+            const auto describe = a.name == io::names::normal ? descriptors_of_normal : descriptor_of;
+            LUCARNE_ASSIGN(const auto entry, describe(path, a, fields, kept, names));
             described.insert(described.end(), entry.begin(), entry.end());
         }
         if (bytes > 0xffff || described.size() > 0xffff)

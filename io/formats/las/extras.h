@@ -23,6 +23,11 @@ struct ExtraName {
 };
 ExtraName name_of_extra(const Schema& fields, std::span<const std::byte> descriptor);
 
+/// Returns whether the first three entries are the components of a normal, as CloudCompare and PDAL write
+/// them: NormalX, NormalY and NormalZ (or nx, ny, nz) of one real type, without scale and offset. They become
+/// one attribute, `normal`.
+bool is_normal(std::span<const std::byte> entries);
+
 /// Returns the attributes of the point format, with which a record of make_schema(header) begins. They have
 /// their usual names, whatever extra bytes are called.
 Schema fields_of(const Header& header);

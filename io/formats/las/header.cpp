@@ -8,6 +8,7 @@
 #include "io/core/counted.h"
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -46,7 +47,7 @@ class RecordReader {
             const uint64_t bytes = extended ? load<uint64_t>(&head[20]) : load<uint16_t>(&head[20]);
             at += head_bytes;
             if (bytes > end - at) return stop(n, count, kind);
-            Vlr vlr{text_field(&head[2], 16),
+            Vlr vlr{std::string(trimmed(text_field(&head[2], 16))),  // some writers pad it with blanks
                     load<uint16_t>(&head[18]),
                     text_field(&head[extended ? 28 : 22], 32),
                     extended,

@@ -147,6 +147,13 @@ void add_extra(Schema& schema, const Header& header) {
             if (descriptor[2] == std::byte{0} && descriptor[3] == std::byte{0}) continue;  // no bytes
             const auto type = extra_type(descriptor);
             if (!type || type->components * scalar_bytes(type->type) > left) break;
+            if (is_normal(entries.subspan(at)) && 3 * scalar_bytes(type->type) <= left &&
+                !schema.find(names::normal)) {
+                schema.add(std::string(names::normal), type->type, 3);
+                left -= schema.attributes.back().bytes();
+                at += 2 * kDescriptorBytes;
+                continue;
+            }
             const ExtraName extra = name_of_extra(fields, descriptor);
             if (extra.original) rename_field(schema, fields.attributes.size(), extra.name);
             schema.add(unique_name(schema, extra.name), type->type, type->components);

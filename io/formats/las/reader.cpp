@@ -8,6 +8,7 @@
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
+#include "io/formats/common/color_depth.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/stations.h"
@@ -124,11 +125,7 @@ class LasSource final : public PointSource {
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }
-        const Attribute* color = schema_.find(names::color);
-        if (color && color->type == ScalarType::u16 &&
-            color->components == 3) {  // extra bytes may have that name as well
-            LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
-        }
+        info_.color_bits = sampled_color_bits(*this);
         LasNotes kept = header_;
         kept.record_length = static_cast<uint16_t>(kept.record_length - header_.wave_bytes);
         info_.notes.las = std::move(kept);
@@ -203,43 +200,6 @@ class LasSource final : public PointSource {
         std::erase_if(header_.vlrs,
                       [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });
         return {};
-    }
-
-    /// Reads number `block` of `blocks` that are spread evenly over the file. Compressed points can only be
-    /// read in order, so then a block is the front of a chunk.
-    Result<std::vector<std::byte>> sample_block(uint64_t block, uint64_t blocks) const {
-        if (compressed_) {
-            constexpr uint64_t kDecoded = 4096, kDecodedBytes = uint64_t{16} << 20;
-            const size_t chunk = block * compressed_->chunks.size() / blocks;
-            const uint64_t most = std::min(kDecoded, kDecodedBytes / header_.record_length);
-            return laz::decode_chunk(*compressed_, chunk, std::max<uint64_t>(most, 1));
-        }
-        constexpr uint64_t kBlockPoints = 256;
-        const uint64_t first = block * header_.points / blocks;
-        std::vector<std::byte> raw(
-            static_cast<size_t>(std::min(kBlockPoints, header_.points - first) * header_.record_length));
-        LUCARNE_TRY(file_->read_at(header_.points_offset + first * header_.record_length, raw));
-        return raw;
-    }
-
-    /// Returns whether colours use 8 or 16 bits, judged from a sample of the whole file: the specification
-    /// requires 16 bits, but many writers store 0-255. Nothing is converted, so a wrong guess loses nothing.
-    Result<uint32_t> sample_color_bits(const Attribute& color, bool salvage) const {
-        constexpr uint64_t kBlocks = 64, kChunks = 16;
-        const uint64_t blocks = compressed_ ? std::min<uint64_t>(kChunks, compressed_->chunks.size())
-                                            : std::min(kBlocks, header_.points);
-        std::vector<std::byte> record(schema_.stride);
-        for (uint64_t block = 0; block < blocks; ++block) {
-            auto records = sample_block(block, blocks);
-            if (!records && salvage) continue;
-            LUCARNE_ASSIGN(const auto raw, std::move(records));
-            for (size_t at = 0; at < raw.size(); at += header_.record_length) {
-                las::decode(header_, &raw[at], 1, record.data(), schema_.stride);
-                for (size_t c = 0; c < 3; ++c)
-                    if (load<uint16_t>(&record[color.offset + 2 * c]) > 255) return 16u;
-            }
-        }
-        return 8u;
     }
 
     std::shared_ptr<const ByteSource> file_;

@@ -161,7 +161,7 @@ std::optional<Converter::Field> derived_field(const Schema& from, const Attribut
 }
 
 Converter make_converter(const Schema& from, const Schema& to, const std::vector<Attribute>& extra,
-                         bool extended, uint32_t color_bits, const std::optional<Range>& intensity) {
+                         bool extended, double white, const std::optional<Range>& intensity) {
     Converter converter(from, to);
     const size_t fields = to.attributes.size() - extra.size();
     for (size_t i = 0; i < fields; ++i) {
@@ -171,9 +171,7 @@ Converter make_converter(const Schema& from, const Schema& to, const std::vector
             if (const auto made = derived_field(from, field, extended, intensity)) converter.map(*made);
             continue;
         }
-        // Colours of 16 bits stay as they are. Others are spread over 16 bits, as the specification requires.
-        const bool spread = field.name == names::color && a->type != ScalarType::u16;
-        converter.map({*a, field, spread ? 65535.0 / color_white(color_bits) : 1.0});
+        converter.map({*a, field, field.name == names::color ? 65535.0 / white : 1.0});
         if (field.name != names::scan_angle) continue;
         // If scans of both kinds are merged, each point has only one of the two angles.
         if (const auto angle = angle_of_rank(from, field)) converter.map(*angle);
@@ -257,8 +255,11 @@ Result<Target> make_target(const std::string& path, const Schema& schema, const 
     header.scale = survey.lattice.scale;
     header.offset = survey.lattice.offset;
     target.schema = make_schema(header);
+    // The specification requires colours of 16 bits. Those of a LAS file stay as they are.
+    const Attribute* color = schema.find(names::color);
+    const bool kept = from_las && color && color->type == ScalarType::u16;
     target.converter = make_converter(schema, target.schema, extra, extended_format(header.point_format),
-                                      info.color_bits, survey.intensity);
+                                      kept ? 65535.0 : color_white(info.color_bits), survey.intensity);
     return target;
 }
 

@@ -9,12 +9,6 @@
 namespace lucarne::io::mesh {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 std::optional<Color8> color_of(std::string_view rest) {
     std::array<double, 3> rgb{};
     for (size_t k = 0; k < 3; ++k) {
@@ -93,7 +87,7 @@ void read_materials(std::string_view text, const std::filesystem::path& folder, 
         } else if (material && same_letters(word, "Kd")) {
             material->color = color_of(rest);
         } else if (material && same_letters(word, "map_Kd")) {
-            const auto name = texture_options(rest, *material);
+            const auto name = without_quotes(texture_options(rest, *material));
             if (!name.empty()) material->texture = companions.texture(name, folder);
         }
     }

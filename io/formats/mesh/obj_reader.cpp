@@ -111,19 +111,12 @@ class ObjParser {
         } else if (word == "mtllib") {
             library(rest);
         } else if (word == "usemtl") {
-            const auto found = materials_.find(trimmed(rest));
-            material_ = found == materials_.end() ? kNone : found->second;
+            material_ = material(trimmed(rest));
         } else {
             other_ += word == "l" || word == "p" || word == "curv" || word == "surf" || word == "call";
             strange_ = strange_ || !(is_one_of(kNumbered, word) || is_one_of(kNamed, word));
         }
         return {};
-    }
-
-    static std::string_view trimmed(std::string_view text) {
-        while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-        while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-        return text;
     }
 
     /// Reads as many numbers as there is room for, but at least `least`. Returns how many.
@@ -261,8 +254,26 @@ class ObjParser {
             if (text) read_materials(*text, path.parent_path(), companions_, mesh_, materials_);
         };
         rest = trimmed(rest);
-        if (rest.ends_with(".mtl") && rest.find(".mtl ") == rest.npos) return take(rest);
-        for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) take(word);
+        const std::string small = lower(rest);
+        const bool quoted = rest.find('"') != rest.npos;
+        if (!quoted && small.ends_with(".mtl") && small.find(".mtl ") == small.npos) return take(rest);
+        while (!(rest = trimmed(rest)).empty()) {
+            const size_t close = rest.front() == '"' ? rest.find('"', 1) : rest.npos;
+            if (close == rest.npos) {
+                take(next_word(rest));
+            } else {
+                take(rest.substr(1, close - 1));
+                rest.remove_prefix(close + 1);
+            }
+        }
+    }
+    /// Returns the number of a material, of one whose name differs in case if there is no other, or kNone.
+    uint32_t material(std::string_view name) const {
+        const auto found = materials_.find(name);
+        if (found != materials_.end()) return found->second;
+        for (const auto& [theirs, number] : materials_)
+            if (same_letters(theirs, name)) return number;
+        return kNone;
     }
 
     static constexpr uint32_t kNowhere = kNone - 1;  ///< beyond the end of every list

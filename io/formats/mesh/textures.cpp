@@ -7,6 +7,7 @@
 #include "io/core/log.h"
 #include "io/core/random.h"
 #include "io/formats/common/format.h"
+#include "io/formats/common/text.h"
 
 namespace lucarne::io::mesh {
 namespace {
@@ -14,6 +15,26 @@ namespace {
 constexpr uint64_t kMostText = uint64_t{64} << 20;  ///< of a material file
 constexpr size_t kMostTexts = 64, kMostTextures = 4096;
 constexpr uint64_t kMostAllPixels = uint64_t{1} << 28;  ///< of all textures together, three bytes each
+
+/// Returns the path, or if nothing is there, an entry below `folder` whose name differs only in case: the
+/// file may come from a system that does not distinguish.
+std::filesystem::path in_any_case(const std::filesystem::path& path, const std::filesystem::path& folder) {
+    constexpr size_t kMostEntries = 65536;
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) return path;
+    std::filesystem::path found = folder;
+    for (const auto& part : path.lexically_relative(folder.empty() ? "." : folder)) {
+        std::filesystem::path next = found / part;
+        std::filesystem::directory_iterator entry(found.empty() ? "." : found, error), end;
+        for (size_t i = 0;
+             !error && !std::filesystem::exists(next, error) && entry != end && i < kMostEntries;
+             ++i, entry.increment(error))
+            if (same_letters(entry->path().filename().string(), part.string()))
+                next = found / entry->path().filename();
+        found = std::move(next);
+    }
+    return std::filesystem::exists(found, error) ? found : path;
+}
 
 }  // namespace
 
@@ -27,8 +48,9 @@ std::filesystem::path Companions::place(std::string_view name, const std::filesy
     const auto whole = (from / wanted).lexically_normal();
     const auto inside = whole.lexically_relative(folder_.empty() ? "." : folder_);
     const bool drive = text.size() > 1 && text[1] == ':';
-    if (!drive && wanted.is_relative() && !inside.empty() && *inside.begin() != "..") return whole;
-    return from / wanted.filename();
+    if (!drive && wanted.is_relative() && !inside.empty() && *inside.begin() != "..")
+        return in_any_case(whole, folder_);
+    return in_any_case(from / wanted.filename(), from);
 }
 
 void Companions::count(const ByteSource& file) {

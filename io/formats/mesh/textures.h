@@ -14,7 +14,8 @@ namespace lucarne::io::mesh {
 
 /// Reads the files that a mesh names: materials and pictures. None may lie outside the mesh's own folder. If
 /// a path leads out of it, or begins at a root or drive, its last part is looked for beside the file that
-/// names it. Missing or broken files are reported and ignored.
+/// names it. A name that differs only in case from a file's stands for it. Missing or broken files are
+/// reported and ignored.
 class Companions {
  public:
     Companions(Mesh& mesh, const std::filesystem::path& mesh_file);

@@ -47,6 +47,7 @@ text::Field text_field(const Schema& schema, const ply::Layout::Column& column) 
     } else {
         field.kind = text::Field::Kind::scalar;
         field.to = place_of(schema, column);
+        if (column.attribute == names::color) field.type = schema.find(names::color)->type;
     }
     return field;
 }

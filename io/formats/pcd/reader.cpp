@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/formats/common/buffered_input.h"
+#include "io/formats/common/color_depth.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/text.h"
@@ -146,8 +147,7 @@ class PcdSource final : public PointSource {
         LUCARNE_ASSIGN(auto remarks, remarks_of(info_.path, header_.comments));
         info_.stations = std::move(remarks.stations);
         set_unit(info_, options, remarks.metres_per_unit);
-        if (const Attribute* color = schema().find(names::color); color && color->type != ScalarType::u8)
-            info_.color_bits = remarks.color_bits.value_or(color->type == ScalarType::u16 ? 16u : 0u);
+        info_.color_bits = remarks.color_bits ? *remarks.color_bits : sampled_color_bits(*this);
         const auto& v = header_.viewpoint;
         const glm::dvec3 viewpoint(v[0], v[1], v[2]);
         // Writers of clouds without a grid often leave the viewpoint at its default.

@@ -48,7 +48,7 @@ class HeaderParser {
             if (number == 1 || word.empty()) continue;  // "ply", checked before
             if (word == "end_header") break;
             if (word == "comment" || word == "obj_info") {
-                (word == "comment" ? header_.comments : header_.infos).push_back(trimmed(rest));
+                (word == "comment" ? header_.comments : header_.infos).push_back(std::string(trimmed(rest)));
                 continue;
             }
             Result<void> understood;
@@ -74,12 +74,6 @@ class HeaderParser {
 
  private:
     static tl::unexpected<Error> wrong(std::string why) { return rejected("", std::move(why)); }
-    static std::string trimmed(std::string_view text) {
-        while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-        while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-        return std::string(text);
-    }
-
     Result<void> find_line_end() {
         LUCARNE_ASSIGN(const auto head, input_.peek(64));
         const auto at = std::find_if(head.begin(), head.end(), [](std::byte b) {

@@ -22,6 +22,10 @@ constexpr std::array kKnown = {names::intensity,       names::classification,
                                names::user_data,       names::point_source_id,
                                names::gps_time,        names::nir};
 
+bool is_real(ScalarType type) {
+    return type == ScalarType::f32 || type == ScalarType::f64;
+}
+
 class LayoutMaker {
  public:
     LayoutMaker(const std::vector<Property>& properties, Encoding encoding) {
@@ -78,9 +82,7 @@ class LayoutMaker {
             if (floats || properties_[axis].type == ScalarType::f64) {
                 copy(axis, k * (floats ? 4 : 8));
             } else {
-                layout_.steps.push_back(
-                    {Layout::Step::Kind::to_double, properties_[axis].type, offsets_[axis], 8 * k, 1});
-                done_[axis] = true;
+                convert(Layout::Step::Kind::to_double, axis, 8 * k);
             }
         }
     }
@@ -88,14 +90,15 @@ class LayoutMaker {
     /// Returns the type of an attribute of these three components; empty if they cannot form one.
     std::optional<ScalarType> common(const std::array<size_t, 3>& members, bool color) const {
         const ScalarType first = properties_[members[0]].type;
-        const bool same = std::all_of(members.begin(), members.end(),
-                                      [&](size_t m) { return properties_[m].type == first; });
-        const bool real = first == ScalarType::f32 || first == ScalarType::f64;
-        if (same && (real || (color && first == ScalarType::u16))) return first;
+        const auto all = [&](const auto& holds) {
+            return std::ranges::all_of(members, [&](size_t m) { return holds(properties_[m].type); });
+        };
+        if (is_real(first) && all([&](ScalarType type) { return type == first; })) return first;
+        if (!color) return std::nullopt;
         // Some writers say char where they mean uchar; the bits are the same.
-        const bool bytes = std::all_of(members.begin(), members.end(),
-                                       [&](size_t m) { return scalar_bytes(properties_[m].type) == 1; });
-        return color && bytes ? std::optional(ScalarType::u8) : std::nullopt;
+        if (all([](ScalarType type) { return scalar_bytes(type) == 1; })) return ScalarType::u8;
+        return all([](ScalarType type) { return !is_real(type); }) ? std::optional(ScalarType::u16)
+                                                                   : std::nullopt;
     }
 
     template <size_t N>
@@ -115,13 +118,23 @@ class LayoutMaker {
             layout_.schema.add(std::string(name), *type, 3);
             const auto at = layout_.schema.attributes.back().offset;
             for (uint32_t k = 0; k < 3; ++k) {
-                copy(members[k], at + k * static_cast<uint32_t>(scalar_bytes(*type)));
+                const uint32_t to = at + k * static_cast<uint32_t>(scalar_bytes(*type));
+                const ScalarType from = properties_[members[k]].type;
+                if (*type == ScalarType::u16 && from != ScalarType::u16)
+                    convert(Layout::Step::Kind::to_u16, members[k], to);
+                else
+                    copy(members[k], to);
                 layout_.columns[members[k]].attribute = name;
                 layout_.columns[members[k]].component = k;
             }
             return true;
         }
         return false;
+    }
+
+    void convert(Layout::Step::Kind kind, size_t property, uint32_t to) {
+        layout_.steps.push_back({kind, properties_[property].type, offsets_[property], to, 1});
+        done_[property] = true;
     }
 
     void copy(size_t property, uint32_t to) {
@@ -187,14 +200,16 @@ bool Layout::unpack(const std::byte* packed, std::byte* record) const {
             case Step::Kind::swap:
                 swap_scalars(scalar_bytes(step.type), packed + step.from, record + step.to, step.count);
                 break;
-            case Step::Kind::to_double: {
+            case Step::Kind::to_double:
+            case Step::Kind::to_u16: {
                 std::array<std::byte, 8> native{};
                 const size_t bytes = scalar_bytes(step.type);
                 if (big_endian)
                     swap_scalars(bytes, packed + step.from, native.data(), 1);
                 else
                     std::memcpy(native.data(), packed + step.from, bytes);
-                store(record + step.to, scalar_at(step.type, native.data()));
+                store_scalar(step.kind == Step::Kind::to_u16 ? ScalarType::u16 : ScalarType::f64,
+                             record + step.to, scalar_at(step.type, native.data()));
                 break;
             }
         }

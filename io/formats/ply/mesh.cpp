@@ -78,9 +78,8 @@ class MeshLoader {
         for (const std::string& comment : header_.comments) {
             std::string_view rest = comment;
             if (next_word(rest) != "TextureFile") continue;
-            while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
             mesh::Material& material = mesh_.materials.emplace_back();
-            material.texture = companions_.texture(rest, file_->path().parent_path());
+            material.texture = companions_.texture(without_quotes(rest), file_->path().parent_path());
         }
     }
 

@@ -7,6 +7,7 @@
 
 #include "io/core/log.h"
 #include "io/formats/common/buffered_input.h"
+#include "io/formats/common/color_depth.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/text.h"
@@ -136,7 +137,8 @@ class PlySource final : public PointSource {
         LUCARNE_ASSIGN(auto remarks, remarks_of(name, header_.comments));
         info_.stations = std::move(remarks.stations);
         set_unit(info_, options, remarks.metres_per_unit);
-        LUCARNE_ASSIGN(info_.color_bits, find_color_bits(remarks.color_bits));
+        LUCARNE_ASSIGN(const uint32_t color_bits, find_color_bits());
+        info_.color_bits = remarks.color_bits.value_or(color_bits);
         if (layout_.flat) log::warn("{}: its vertices have no z, it is taken as 0", name);
         info_.notes.ply = ply::notes_of(header_);
         info_.notes.color_bits = info_.color_bits;
@@ -234,9 +236,6 @@ class PlySource final : public PointSource {
         std::vector<uint64_t> places = {vertices_offset_};
         const uint64_t count = header_.vertices().count;
         if (count <= kBlocks * kBlockPoints) return places;
-        if (fixed())
-            for (uint64_t block = 1; block < kBlocks; ++block)
-                places.push_back(vertices_offset_ + count / kBlocks * block * layout_.packed_bytes);
         if (header_.encoding != ply::Encoding::ascii) return places;
         std::array<std::byte, size_t{1} << 16> bytes{};
         for (uint64_t block = 1; block < kBlocks; ++block) {
@@ -251,27 +250,20 @@ class PlySource final : public PointSource {
         return places;
     }
 
-    /// Returns the number of colour bits, judged by the largest component of a sample. Nothing is converted,
-    /// so a wrong guess loses nothing.
-    Result<uint32_t> find_color_bits(std::optional<uint32_t> stated) const {
-        const Attribute* color = layout_.schema.find(names::color);
-        if (!color || color->type == ScalarType::u8) return 8u;
-        if (stated) return *stated;
+    /// Returns the colour bits that a sample needs.
+    Result<uint32_t> find_color_bits() const {
+        ColorDepth depth(layout_.schema);
+        if (!depth.open()) return depth.bits();
+        if (fixed()) return sampled_color_bits(*this);
         LUCARNE_ASSIGN(const auto places, sample_places());
-        double largest = 0;
         for (const uint64_t place : places) {
             PlyReader reader(file_, header_, layout_, place, {});
             PointBatch batch;
             // The real pass will report errors further inside.
             (void)reader.read(batch, places.size() > 1 ? kBlockPoints : kBlocks * kBlockPoints);
-            for (size_t i = 0; i < batch.count * 3; ++i) {
-                const std::byte* record = batch.bytes.data() + i / 3 * layout_.schema.stride;
-                largest = std::max(largest, scalar_at(color->type, record + color->offset +
-                                                                       i % 3 * scalar_bytes(color->type)));
-            }
+            depth.add(std::span(batch.bytes).first(batch.count * layout_.schema.stride));
         }
-        if (color->type == ScalarType::u16) return largest > 255 ? 16u : 8u;
-        return largest > 255 ? 16u : largest > 1 ? 8u : 0u;
+        return depth.bits();
     }
 
     static constexpr uint64_t kBlocks = 64, kBlockPoints = 256;  ///< of a sample

@@ -61,12 +61,14 @@ class OutputPlan {
         if (!a || component >= a->components) return std::nullopt;
         return Value{a->type, a->offset + component * static_cast<uint32_t>(scalar_bytes(a->type))};
     }
-    /// Returns whether the reader turned this source type into `held`: the same type, bytes called char, or
-    /// integers as coordinates.
+    /// Returns whether the reader turned this source type into `held`: the same type, bytes called char,
+    /// integers as coordinates, or wide integers as colours.
     static bool keeps_type(const Layout::Column& column, ScalarType held) {
         const ScalarType source = column.property.type;
+        const bool wide = source == ScalarType::i32 || source == ScalarType::u32;
         return source == held || (scalar_bytes(source) == 1 && scalar_bytes(held) == 1) ||  // char for uchar
-               (column.attribute.empty() && held == ScalarType::f64);  // whole coordinates
+               (column.attribute.empty() && held == ScalarType::f64) ||  // whole coordinates
+               (column.attribute == names::color && wide && held == ScalarType::u16);
     }
     static std::string property_name(const Attribute& a, uint32_t component) {
         constexpr std::array<std::string_view, 3> kColor = {"red", "green", "blue"},

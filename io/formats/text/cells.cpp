@@ -1,6 +1,7 @@
 #include "io/formats/text/cells.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 namespace lucarne::io::text {
@@ -27,7 +28,7 @@ bool may_be_decimal(std::string_view line) {
 std::vector<std::string_view> split(std::string_view line, char separator) {
     std::vector<std::string_view> cells;
     const auto skip_blanks = [&] {
-        while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+        while (!line.empty() && is_padding(line.front(), separator)) line.remove_prefix(1);
     };
     for (bool more = true; more;) {
         skip_blanks();
@@ -47,6 +48,32 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
             cells.push_back(cell);  // a separator after the last cell means nothing
     }
     return cells;
+}
+
+std::vector<std::string_view> with_brackets(const std::vector<std::string_view>& words) {
+    std::vector<std::string_view> joined;
+    bool open = false;
+    for (const std::string_view word : words) {
+        const bool begins = word.starts_with('(') || word.starts_with('[');
+        if (!joined.empty() && (begins || open)) {
+            const char* first = joined.back().data();
+            joined.back() = {first, static_cast<size_t>(word.data() + word.size() - first)};
+        } else {
+            joined.push_back(word);
+        }
+        const size_t last = joined.back().find_last_of("([])");
+        open = last != std::string_view::npos && (joined.back()[last] == '(' || joined.back()[last] == '[');
+    }
+    return joined;
+}
+
+bool says_no_number(std::string_view cell) {
+    constexpr std::array<std::string_view, 4> kWords = {"null", "n/a", "na", "none"};
+    if (cell.size() < 2 || cell.size() > 12) return false;
+    if (cell.front() == '-' || cell.front() == '+') cell.remove_prefix(1);
+    const std::string word = lower(cell);
+    return word.starts_with("1.#ind") || word.starts_with("1.#qnan") || word.starts_with("1.#snan") ||
+           word.starts_with("1.#inf") || std::ranges::find(kWords, word) != kWords.end();
 }
 
 bool is_row(const std::vector<std::string_view>& cells) {

@@ -11,7 +11,7 @@ namespace lucarne::io::text {
 
 /// How the cells of a line are separated, and what their numbers look like.
 struct Cut {
-    char separator = ' ';        ///< ' ' means blanks; otherwise ',' or ';' with optional blanks
+    char separator = ' ';  ///< ' ' means blanks; otherwise ',' ';' or a tab, with optional blanks around it
     bool decimal_comma = false;  ///< "12,5"; then no comma is a separator
 };
 
@@ -38,12 +38,28 @@ inline std::string_view unquoted(std::string_view cell) {
     return quoted ? cell.substr(1, cell.size() - 2) : cell;
 }
 
+/// Returns whether a character is a blank beside a cell, and not what separates cells.
+inline bool is_padding(char c, char separator) {
+    return is_blank(c) && (c != separator || separator == ' ');
+}
+
 /// Splits a line into cells. A quoted cell may hold separators.
 std::vector<std::string_view> split(std::string_view line, char separator);
 
-/// Returns a cell as a number. The decimal separator must be a point.
+/// Joins the words of a header that stand in brackets to the word before: "X (US", "ft)" becomes "X (US ft)".
+/// The words must be parts of one text, in its order.
+std::vector<std::string_view> with_brackets(const std::vector<std::string_view>& words);
+
+/// Returns whether a cell says that there is no number: NULL, N/A, None, or the NaN of old Microsoft
+/// compilers
+/// (-1.#IND, 1.#QNAN, 1.#SNAN). Infinities (1.#INF) count as well.
+bool says_no_number(std::string_view cell);
+
+/// Returns a cell as a number, NaN if it says that there is none. The decimal separator must be a point.
 inline std::optional<double> cell_number(std::string_view cell) {
-    return parse_number<double>(unquoted(cell));
+    const auto value = parse_number<double>(unquoted(cell));
+    if (value || !says_no_number(unquoted(cell))) return value;
+    return std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Returns whether cells may be a point: at least three are a number or empty, and not all of them are empty.

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/common/color_depth.h"
 #include "io/formats/common/text.h"
+#include "io/formats/common/units.h"
 
 namespace lucarne::io::text {
 namespace {
@@ -365,6 +367,29 @@ std::optional<std::vector<Column>> named_columns(const std::vector<std::string_v
     return columns;
 }
 
+AxisUnit axis_unit(const std::vector<std::string_view>& words, const std::vector<Column>& columns) {
+    std::array<std::optional<double>, 3> metres;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        std::string_view text = words[index_of(columns, kAxes[axis])];
+        const size_t open = text.find_first_of("[(");
+        if (open == text.npos) continue;
+        text = text.substr(open + 1, text.find_first_of("])", open) - open - 1);
+        metres[axis] = metres_of_name(text);
+        if (lower(text).starts_with("deg") || text == "\u00b0")
+            return {std::nullopt, "its coordinates are degrees, not lengths; project them to metres first"};
+        if (!metres[axis])
+            return {std::nullopt,
+                    fmt::format("its header names the unit '{}', which is not known; --unit says "
+                                "what it is",
+                                printable(text))};
+    }
+    AxisUnit unit{metres[0] ? metres[0] : metres[1], {}};
+    if (unit.metres && metres[2] && *metres[2] != *unit.metres)
+        unit.problem = "its heights are in another unit than the other coordinates; they are not converted";
+    if (!unit.metres) unit.metres = metres[2];
+    return unit;
+}
+
 std::optional<std::vector<Column>> guess_columns(const Sample& sample, bool pts) {
     const auto axes = guess_axes(sample);
     if (!axes) return std::nullopt;
@@ -425,8 +450,7 @@ uint32_t color_bits(const std::vector<Column>& columns, const Sample& sample) {
         whole = whole && (look.whole || !look.numbers);
         if (look.numbers) most = std::max(most, look.most);
     }
-    if (whole) return most > 255 ? 16 : 8;
-    return most > 255 ? 16 : most > 1 ? 8 : 0;
+    return color_bits_of(most, whole);
 }
 
 }  // namespace lucarne::io::text

@@ -24,7 +24,8 @@ struct Sample {
     /// For each column, whether more than one cell in a hundred is no number. Fewer such cells count as
     /// damage, which is reported.
     std::vector<bool> words;
-    bool whole = true;  ///< the sample holds every row of the file
+    bool whole = true;      ///< the sample holds every row of the file
+    std::string no_number;  ///< the first cell that says_no_number; empty if there is none
     size_t rows() const { return columns ? values.size() / columns : 0; }
     double at(size_t row, size_t column) const { return values[row * columns + column]; }
 };
@@ -39,6 +40,14 @@ std::optional<std::vector<Column>> written_columns(std::string_view text);
 /// Interprets the words of a header: names that other programs use become Lucarne's. Returns nothing unless
 /// x, y and z are among them exactly once each.
 std::optional<std::vector<Column>> named_columns(const std::vector<std::string_view>& words);
+
+/// The unit of length that the names of x, y and z state in brackets: "X (mm)", "Easting [US ft]".
+struct AxisUnit {
+    std::optional<double> metres;
+    std::string problem;  ///< what the user must know: degrees, a unit that is not known, or different units
+};
+/// `columns` are the named_columns of `words`.
+AxisUnit axis_unit(const std::vector<std::string_view>& words, const std::vector<Column>& columns);
 
 /// Guesses the columns. The first three columns of numbers are x, y, z. A first column before three columns
 /// of fractions is skipped if it counts up in whole numbers ("id") or if some of its cells are words ("4a").

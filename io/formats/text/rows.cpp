@@ -123,7 +123,7 @@ class RowParser {
 
  private:
     void skip_blanks() {
-        while (is_blank(*at_) && *at_ != layout_.line_end) ++at_;
+        while (is_padding(*at_, layout_.separator) && *at_ != layout_.line_end) ++at_;
     }
     void next_line() {
         at_ =
@@ -198,7 +198,9 @@ class RowParser {
                     return store_exactly<uint64_t>(unquoted(word()), record + field.to);
                 if (field.type == ScalarType::i64)
                     return store_exactly<int64_t>(unquoted(word()), record + field.to);
-                if (number(value) && store_value(field.type, value, record + field.to)) return true;
+                if (!number(value)) break;
+                if (std::isnan(value)) return missing_value(field, record);
+                if (store_value(field.type, value, record + field.to)) return true;
                 break;
             case Field::Kind::packed:
                 if (packed_color(field, record)) return true;

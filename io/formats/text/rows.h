@@ -33,7 +33,7 @@ struct Field {
 struct RowLayout {
     Schema schema;
     std::vector<Field> fields;  ///< in the order of the columns
-    char separator = ' ';       ///< ' ' means blanks; otherwise ',' or ';' with optional blanks
+    char separator = ' ';  ///< ' ' means blanks; otherwise ',' ';' or a tab, with optional blanks around it
     char line_end = '\n';
     bool decimal_comma = false;   ///< "12,5"; every comma is a decimal comma
     bool has_counts = false;      ///< a row of one whole number states how many rows follow (PTS)

@@ -28,13 +28,13 @@ class Sampler {
             const size_t length = end == text.npos ? text.size() : end + 1;
             text.remove_prefix(length);
             at += length;
-            while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+            while (!line.empty() && is_padding(line.front(), layout_.separator)) line.remove_prefix(1);
             if (line.empty() || is_comment(line)) continue;
             ++rows_;
             if (begin < next) continue;
             next += step_;
             auto cells = split(line, layout_.separator);
-            while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+            while (!line.empty() && is_padding(line.back(), layout_.separator)) line.remove_suffix(1);
             const bool open = layout_.separator != ' ' && line.ends_with(layout_.separator);
             if (open && cells.size() + 1 == sample_.columns) cells.emplace_back();  // the last cell is empty
             keep(cells);
@@ -70,6 +70,7 @@ class Sampler {
         }
         for (size_t c = 0; c < cells.size(); ++c) {
             const auto value = cell_number(cells[c]);
+            if (sample_.no_number.empty() && says_no_number(unquoted(cells[c]))) sample_.no_number = cells[c];
             words_.push_back(!value && !cells[c].empty());
             sample_.values.push_back(value.value_or(NAN));
         }

@@ -35,11 +35,6 @@ struct Head {
     size_t columns = 0;
 };
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 class TextSource final : public PointSource {
  public:
     explicit TextSource(std::shared_ptr<const ByteSource> file) : file_(std::move(file)) {}
@@ -55,7 +50,9 @@ class TextSource final : public PointSource {
         head_.layout.has_counts = pts;
         LUCARNE_ASSIGN(auto sampled,
                        take_sample(*file_, head_.begin, file_->size(), head_.layout, head_.columns));
-        LUCARNE_ASSIGN(const auto columns, choose_columns(sampled.sample, given, options.quiet));
+        LUCARNE_ASSIGN(const auto columns, choose_columns(sampled.sample, given, options));
+        if (const auto& cell = sampled.sample.no_number; !cell.empty() && !options.quiet)
+            log::info("{}: cells such as '{}' are read as no number", file_->path().string(), cell);
         Section section{head_.begin, file_->size(), make_layout(columns, sampled.sample), {}, head_.line};
         section.layout.separator = head_.layout.separator;
         section.layout.decimal_comma = head_.layout.decimal_comma;
@@ -65,7 +62,7 @@ class TextSource final : public PointSource {
         sections_.push_back(std::move(section));
         LUCARNE_ASSIGN(const auto remarks, remarks_of(file_->path().string(), head_.remarks));
         info_.stations = remarks.stations;
-        set_unit(info_, options, remarks.metres_per_unit);
+        set_unit(info_, options, remarks.metres_per_unit ? remarks.metres_per_unit : unit_);
         fill_info(pts ? "PTS" : "XYZ", columns, sampled, remarks);
         // The last row may lack its line end.
         const uint64_t most =
@@ -125,7 +122,11 @@ class TextSource final : public PointSource {
                 set_begin(begin, number);
             } else if (begins_rows(cells, given)) {
                 if (!head_.count) set_begin(begin, number);
-                return take_cut(*cut, cells.size());
+                // Tabs separate where they do so in the header: names and cells may hold blanks, or nothing.
+                const bool tabs = cut->separator == ' ' && line.find('\t') != line.npos &&
+                                  (head_.header + head_.comment).find('\t') != std::string::npos;
+                if (tabs) cut->separator = '\t';
+                return take_cut(*cut, tabs ? split(with_points, '\t').size() : cells.size());
             } else if (head_.count) {
                 break;
             } else {
@@ -159,7 +160,7 @@ class TextSource final : public PointSource {
 
     Result<std::vector<Column>> choose_columns(const Sample& sample,
                                                const std::optional<std::vector<Column>>& given,
-                                               bool quiet) const {
+                                               const ReadOptions& options) {
         if (given) {
             if (given->size() != sample.columns)
                 return bad_arguments("--columns",
@@ -177,8 +178,15 @@ class TextSource final : public PointSource {
             auto words = split(text, head_.layout.separator);
             // Blanks may separate the words of a comment even if commas separate the cells of the rows.
             if (!is_header && words.size() != sample.columns) words = split(text, ' ');
+            if (words.size() != sample.columns) words = with_brackets(words);
             auto columns = named_columns(words);
-            if (columns && words.size() == sample.columns) return std::move(*columns);
+            if (columns && words.size() == sample.columns) {
+                const AxisUnit unit = axis_unit(words, *columns);
+                if (!unit.problem.empty() && !options.quiet && !options.metres_per_unit)
+                    log::warn("{}: {}", file_->path().string(), unit.problem);
+                unit_ = unit.metres;
+                return std::move(*columns);
+            }
             if (is_header && !text.empty())
                 return rejected(
                     file_->path().string(),
@@ -190,7 +198,7 @@ class TextSource final : public PointSource {
         auto columns = guess_columns(sample, head_.layout.has_counts);
         if (!columns) return rejected(file_->path().string(), std::string(kNoRows));
         const std::string text = columns_text(*columns);
-        if (!quiet)
+        if (!options.quiet)
             log::info("{}: its columns are taken as {}{}; --columns can say otherwise",
                       file_->path().string(), text, text.find('-') == text.npos ? "" : " (- is left out)");
         return std::move(*columns);
@@ -217,6 +225,7 @@ class TextSource final : public PointSource {
     std::shared_ptr<const ByteSource> file_;
     Head head_;
     std::vector<Section> sections_;
+    std::optional<double> unit_;  ///< that the header states, in metres
     ScanInfo info_;
 };
 

@@ -16,11 +16,11 @@ namespace lucarne::octree {
 class BuildListener {
  public:
     virtual ~BuildListener() = default;
-    /// All points have been read: bounds, root cube and count are those of the cache. The schema is still
-    /// that of the inputs.
-    virtual void scanned(const SourceHeader& header) = 0;
+    /// All points have been read: bounds, root cube and count are those of the cache. The header's schema is
+    /// still that of the inputs; `records` is that of the nodes.
+    virtual void scanned(const SourceHeader& header, const io::Schema& records) = 0;
     /// Nodes follow from here on, with records of this schema.
-    virtual void building(const io::Schema& schema) = 0;
+    virtual void building(const io::Schema& records) = 0;
     /// These nodes are in the file in their final form: children before parents, along the Morton curve.
     virtual void settled(std::span<const format::Entry> entries) = 0;
     /// A node whose descendants are all final, and the points it shows until its parent has taken some of

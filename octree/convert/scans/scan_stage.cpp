@@ -8,8 +8,10 @@
 
 #include "io/core/counted.h"
 #include "io/core/log.h"
+#include "io/formats/common/color_depth.h"
 #include "octree/convert/chunks/record_bytes.h"
 #include "octree/convert/scans/early_count.h"
+#include "octree/tree/point_normals.h"
 
 namespace lucarne::octree {
 namespace {
@@ -63,6 +65,7 @@ std::vector<std::byte> ScanFacts::save() const {
     ByteWriter writer;
     writer.put(points);
     writer.put(dropped);
+    writer.put(without_normal);
     writer.put(min);
     writer.put(max);
     writer.put(root);
@@ -71,6 +74,7 @@ std::vector<std::byte> ScanFacts::save() const {
         writer.put(input.points);
         writer.put(input.min);
         writer.put(input.max);
+        writer.put(input.color_bits);
         writer.put(uint64_t{input.losses.size()});
         for (const auto& loss : input.losses) {
             put_text(writer, loss.what);
@@ -84,6 +88,7 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
     ScanFacts facts;
     facts.points = reader.get<uint64_t>();
     facts.dropped = reader.get<uint64_t>();
+    facts.without_normal = reader.get<uint64_t>();
     facts.min = reader.get<glm::dvec3>();
     facts.max = reader.get<glm::dvec3>();
     facts.root = reader.get<Cube>();
@@ -92,6 +97,7 @@ Result<ScanFacts> ScanFacts::restore(std::span<const std::byte> record) {
         input.points = reader.get<uint64_t>();
         input.min = reader.get<glm::dvec3>();
         input.max = reader.get<glm::dvec3>();
+        input.color_bits = reader.get<uint32_t>();
         for (auto losses = reader.get<uint64_t>(); losses > 0 && reader.sound(); --losses) {
             std::string what = get_text(reader);
             input.losses.push_back({std::move(what), reader.get<uint64_t>()});
@@ -114,8 +120,10 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ScanFacts facts{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
     const auto& schema = inputs.schema();
+    const PointNormals normals(schema);
     for (size_t input = first; input < inputs.inputs(); ++input) {
         io::Contents seen{.min = glm::dvec3(kInfinity), .max = glm::dvec3(-kInfinity)};
+        io::ColorDepth depth(schema);
         LUCARNE_ASSIGN(
             LeftOut left,
             read_input(inputs, input, batch_bytes, [&](std::span<const std::byte> records) -> Result<void> {
@@ -125,11 +133,14 @@ Result<ScanFacts> scan_inputs(const Unifier& inputs, uint64_t batch_bytes, size_
                     seen.max = glm::max(seen.max, p);
                 }
                 seen.points += records.size() / schema.stride;
+                depth.add(records);
+                facts.without_normal += normals.missing(records, schema.stride);
                 if (early) early->add(schema, records, seen.min, seen.max);
                 return {};
             }));
         for (const auto& loss : left.losses)
             log::warn("{}: {}", inputs.source(input).info().path, counted(loss.count, loss.what));
+        seen.color_bits = depth.bits();
         facts.min = glm::min(facts.min, seen.min);
         facts.max = glm::max(facts.max, seen.max);
         facts.points += seen.points;

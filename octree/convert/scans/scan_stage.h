@@ -9,6 +9,8 @@ namespace lucarne::octree {
 /// The results of one pass over the inputs.
 struct ScanFacts {
     uint64_t points = 0, dropped = 0;
+    /// Points without a usable normal of their own: the input has none, or the point's is zero or not finite.
+    uint64_t without_normal = 0;
     glm::dvec3 min{0.0}, max{0.0};
     Cube root;  ///< the smallest cube at `min` that contains every point
     std::vector<io::Contents> inputs;

@@ -97,6 +97,18 @@ TEST_F(Units, ColoursOf8BitsAmongOthersOf16HaveTheirWhite) {
     EXPECT_EQ(header.scans[2].color_bits, 8u) << "stay as they are in their 16 bits";
 }
 
+TEST_F(Units, ColoursThatNoSampleMetCorrectTheWhite) {
+    io::Schema schema;
+    schema.add(std::string(io::names::color), io::ScalarType::u16, 3);
+    sources_.emplace_back(schema, 10, [](uint64_t, std::byte*) {}).info().color_bits = 8;
+    const Unifier inputs = unified();
+    ScanFacts facts;
+    facts.inputs.push_back({.points = 10, .color_bits = 16});
+    EXPECT_EQ(header_of(inputs, facts, inputs.schema()).scans[0].color_bits, 16u);
+    facts.inputs[0].color_bits = 8;
+    EXPECT_EQ(header_of(inputs, facts, inputs.schema()).scans[0].color_bits, 8u);
+}
+
 TEST_F(Units, WhereNoneStatesOneItIsTheMetre) {
     add("rows.xyz", 1);
     add("mesh.obj", 1);

@@ -244,7 +244,7 @@ TEST(EarlyCount, ChangesAfterwardsAreNoticed) {
 /// Notes how far the distribution of the points came.
 class SortingProgress final : public BuildListener {
  public:
-    void scanned(const SourceHeader&) override {}
+    void scanned(const SourceHeader&, const io::Schema&) override {}
     void building(const io::Schema&) override {}
     void settled(std::span<const format::Entry>) override {}
     void pending(const Pending&, std::span<const std::byte>, const CacheWriter&) override {}

@@ -1,5 +1,6 @@
 // Normals and areas through the whole conversion.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "octree/cache/cache.h"
 #include "octree/convert/build.h"
 #include "octree/tree/attributes.h"
+#include "octree/tree/point_normals.h"
 #include "tests/octree/test_sources.h"
 
 namespace lucarne::octree {
@@ -159,6 +161,66 @@ TEST(SurfaceBuild, KeepsTheInputsNormalsAndEstimatesAreasOnly) {
     EXPECT_TRUE(both->header().schema.find(io::names::normal_oct) &&
                 both->header().schema.find("normal_in_file"));
     EXPECT_FALSE(both->header().schema.find(io::names::normal)) << "the estimated ones replace them";
+}
+
+/// The sphere with normals of its own, except every third point's, which are zero or not a number.
+ComputedSource partly_known_sphere(uint64_t points) {
+    const auto known = std::make_shared<ComputedSource>(sphere(points, true));
+    return {known->schema(), points, [known](uint64_t index, std::byte* record) {
+                const uint64_t only = index;
+                io::PointBatch batch;
+                (void)known->pick(std::span(&only, 1), batch);
+                std::memcpy(record, batch.bytes.data(), batch.bytes.size());
+                const float none = index % 2 ? std::numeric_limits<float>::quiet_NaN() : 0.0f;
+                if (index % 3 == 0) io::store(record + 24, glm::vec3(none));
+            }};
+}
+
+TEST(SurfaceBuild, EstimatesTheNormalsOfPointsWhoseOwnIsZeroOrNoNumber) {
+    const TempFolder folder;
+    const auto source = partly_known_sphere(30'000);
+    BuildOptions options;
+    options.inputs = {&source};
+    options.output = folder / "a.luc";
+    const auto report = build_cache(options);
+    ASSERT_TRUE(report) << report.error().line();
+    EXPECT_EQ(report->estimated_normals, 10'000u);
+    const auto cache = open_cache(folder / "a.luc");
+    ASSERT_TRUE(cache) << cache.error().line();
+    const auto& schema = (*cache)->header().schema;
+    const PointNormals normals(schema);
+    uint64_t lit = 0, right = 0;
+    for (uint32_t node = 0; node < (*cache)->nodes().size(); ++node) {
+        const auto data = (*cache)->load(node);
+        for (size_t i = 0; i < data->count; ++i) {
+            const std::byte* record = &data->records[i * schema.stride];
+            const glm::dvec3 normal(normals.of(record));
+            const glm::dvec3 out =
+                glm::normalize(io::position_of(schema, record) - glm::dvec3(100, 200, 300));
+            lit += normal != glm::dvec3(0.0);
+            right += std::abs(glm::dot(normal, out)) > 0.99;
+        }
+    }
+    EXPECT_GT(lit, 29'900u);
+    EXPECT_GT(right, 29'700u);
+    EXPECT_TRUE(test::sorted_records(**cache, 36) == test::sorted_records(source, 36))
+        << "the file's own stay";
+}
+
+TEST(SurfaceBuild, KeepsOnlyNormalsThatAreThere) {
+    const TempFolder folder;
+    const ComputedSource none(sphere(1, true).schema(), 100, [](uint64_t index, std::byte* record) {
+        io::store(record, glm::dvec3(static_cast<double>(index), 0, 0));
+    });
+    BuildOptions options;
+    options.inputs = {&none};
+    options.output = folder / "a.luc";
+    options.normals = NormalsMode::keep;
+    const auto report = build_cache(options);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().kind, ErrorKind::arguments);
+    EXPECT_NE(report.error().line().find("has no normals to keep"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.luc"));
 }
 
 TEST(SurfaceBuild, IsTheSameFileForAnyThreads) {

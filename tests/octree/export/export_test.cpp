@@ -179,8 +179,9 @@ TEST(Export, KnowsNoWhiteOfScansThatAreNotThere) {
     EXPECT_EQ(Exporter(source, {}).info().color_bits, io::ScanInfo{}.color_bits);
 }
 
-TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreWhereAllAreSo) {
-    const auto a = of_colour(io::ScalarType::u16, 200, 8), b = of_colour(io::ScalarType::u16, 100, 8);
+TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreWhereAllAreSoInLas) {
+    auto a = of_colour(io::ScalarType::u16, 200, 8), b = of_colour(io::ScalarType::u16, 100, 8);
+    for (auto* scan : {&a, &b}) scan->info().notes.las.emplace().point_format = 2;
     const TempFolder folder;
     ASSERT_TRUE(convert({&a, &b}, folder / "a.luc"));
     ASSERT_TRUE(export_to(folder / "a.luc", folder / "b.las"));

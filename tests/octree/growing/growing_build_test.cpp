@@ -214,6 +214,32 @@ TEST(GrowingBuild, TheSurfaceKeepsItsAreaWhileItIsReplaced) {
                 << "source " << i << ", level " << level;
 }
 
+TEST(GrowingBuild, APointWithoutANormalThatTheSampleMissesGetsOne) {
+    const TempFolder folder;
+    io::Schema schema;
+    schema.add(std::string(io::names::normal), io::ScalarType::f32, 3);
+    // The sample has one point in two; the one without a normal is the last.
+    constexpr uint64_t kPoints = 40'000;
+    for (const bool all : {true, false}) {
+        auto source =
+            std::make_unique<ComputedSource>(schema, kPoints, [all](uint64_t index, std::byte* record) {
+                Random random(3, index);
+                io::store(record, glm::dvec3(20 * random.uniform(), 20 * random.uniform(), 0));
+                io::store(record + 24, glm::vec3(0, 0, all || index + 1 < kPoints ? 1 : 0));
+            });
+        source->make_seekable();
+        GrowingBuild::Inputs inputs;
+        inputs.push_back(std::move(source));
+        auto build =
+            GrowingBuild::open(std::move(inputs), options_for(folder / "a.luc", NormalsMode::automatic));
+        ASSERT_TRUE(build) << build.error().line();
+        const auto sources = all_sources(**build);
+        ASSERT_TRUE((*build)->state().error) << (*build)->state().error.error().line();
+        EXPECT_EQ(sources.back()->header().schema.find(io::names::normal_oct) == nullptr, all);
+        std::filesystem::remove(folder / "a.luc");
+    }
+}
+
 TEST(GrowingBuild, StoppedInTheMiddleItLeavesNothing) {
     const TempFolder folder;
     std::counting_semaphore<> changes(0);  // outlives the build, which also calls it at its end

@@ -201,7 +201,9 @@ TEST(LazReader, ColoursAreSoughtInAllOfAChunk) {
     std::vector<std::byte> records(40'000 * schema.stride);
     for (const uint16_t brightest : {uint16_t{200}, uint16_t{40'000}}) {
         for (size_t i = 300; i < 40'000; ++i) store(&records[i * schema.stride + 12], brightest);
-        auto writer = create_scan(folder / "dark.laz", schema, {}, {.overwrite = true});
+        ScanInfo info;
+        info.color_bits = 16;  // written as they are
+        auto writer = create_scan(folder / "dark.laz", schema, info, {.overwrite = true});
         ASSERT_TRUE(writer && (*writer)->write(records) && (*writer)->finish());
         EXPECT_EQ((*open_scan(folder / "dark.laz"))->info().color_bits, brightest > 255 ? 16u : 8u);
     }
