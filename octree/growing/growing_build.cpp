@@ -20,6 +20,7 @@
 #include "octree/growing/quick_surface.h"
 #include "octree/growing/sample.h"
 #include "octree/growing/tree_top.h"
+#include "octree/normals/splat_surface.h"
 #include "octree/tree/attributes.h"
 #include "octree/tree/point_normals.h"
 #include "octree/tree/radix_sort.h"
@@ -60,6 +61,7 @@ LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const
     sort_by_code(order, 3 * kMaxLevel);
     const io::Attribute* normal = schema == from ? nullptr : schema.find(io::names::normal_oct);
     const io::Attribute* area = schema == from ? nullptr : schema.find(io::names::area);
+    const SplatSurface splats(from);
     LoosePoints points;
     points.records.resize(count * schema.stride);
     for (size_t i = 0; i < count; ++i) {
@@ -67,10 +69,11 @@ LoosePoints along_curve(const ShownSample& sample, const io::Schema& from, const
         std::byte* record = &points.records[i * schema.stride];
         std::memcpy(record, &sample.points.records[size_t{index} * from.stride], from.stride);
         const QuickSurface& surface = sample.surface[index];
-        if (normal) io::store(record + normal->offset, encode_normal(surface.normal));
-        if (area) io::store(record + area->offset, encode_area(surface.area, kFace));
+        const float share = splats.area(record, surface.area, root.size * root.size);
+        if (normal) io::store(record + normal->offset, encode_normal(splats.normal(record, surface.normal)));
+        if (area) io::store(record + area->offset, encode_area(share, kFace));
         points.codes.push_back(order[i].code);
-        points.areas.push_back(area ? surface.area : 0.0f);
+        points.areas.push_back(area ? share : 0.0f);
     }
     return points;
 }

@@ -150,8 +150,11 @@ class HeaderParser {
                 name_, count == 0 ? "has no vertex element, so no points" : "has several vertex elements");
         const auto found = std::find_if(all.begin(), all.end(), is_vertex);
         header_.vertex = static_cast<size_t>(found - all.begin());
+        const bool packed = std::ranges::any_of(
+            found->properties, [](const Property& p) { return p.name == "packed_position"; });
         for (const std::string_view axis : {"x", "y"})
-            if (std::none_of(found->properties.begin(), found->properties.end(),
+            if (!packed &&
+                std::none_of(found->properties.begin(), found->properties.end(),
                              [&](const Property& p) { return same_letters(p.name, axis) && !p.count; }))
                 return rejected(name_, fmt::format("has vertices without a property {}", axis));
         return {};

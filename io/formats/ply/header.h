@@ -39,7 +39,8 @@ struct Header {
 };
 
 /// Reads the header. Rejects a header that is malformed, larger than 1 MiB, or without a vertex element with
-/// x and y. Without `salvage` also rejects one that promises more entries than the file has bytes.
+/// x and y (or the positions of compressed splats). Without `salvage` also rejects one that promises more
+/// entries than the file has bytes.
 Result<Header> read_header(const std::shared_ptr<const ByteSource>& file, bool salvage = false);
 
 /// Returns the type that "uchar", "uint8"... name; empty for unknown words.

@@ -13,6 +13,7 @@
 #include "io/formats/common/text.h"
 #include "io/formats/ply/layout.h"
 #include "io/formats/ply/mesh.h"
+#include "io/formats/ply/splats.h"
 #include "io/formats/ply/values.h"
 #include "io/formats/ply/writer.h"
 
@@ -279,7 +280,15 @@ class PlySource final : public PointSource {
 
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
-    LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
+    LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
+    if (ply::has_packed_splats(header))
+        return ply::open_packed_splats(std::move(file), std::move(header), options);
+    if (ply::has_splats(header)) {
+        ply::leave_out_harmonics(header);
+        auto splats = std::make_unique<PlySource>(std::move(file), std::move(header), options.salvage, false);
+        LUCARNE_TRY(splats->describe(options));
+        return ply::open_splats(std::move(splats));
+    }
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);
     LUCARNE_TRY(vertices->describe(options));

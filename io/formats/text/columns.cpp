@@ -140,7 +140,9 @@ bool has_axes(const std::vector<Column>& columns) {
 
 /// What the numbers of a column have in common.
 struct Look {
-    bool numbers = false, whole = true;
+    bool numbers = false;
+    bool integers = true;  ///< every number is whole
+    bool whole = true;     ///< the same, and every cell holds a number
     double least = INFINITY, most = -INFINITY;
 };
 Look look_at(const Sample& sample, size_t column) {
@@ -153,7 +155,8 @@ Look look_at(const Sample& sample, size_t column) {
             continue;
         }
         look.numbers = true;
-        look.whole = look.whole && value == std::trunc(value);
+        look.integers = look.integers && value == std::trunc(value);
+        look.whole = look.whole && look.integers;
         look.least = std::min(look.least, value);
         look.most = std::max(look.most, value);
     }
@@ -225,14 +228,15 @@ ScalarType guessed_type(std::string_view name, const Look& look, bool whole_file
         if (type == ScalarType::f64 || !look.numbers) return true;
         const double range = std::ldexp(1.0, static_cast<int>(8 * scalar_bytes(type)));
         const bool is_signed = type == ScalarType::i8 || type == ScalarType::i16 || type == ScalarType::i32;
-        return look.whole && look.least >= (is_signed ? -range / 2 : 0) &&
+        return look.integers && look.least >= (is_signed ? -range / 2 : 0) &&
                look.most < (is_signed ? range / 2 : range);
     };
     for (const Known& known : kKnown)
         if (name == known.name && fits(known.type)) return known.type;
     // Times in nanoseconds and similar numbers, which a double would round.
     if (look.whole && look.least > 0x1p53 && look.most < 0x1p63) return ScalarType::i64;
-    return look.numbers && whole_file && fits(ScalarType::i32) ? ScalarType::i32 : ScalarType::f64;
+    return look.numbers && look.whole && whole_file && fits(ScalarType::i32) ? ScalarType::i32
+                                                                             : ScalarType::f64;
 }
 
 /// Lays out fields and attributes.

@@ -18,7 +18,7 @@ io::Schema with_estimates(io::Schema schema, bool normals) {
 }
 
 RecordLoader::RecordLoader(const ChunkStore& chunks, const SurfaceStore* surface, bool normals)
-    : chunks_(chunks), surface_(surface), schema_(chunks.schema()) {
+    : chunks_(chunks), surface_(surface), schema_(chunks.schema()), splats_(chunks_.schema()) {
     if (surface && !schema_.find(io::names::area)) schema_ = with_estimates(std::move(schema_), normals);
     normal_ = schema_.find(io::names::normal_oct);
     area_ = schema_.find(io::names::area);
@@ -32,13 +32,14 @@ Result<std::vector<std::byte>> RecordLoader::load(size_t chunk, uint64_t first, 
     const uint32_t stride = chunks_.schema().stride;
     const bool in_place = stride == schema_.stride;
     std::vector<std::byte> records(count * schema_.stride);
+    const double face = root().first_size() * root().first_size();
     for (size_t i = 0; i < count; ++i) {
         std::byte* record = &records[i * schema_.stride];
         std::memcpy(record, &input[i * stride], stride);
         if (normal_ && (!in_place || io::load<NormalCode>(record + normal_->offset) == kNoNormal))
-            io::store(record + normal_->offset, encode_normal(found[i].normal));
-        if (!in_place || found[i].area > 0)
-            io::store(record + area_->offset, encode_area(found[i].area, kFace));
+            io::store(record + normal_->offset, encode_normal(splats_.normal(record, found[i].normal)));
+        const float area = splats_.area(record, found[i].area, face);
+        if (!in_place || area > 0) io::store(record + area_->offset, encode_area(area, kFace));
     }
     return records;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "octree/convert/chunks/surface_store.h"
+#include "octree/normals/splat_surface.h"
 
 namespace lucarne::octree {
 
@@ -34,6 +35,7 @@ class RecordLoader {
     const ChunkStore& chunks_;
     const SurfaceStore* surface_;
     io::Schema schema_;
+    SplatSurface splats_;
     const io::Attribute *normal_ = nullptr, *area_ = nullptr;
 };
 

@@ -106,5 +106,25 @@ TEST(UniqueName, HasTheFirstNumberThatIsFree) {
     EXPECT_EQ(many.attributes.back().name, std::string(64, 'n') + "_3000");
 }
 
+TEST_F(Registry, FormatsOfOthersAreNamed) {
+    std::string stl(84 + 50, '\0');
+    stl.replace(0, 5, "solid");
+    stl[80] = 1;
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"solid x\n facet normal 0 0 1\n  outer loop\n", "STL"},
+        {stl, "STL"},
+        {"ncols 8\nnrows 6\nxllcorner 412000.0\nyllcorner 5318000.0\ncellsize 1.0\n104.4 103.5 101.6\n",
+         "raster"},
+        {"\x1f\x8b\x08 and more", "gunzip"},
+        {"PK\x03\x04 and more", "zip"}};
+    for (const auto& [bytes, word] : cases)
+        for (const char* name : {"a.txt", "a.stl", "a.asc", "a.ply.gz", "a"}) {
+            const auto scan = open(name, bytes);
+            ASSERT_FALSE(scan) << name << word;
+            EXPECT_EQ(scan.error().kind, ErrorKind::input_rejected);
+            EXPECT_THAT(scan.error().line(), HasSubstr(word)) << name;
+        }
+}
+
 }  // namespace
 }  // namespace lucarne::io

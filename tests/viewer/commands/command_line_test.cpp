@@ -70,7 +70,9 @@ TEST_F(CommandLineTest, SlipsAreAnsweredWithWhatWasMeant) {
 TEST_F(CommandLineTest, TheVersionIsPrinted) {
     testing::internal::CaptureStdout();
     EXPECT_EQ(run({"--version"}), "");
-    EXPECT_EQ(testing::internal::GetCapturedStdout().find("lucarne "), 0u);
+    const std::string printed = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(printed.find("lucarne "), 0u);
+    EXPECT_EQ(printed.find('\n'), printed.size() - 1) << "one line, which ends";
     EXPECT_EQ(ran_, "");
 }
 

@@ -43,6 +43,76 @@ class LasExtras : public ::testing::Test {
     const TemporaryFolder folder_;
 };
 
+/// Returns an entry of the extra bytes record.
+std::string entry(const std::string& name, uint8_t type, uint8_t options = 0) {
+    std::string bytes(las::kDescriptorBytes, '\0');
+    bytes[2] = static_cast<char>(type);
+    bytes[3] = static_cast<char>(options);
+    bytes.replace(4, name.size(), name);
+    return bytes;
+}
+
+TEST_F(LasExtras, ThreeRealComponentsOfANormalAreOne) {
+    constexpr uint8_t kFloat = 9, kDouble = 10, kShort = 4;
+    const auto file_with = [](const std::vector<std::string>& entries, size_t bytes) {
+        LasFile file;
+        std::string record(20 + bytes, '\0');
+        for (size_t k = 0; k < 3 && bytes == 12; ++k) put(record, 20 + 4 * k, static_cast<float>(k) - 1.0f);
+        file.records.push_back(record);
+        std::string data;
+        for (const auto& e : entries) data += e;
+        file.add_vlr("LASF_Spec", 4, data);
+        return file;
+    };
+    for (const std::array<std::string, 3>& names :
+         {std::array<std::string, 3>{"NormalX", "NormalY", "NormalZ"},
+          {"nx", "ny", "nz"},
+          {"normalx", "normaly", "normalz"}}) {
+        const auto file =
+            file_with({entry(names[0], kFloat), entry(names[1], kFloat), entry(names[2], kFloat)}, 12);
+        const auto source = open(file);
+        const Attribute* normal = source->schema().find(names::normal);
+        ASSERT_TRUE(normal) << names[0];
+        EXPECT_EQ(normal->components, 3u);
+        EXPECT_EQ(normal->type, ScalarType::f32);
+        const auto records = read_all(*source);
+        EXPECT_EQ(load<float>(&records->bytes[normal->offset + 8]), 1.0f);
+        // Written again they are what they were.
+        write("out.las", source->schema(), source->info(), records->bytes);
+        EXPECT_EQ(names_in("out.las"), std::vector<std::string>(names.begin(), names.end()));
+        EXPECT_TRUE(read_all(*open("out.las"))->bytes == records->bytes);
+    }
+    // Others are not: scaled ones, whole numbers, other orders, two of three.
+    for (const auto& [entries, bytes] :
+         {std::pair(
+              std::vector{entry("NormalX", kFloat, 8), entry("NormalY", kFloat), entry("NormalZ", kFloat)},
+              size_t{12}),
+          std::pair(std::vector{entry("NormalX", kShort), entry("NormalY", kShort), entry("NormalZ", kShort)},
+                    size_t{6}),
+          std::pair(std::vector{entry("NormalX", kFloat), entry("NormalZ", kFloat), entry("NormalY", kFloat)},
+                    size_t{12}),
+          std::pair(
+              std::vector{entry("NormalX", kDouble), entry("NormalY", kFloat), entry("NormalZ", kFloat)},
+              size_t{16}),
+          std::pair(std::vector{entry("NormalX", kFloat), entry("NormalY", kFloat)}, size_t{8})})
+        EXPECT_FALSE(open(file_with(entries, bytes))->schema().find(names::normal));
+}
+
+TEST_F(LasExtras, NormalsOfOtherFormatsAreWrittenAsThreeComponents) {
+    Schema schema;
+    schema.position = PositionType::i32_scaled;
+    schema.stride = 12;
+    schema.add(std::string(names::normal), ScalarType::f64, 3);
+    std::vector<std::byte> records(schema.stride);
+    store(&records[28], 1.0);
+    write("out.las", schema, {}, records);
+    EXPECT_EQ(names_in("out.las"), (std::vector<std::string>{"NormalX", "NormalY", "NormalZ"}));
+    const auto source = open("out.las");
+    ASSERT_TRUE(source->schema().find(names::normal));
+    EXPECT_EQ(load<double>(&read_all(*source)->bytes[source->schema().find(names::normal)->offset + 16]),
+              1.0);
+}
+
 TEST_F(LasExtras, LongNamesAreCutBetweenCharactersAndNumberedWhereTheyBecomeAlike) {
     const std::string same = "a name whose first 32 bytes are no other's ";
     Schema schema;

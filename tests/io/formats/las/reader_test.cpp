@@ -427,6 +427,16 @@ std::string geo_keys(const std::vector<std::array<uint16_t, 4>>& keys) {
     return bytes;
 }
 
+TEST_F(Las, UserIdsMayBePaddedWithBlanks) {
+    LasFile file;
+    file.add_vlr("LASF_Projection ", 34735, geo_keys({{1024, 0, 1, 1}, {3076, 0, 1, 9003}}));
+    EXPECT_DOUBLE_EQ(open(file)->info().metres_per_unit, 1200.0 / 3937.0);
+    if (shared_data().empty()) GTEST_SKIP() << "the shared data is not here";
+    const auto reported = open_scan(shared_data() / "reports" / "uid_blank.las");
+    ASSERT_TRUE(reported) << reported.error().line();
+    EXPECT_DOUBLE_EQ((*reported)->info().metres_per_unit, 1200.0 / 3937.0);
+}
+
 TEST_F(Las, TheUnitComesFromGeoTiffKeys) {
     const std::map<uint16_t, double> units = {{9001, 1.0}, {9002, 0.3048}, {9003, 1200.0 / 3937.0}, {1, 1.0}};
     for (const auto& [code, metres] : units) {

@@ -288,6 +288,31 @@ TEST_F(MeshScan, PlyHasTexturesByFaceOrByVertexAsMeshLabWritesThem) {
     expect_picture_upright();
 }
 
+TEST_F(MeshScan, NamesOfFilesMayBeQuotedOrDifferInCase) {
+    std::filesystem::create_directories(folder_ / "tex dir");
+    put_picture("tex dir/my p.png");
+    const std::string square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "usemtl painted\nf 1/1 2/2 3/3 4/4\n";
+    for (const std::string picture : {"\"tex dir/my p.png\"", "'tex dir/my p.png'", "\"Tex Dir\\My P.PNG\"",
+                                      "TEX DIR/MY P.PNG", "-blendu on \"tex dir/my p.png\""})
+        for (const std::string library :
+             {"\"my m.mtl\"", "my m.mtl", "My M.MTL", "\"other.mtl\" \"my m.mtl\""}) {
+            put("my m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd " + picture + "\n");
+            put("a.obj", "mtllib " + library + "\n" + square);
+            SCOPED_TRACE(picture + " of " + library);
+            read_folder("a.obj", every(0.02));
+            expect_picture_upright();
+        }
+    put("Face.ply",
+        "ply\nformat ascii 1.0\ncomment TextureFile \"tex dir/my p.png\"\nelement vertex 4\nproperty float "
+        "x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\nproperty "
+        "list "
+        "uchar int vertex_index\nend_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
+    read_folder("Face.ply", every(0.02));
+    expect_picture_upright();
+}
+
 TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
     read(
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
