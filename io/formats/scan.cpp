@@ -54,7 +54,7 @@ namespace {
 std::optional<std::string> savable(const PointSource& scan) {
     const ScanInfo& info = scan.info();
     const auto damaged = [](const Losses& losses) {
-        constexpr std::array kDamage = {lost::cut_off,      lost::damaged,       lost::cut_scan,
+        constexpr std::array kDamage = {lost::cut_off,      lost::damaged,       lost::scan_header,
                                         mesh::kCutFaces,    mesh::kDamagedFaces, mesh::kCutLine,
                                         mesh::kDamagedLines};
         return std::ranges::any_of(

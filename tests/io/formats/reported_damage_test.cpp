@@ -1,0 +1,80 @@
+// Files made after public reports: headers that lie about what follows them, parts that are missing, bodies
+// that do not fit their header.
+#include <gmock/gmock.h>
+
+#include "tests/io/io_testing.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::read_all;
+
+class ReportedDamage : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "the shared reports are not here";
+    }
+    /// What a pass over a file returns, and what it says.
+    struct Seen {
+        uint64_t points = 0;
+        Contents contents;
+        std::string said, error;
+        std::vector<glm::dvec3> positions;
+    };
+    Seen see(const std::string& file, bool salvage) const {
+        Seen seen;
+        ::testing::internal::CaptureStderr();
+        const auto done = pass(file, {"", false, {0, 0, true}, salvage}, seen);
+        seen.said = ::testing::internal::GetCapturedStderr();
+        if (!done) seen.error = done.error().line();
+        return seen;
+    }
+    const std::filesystem::path folder_ = testing::shared_data() / "reports";
+
+ private:
+    Result<void> pass(const std::string& file, const ReadOptions& options, Seen& seen) const {
+        LUCARNE_ASSIGN(const auto source, open_scan(folder_ / file, options));
+        LUCARNE_ASSIGN(const auto records, read_all(*source));
+        LUCARNE_ASSIGN(seen.contents, survey(*source));
+        seen.points = records.count;
+        const Schema& schema = source->schema();
+        for (size_t i = 0; i < records.count; ++i)
+            seen.positions.push_back(position_of(schema, &records.bytes[i * schema.stride]));
+        return {};
+    }
+};
+
+TEST_F(ReportedDamage, ASecondScanOfPtxThatComesEarlyKeepsItsOwnPlace) {
+    EXPECT_THAT(see("lie_more_then_second.ptx", false).error, HasSubstr("the next scan begins at line 611"));
+    const Seen saved = see("lie_more_then_second.ptx", true);
+    EXPECT_EQ(saved.points, 480u + 61);
+    const glm::dvec3 p(-2.604822, -4.865452, -3.053169);  // the first point of the second scan
+    const glm::dvec3 placed = glm::dmat3(.453596, .891207, 0, -.891207, .453596, 0, 0, 0, 1) * p;
+    ASSERT_EQ(saved.positions.size(), 541u);
+    EXPECT_LT(glm::distance(saved.positions[480], placed + glm::dvec3(105, 190, 3.5)), 1e-9);
+}
+
+TEST_F(ReportedDamage, LazGivesAsManyPointsAsItsHeaderCountsOrWithSalvageAsItsChunksHold) {
+    const Seen few = see("ok3_count_less.laz", false), all = see("ok3_count_less.laz", true);
+    EXPECT_EQ(few.error, "");
+    EXPECT_EQ(few.points, 119'989u);
+    EXPECT_EQ(few.contents.losses, (Losses{{std::string(lost::uncounted), 11}}));
+    EXPECT_EQ(all.points, 120'000u);
+    EXPECT_TRUE(all.contents.losses.empty());
+
+    EXPECT_THAT(see("ok3_count_more.laz", false).error, HasSubstr("cut off or damaged"));
+    const Seen more = see("ok3_count_more.laz", true);
+    EXPECT_EQ(more.points, 120'000u);
+    EXPECT_EQ(more.contents.losses, (Losses{{std::string(lost::cut_off), 15}}));
+    EXPECT_EQ(more.positions, all.positions);
+}
+
+TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
+    const Seen seen = see("copc_vlr_chunk0.copc.laz", false);
+    EXPECT_EQ(seen.error, "");
+    EXPECT_EQ(seen.points, 1065u);
+}
+
+}  // namespace
+}  // namespace lucarne::io
