@@ -168,9 +168,7 @@ Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
         }
     }
     if (h.compressed) {
-        const bool bomb =
-            h.points > kLargeScan / h.record_length && h.points / kMostRatio > bytes / h.record_length;
-        if (h.points / kMostPointsAByte > bytes || bomb)
+        if (too_many_for(bytes, h.points, h.record_length))
             return rejected(file.path().string(), fmt::format("promises {}, more than its {} bytes can hold",
                                                               counted(h.points, "points"), file.size()));
         if (h.points == 0 && bytes > kRoomOfNoPoints)
@@ -189,6 +187,12 @@ Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
 }
 
 }  // namespace
+
+bool too_many_for(uint64_t compressed_bytes, uint64_t points, uint16_t record_length) {
+    const bool bomb =
+        points > kLargeScan / record_length && points / kMostRatio > compressed_bytes / record_length;
+    return points / kMostPointsAByte > compressed_bytes || bomb;
+}
 
 const Vlr* Header::find(std::string_view user, uint16_t record) const {
     const auto found =

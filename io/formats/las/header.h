@@ -69,6 +69,9 @@ inline constexpr uint32_t kMostRecords = 100'000;
 /// point (the changes: 128 symbols of 2^15; the bit counts of two differences: 33 symbols each).
 inline constexpr uint64_t kMostPointsAByte = 1000;
 
+/// Returns whether these are more points than compressed bytes can hold, or than real scans shrink to.
+bool too_many_for(uint64_t compressed_bytes, uint64_t points, uint16_t record_length);
+
 /// Returns the header to write for the points of a LAS file. The notes must have `las`. Errors: a cache's
 /// notes are damaged.
 Result<Header> header_of(const std::string& file, const FormatNotes& notes);
