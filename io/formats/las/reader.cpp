@@ -1,4 +1,4 @@
-// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see header.h.
+// LAS 1.0-1.5, point formats 0-10 (wave packets are skipped). Source: see header.h.
 #include "io/formats/las/laz/reader.h"
 
 #include <algorithm>
@@ -130,6 +130,7 @@ class LasSource final : public PointSource {
             LUCARNE_ASSIGN(info_.color_bits, sample_color_bits(*color, options.salvage));
         }
         LasNotes kept = header_;
+        kept.minor = std::min<uint8_t>(kept.minor, 4);  // LAS 1.5 is not written
         kept.record_length = static_cast<uint16_t>(kept.record_length - header_.wave_bytes);
         info_.notes.las = std::move(kept);
         info_.notes.color_bits = info_.color_bits;

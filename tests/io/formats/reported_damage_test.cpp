@@ -70,6 +70,19 @@ TEST_F(ReportedDamage, LazGivesAsManyPointsAsItsHeaderCountsOrWithSalvageAsItsCh
     EXPECT_EQ(more.positions, all.positions);
 }
 
+TEST_F(ReportedDamage, LasWhoseHeaderCountsNothingIsReadWithSalvage) {
+    const Seen seen = see("count_zero_but_points.las", false);
+    EXPECT_EQ(seen.points, 0u);
+    EXPECT_THAT(seen.said, HasSubstr("as many as 600 records take; --salvage reads them"));
+    EXPECT_EQ(see("count_zero_but_points.las", true).points, 600u);
+}
+
+TEST_F(ReportedDamage, Las15IsRead) {
+    const Seen seen = see("v15.las", false);
+    EXPECT_EQ(seen.error, "");
+    EXPECT_EQ(seen.points, 600u);
+}
+
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
     const Seen seen = see("copc_vlr_chunk0.copc.laz", false);
     EXPECT_EQ(seen.error, "");
