@@ -1,5 +1,7 @@
 // Files made after public reports: headers that lie about what follows them, parts that are missing, bodies
 // that do not fit their header.
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include "tests/io/io_testing.h"
@@ -81,6 +83,26 @@ TEST_F(ReportedDamage, Las15IsRead) {
     const Seen seen = see("v15.las", false);
     EXPECT_EQ(seen.error, "");
     EXPECT_EQ(seen.points, 600u);
+}
+
+TEST_F(ReportedDamage, AnE57ThatLacksItsLastByteIsReadWithSalvage) {
+    EXPECT_THAT(see("last_byte_missing.e57", false).error, HasSubstr("is truncated"));
+    const Seen saved = see("last_byte_missing.e57", true);
+    EXPECT_EQ(saved.error, "");
+    EXPECT_EQ(saved.points, 500u);
+}
+
+TEST_F(ReportedDamage, PointsOfE57AtTheScannerAreLeftOut) {
+    const Seen seen = see("zeros_unflagged.e57", false);
+    EXPECT_EQ(std::ranges::count(seen.positions, glm::dvec3(0.0)), 0);
+    ASSERT_EQ(seen.contents.losses.size(), 1u);
+    EXPECT_EQ(seen.points + seen.contents.losses[0].count, 500u);
+}
+
+TEST_F(ReportedDamage, WholeNumbersInE57MayBeMillimetres) {
+    const Seen seen = see("mm_integers.e57", false);
+    EXPECT_EQ(seen.points, 200u);
+    EXPECT_THAT(seen.said, HasSubstr("--unit mm"));
 }
 
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
