@@ -160,7 +160,8 @@ namespace lost {
 inline constexpr std::string_view no_number = "points with a coordinate that is no number",
                                   cut_off = "points that are not there: the file ends before them",
                                   damaged = "points in damaged parts of the file",
-                                  cut_scan = "scans that are cut off before their first point";
+                                  uncounted = "points that its header does not count",
+                                  scan_header = "scans whose header is damaged or cut off";
 }  // namespace lost
 
 /// What is known about a scan besides its points.

@@ -9,6 +9,7 @@
 
 #include "io/core/counted.h"
 #include "io/formats/common/color_depth.h"
+#include "io/formats/e57/pages.h"
 #include "io/formats/mesh/source.h"
 
 namespace lucarne::io {
@@ -58,9 +59,9 @@ namespace {
 std::optional<std::string> savable(const PointSource& scan) {
     const ScanInfo& info = scan.info();
     const auto damaged = [](const Losses& losses) {
-        constexpr std::array kDamage = {lost::cut_off,      lost::damaged,       lost::cut_scan,
-                                        mesh::kCutFaces,    mesh::kDamagedFaces, mesh::kCutLine,
-                                        mesh::kDamagedLines};
+        constexpr std::array kDamage = {lost::cut_off,       lost::damaged,      lost::scan_header,
+                                        e57::kWrongPages,    e57::kCutChecksums, mesh::kCutFaces,
+                                        mesh::kDamagedFaces, mesh::kCutLine,     mesh::kDamagedLines};
         return std::ranges::any_of(
             losses, [&](const Loss& loss) { return std::ranges::find(kDamage, loss.what) != kDamage.end(); });
     };

@@ -103,7 +103,7 @@ void write_target(const Scan& scan, const RecordReader& reader, const Target& ta
     });
 }
 
-/// Computes the three coordinates of every record in the file's frame.
+/// Computes the three coordinates of every record in the scan's own frame.
 void find_positions(const Scan& scan, const ScanLayout& layout, const RecordReader& reader, size_t count,
                     std::array<Column, 3>& p) {
     for (size_t axis = 0; axis < 3; ++axis)
@@ -116,10 +116,16 @@ void find_positions(const Scan& scan, const ScanLayout& layout, const RecordRead
             p[1][i] = range * std::cos(elevation) * std::sin(azimuth);
             p[2][i] = range * std::sin(elevation);
         }
-    if (!layout.pose) return;
+}
+
+bool at_origin(const std::array<Column, 3>& p, size_t i) {
+    return p[0][i] == 0 && p[1][i] == 0 && p[2][i] == 0;
+}
+
+/// Moves points from the scan's own frame to the file's.
+void move_positions(const Pose& pose, size_t count, std::array<Column, 3>& p) {
     for (size_t i = 0; i < count; ++i) {
-        const glm::dvec3 moved =
-            layout.pose->rotation * glm::dvec3(p[0][i], p[1][i], p[2][i]) + layout.pose->translation;
+        const glm::dvec3 moved = pose.rotation * glm::dvec3(p[0][i], p[1][i], p[2][i]) + pose.translation;
         for (int axis = 0; axis < 3; ++axis) p[static_cast<size_t>(axis)][i] = moved[axis];
     }
 }
@@ -194,21 +200,34 @@ double largest_color(const Scan& scan, RecordReader& reader) {
     return largest;
 }
 
+size_t count_at_origin(const Scan& scan, const ScanLayout& layout, const RecordReader& reader, size_t count) {
+    std::array<Column, 3> p;
+    find_positions(scan, layout, reader, count, p);
+    size_t found = 0;
+    for (size_t i = 0; i < count; ++i) found += at_origin(p, i);
+    return found;
+}
+
 Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
                         const RecordReader& reader, size_t count, std::byte* to) {
     std::array<Column, 3> p;
     Column states;
+    std::array<bool, kBlockRecords> missed{};
     find_positions(scan, layout, reader, count, p);
+    if (layout.zero_is_missed)
+        for (size_t i = 0; i < count; ++i) missed[i] = at_origin(p, i);
+    if (layout.pose) move_positions(*layout.pose, count, p);
     if (layout.invalid)
         to_doubles(scan.fields[*layout.invalid], reader.column(*layout.invalid), count, states);
     Kept kept;
     kept.stride = schema.stride;
     kept.to = to;
-    size_t invalid = 0;
+    Converted done;
     for (size_t i = 0; i < count; ++i) {
         const bool valid = !layout.invalid || states[i] == 0;
-        const bool good = valid && usable(p[0][i]) && usable(p[1][i]) && usable(p[2][i]);
-        invalid += !valid;
+        const bool good = valid && !missed[i] && usable(p[0][i]) && usable(p[1][i]) && usable(p[2][i]);
+        done.invalid += !valid;
+        done.missed += valid && missed[i];
         kept.rows[kept.count] = static_cast<uint16_t>(i);
         kept.count += good;
     }
@@ -216,7 +235,8 @@ Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout
     if (schema.find(names::color)) write_colors(scan, layout, reader, kept);
     if (schema.find(names::normal)) write_normals(schema, scan, layout, reader, count, kept);
     for (const Target& target : layout.targets) write_target(scan, reader, target, kept);
-    return {kept.count, invalid};
+    done.kept = kept.count;
+    return done;
 }
 
 }  // namespace lucarne::io::e57

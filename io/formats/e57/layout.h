@@ -26,6 +26,7 @@ struct ScanLayout {
     std::array<Target, 3> color;                  ///< the three colour components, if the schema has colour
     std::optional<std::array<size_t, 3>> normal;  ///< the three fields of the normal; the pose turns it
     uint16_t station = 0;
+    bool zero_is_missed = false;  ///< a point at the scanner itself is a ray that hit nothing
 };
 
 struct Layout {
@@ -43,10 +44,13 @@ double largest_color(const Scan& scan, RecordReader& reader);
 /// without coordinates, more than kMostFields attributes in all.
 Result<Layout> make_layout(const std::string& file, const Document& document);
 
-/// Converts the block that `reader` holds to consecutive records at `to`. Leaves out points that are invalid
-/// or not finite.
+/// Returns how many of the `count` records that `reader` holds lie exactly at the origin of their scan.
+size_t count_at_origin(const Scan& scan, const ScanLayout& layout, const RecordReader& reader, size_t count);
+
+/// Converts the block that `reader` holds to consecutive records at `to`. Leaves out points that are invalid,
+/// missed rays, or not finite.
 struct Converted {
-    size_t kept = 0, invalid = 0;
+    size_t kept = 0, invalid = 0, missed = 0;
 };
 Converted convert_block(const Schema& schema, const Scan& scan, const ScanLayout& layout,
                         const RecordReader& reader, size_t count, std::byte* to);

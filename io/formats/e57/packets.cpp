@@ -34,7 +34,7 @@ Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, cons
     Section section;
     LUCARNE_ASSIGN(section.begin, logical_offset(name, header, scan.section, "a section of points"));
     if (header.bytes - section.begin < kSectionHeaderBytes) return wrong("reaches beyond its end");
-    PageInput input(file, section.begin, section.begin + kSectionHeaderBytes);
+    PageInput input(file, section.begin, section.begin + kSectionHeaderBytes, salvage);
     LUCARNE_ASSIGN(const auto raw, input.peek(kSectionHeaderBytes));
     if (static_cast<uint8_t>(raw[0]) != kVectorSection) return wrong("is not one");
     auto bytes = load<uint64_t>(&raw[8]);
@@ -102,8 +102,8 @@ size_t RecordReader::held() const {
                            [](size_t sum, const Stream& stream) { return sum + stream.held; });
 }
 
-Result<size_t> RecordReader::read(size_t most) {
-    const uint64_t wanted = std::min<uint64_t>({most, kBlockRecords, left_});
+/// Reads packets until `wanted` records are complete. Returns how many are.
+Result<uint64_t> RecordReader::gather(uint64_t wanted) {
     uint64_t count = complete(wanted);
     while (count < wanted && !broken_ && input_.left() >= kPacketHeaderBytes) {
         auto packet = next_data_packet();
@@ -111,9 +111,45 @@ Result<size_t> RecordReader::read(size_t most) {
         if (!packet && !broken_) return tl::unexpected(std::move(packet).error());
         count = complete(wanted);
     }
-    if (count == 0 && salvage_) return size_t{0};
-    if (count == 0 && wanted > 0)
-        return rejected(input_.path(), fmt::format("ends early: {} points of a scan are missing", left_));
+    return count;
+}
+
+/// Returns how many of the next records, at most `most`, come before the first with a wrong bit.
+uint64_t RecordReader::sound_records(uint64_t most) {
+    for (Stream& stream : streams_) {
+        while (!stream.wrong.empty() && stream.wrong.front().second <= stream.next())
+            stream.wrong.pop_front();
+        if (stream.wrong.empty()) continue;
+        const uint64_t begin = std::max(stream.wrong.front().first, stream.next());
+        most = std::min(most, (begin - stream.next()) / stream.bits);
+    }
+    return most;
+}
+
+/// Returns how many records must be passed over, at most `most`, because the next one has a wrong bit.
+uint64_t RecordReader::wrong_records(uint64_t most) const {
+    uint64_t count = 1;
+    for (const Stream& stream : streams_)
+        if (!stream.wrong.empty() && stream.wrong.front().first < stream.next() + stream.bits)
+            count = std::max(count,
+                             (stream.wrong.front().second - stream.next() + stream.bits - 1) / stream.bits);
+    return std::min(count, most);
+}
+
+Result<size_t> RecordReader::read(size_t most) {
+    uint64_t count = 0;
+    for (;;) {
+        const uint64_t wanted = std::min<uint64_t>({most, kBlockRecords, left_});
+        LUCARNE_ASSIGN(const uint64_t there, gather(wanted));
+        if (there == 0 && wanted > 0 && !salvage_)
+            return rejected(input_.path(), fmt::format("ends early: {} points of a scan are missing", left_));
+        count = sound_records(there);
+        if (count > 0 || there == 0) break;
+        const uint64_t wrong = wrong_records(there);
+        for (Stream& stream : streams_) stream.next_bit += wrong * stream.bits;
+        left_ -= wrong;
+        passed_over_ += wrong;
+    }
     for (size_t i = 0; i < streams_.size(); ++i) {
         Stream& stream = streams_[i];
         if (!stream.wanted) continue;  // its column has been zero from the beginning
@@ -133,7 +169,10 @@ Result<void> RecordReader::next_data_packet() {
         if (bytes < kPacketHeaderBytes || type > kEmptyPacket)
             return rejected(input_.path(), "has a damaged packet of points");
         LUCARNE_ASSIGN(const auto packet, input_.peek(bytes));
-        if (type == kDataPacket) LUCARNE_TRY(take_data_packet(packet.first(bytes)));
+        if (type == kDataPacket)
+            LUCARNE_TRY(take_data_packet(packet.first(bytes)));
+        else if (!input_.sound(input_.position(), input_.position() + kPacketHeaderBytes))
+            return rejected(input_.path(), "has a damaged packet");
         input_.skip(bytes);
         if (type == kDataPacket) break;
     }
@@ -142,21 +181,46 @@ Result<void> RecordReader::next_data_packet() {
 
 Result<void> RecordReader::take_data_packet(std::span<const std::byte> packet) {
     const size_t count = packet.size() < kDataHeaderBytes ? 0 : load<uint16_t>(&packet[4]);
-    if (count != streams_.size() || packet.size() < kDataHeaderBytes + 2 * count)
+    const size_t first = kDataHeaderBytes + 2 * count;
+    if (count != streams_.size() || packet.size() < first)
         return rejected(input_.path(), fmt::format("has a packet of {} streams where points have {} fields",
                                                    count, streams_.size()));
-    size_t at = kDataHeaderBytes + 2 * count;
-    for (size_t i = 0; i < count; ++i) {
-        const size_t bytes = load<uint16_t>(&packet[kDataHeaderBytes + 2 * i]);
-        if (bytes > packet.size() - at)
-            return rejected(input_.path(), "has a packet of points whose streams are longer than itself");
-        if (streams_[i].wanted) append(streams_[i], packet.subspan(at, bytes));
-        at += bytes;
+    const auto bytes_of = [&](size_t i) -> size_t {
+        return load<uint16_t>(&packet[kDataHeaderBytes + 2 * i]);
+    };
+    size_t end = first;
+    for (size_t i = 0; i < count; ++i) end += bytes_of(i);
+    if (end > packet.size())
+        return rejected(input_.path(), "has a packet of points whose streams are longer than itself");
+    const uint64_t place = input_.position();
+    // Packets are filled up to four bytes, so a damaged length hardly ever fits the others.
+    if (!input_.sound(place, place + first) && (packet.size() % 4 != 0 || packet.size() - end > 3))
+        return rejected(input_.path(), "has a packet of points whose header is damaged");
+    size_t at = first;
+    for (size_t i = 0; i < count; at += bytes_of(i++)) {
+        if (!streams_[i].wanted) continue;
+        mark_wrong(streams_[i], place + at, bytes_of(i));
+        append(streams_[i], packet.subspan(at, bytes_of(i)));
     }
     if (held() > kMostAhead)
         return rejected(input_.path(),
                         fmt::format("has fields whose values lie over {} MiB apart", kMostAhead >> 20));
     return {};
+}
+
+/// Marks what a stream is about to get from pages with a wrong checksum: `bytes` from a logical place on.
+void RecordReader::mark_wrong(Stream& stream, uint64_t begin, uint64_t bytes) const {
+    for (const uint64_t page : input_.wrong_pages()) {
+        const uint64_t from = std::max(begin, page * kPageContent),
+                       to = std::min(begin + bytes, (page + 1) * kPageContent);
+        if (from >= to) continue;
+        const uint64_t offset = stream.passed + stream.held;
+        const std::pair bits(8 * (offset + from - begin), 8 * (offset + to - begin));
+        if (!stream.wrong.empty() && stream.wrong.back().second == bits.first)
+            stream.wrong.back().second = bits.second;
+        else
+            stream.wrong.push_back(bits);
+    }
 }
 
 void RecordReader::append(Stream& stream, std::span<const std::byte> bytes) {
@@ -165,6 +229,7 @@ void RecordReader::append(Stream& stream, std::span<const std::byte> bytes) {
         std::memmove(stream.bytes.data(), stream.bytes.data() + done, stream.held - done);
         stream.held -= done;
         stream.next_bit -= 8 * uint64_t{done};
+        stream.passed += done;
     }
     if (stream.bytes.size() < stream.held + bytes.size() + kSlack)
         stream.bytes.resize(std::max(stream.held + bytes.size() + kSlack, 2 * stream.bytes.size()));

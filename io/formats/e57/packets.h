@@ -1,5 +1,8 @@
 #pragma once
 
+#include <deque>
+#include <utility>
+
 #include "io/formats/e57/document.h"
 #include "io/formats/e57/pages.h"
 
@@ -16,7 +19,7 @@ struct Section {
 
 /// Reads and checks the header of a scan's section. Errors: no such section, a section that reaches beyond
 /// the file, more records than its bits can hold (kMostConstant if a record takes no bits). With `salvage`
-/// the part beyond the file is left out.
+/// the part beyond the file is left out, and the checksum of the section's header may be wrong.
 Result<Section> read_section(const std::shared_ptr<const ByteSource>& file, const FileHeader& header,
                              const Scan& scan, bool salvage = false);
 
@@ -34,9 +37,11 @@ class RecordReader {
 
     /// Reads up to min(most, kBlockRecords) records. Returns their number, 0 at the end of the scan. Errors:
     /// damaged packets, and packets that end before the records do. With `salvage` the scan ends before these
-    /// instead.
+    /// instead, and records of which a bit lies in a page with a wrong checksum are passed over. The header
+    /// of a packet in such a page counts if its lengths add up.
     Result<size_t> read(size_t most);
-    uint64_t left() const { return left_; }  ///< records that have not been read yet
+    /// Returns the records that are not read yet or were passed over.
+    uint64_t missing() const { return left_ + passed_over_; }
     /// Returns a field's values in the last block: the bits of a float, or an integer less its minimum.
     const uint64_t* column(size_t field) const { return &columns_[field * kBlockRecords]; }
 
@@ -49,17 +54,25 @@ class RecordReader {
         std::vector<std::byte> bytes;  ///< followed by kSlack spare bytes
         size_t held = 0;               ///< bytes that belong to the stream
         uint64_t next_bit = 0;         ///< in `bytes`
+        uint64_t passed = 0;           ///< bytes that were removed from the front of `bytes`
+        /// Bits in pages with a wrong checksum, counted from the beginning of the stream.
+        std::deque<std::pair<uint64_t, uint64_t>> wrong;
         uint64_t values() const;
+        uint64_t next() const { return 8 * passed + next_bit; }
     };
 
     Result<void> next_data_packet();
     Result<void> take_data_packet(std::span<const std::byte> packet);
+    void mark_wrong(Stream& stream, uint64_t begin, uint64_t bytes) const;
     static void append(Stream& stream, std::span<const std::byte> bytes);
     uint64_t complete(uint64_t most) const;
+    Result<uint64_t> gather(uint64_t wanted);
+    uint64_t sound_records(uint64_t most);
+    uint64_t wrong_records(uint64_t most) const;
     size_t held() const;
 
     PageInput input_;
-    uint64_t left_;
+    uint64_t left_, passed_over_ = 0;
     bool salvage_, broken_ = false;
     std::vector<Stream> streams_;
     std::vector<uint64_t> columns_;

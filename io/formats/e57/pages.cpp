@@ -14,6 +14,7 @@ namespace lucarne::io::e57 {
 namespace {
 
 constexpr uint64_t kPagesAtOnce = 256;
+constexpr uint64_t kChecksumBytes = kPageBytes - kPageContent;
 
 }  // namespace
 
@@ -36,15 +37,17 @@ Result<FileHeader> read_file_header(const std::shared_ptr<const ByteSource>& fil
                                               described ? ""
                                                         : "; the description of its points, which stands at "
                                                           "the end, is gone, so none can be saved"));
-        physical_bytes = file->size() / kPageBytes * kPageBytes;
+        physical_bytes = (file->size() + kChecksumBytes) / kPageBytes * kPageBytes;
     }
     if (physical_bytes == 0 || physical_bytes % kPageBytes != 0)
         return rejected(name,
                         fmt::format("has a length of {} bytes, which are no whole pages", physical_bytes));
     FileHeader header;
     header.bytes = physical_bytes / kPageBytes * kPageContent;
-    PageInput first_page(file, 0, kHeaderBytes);
+    PageInput first_page(file, 0, kHeaderBytes, salvage);
     LUCARNE_TRY(first_page.peek(kHeaderBytes));
+    header.cut = physical_bytes > file->size();
+    header.wrong = !first_page.wrong_pages().empty();
     LUCARNE_ASSIGN(header.xml_begin, logical_offset(name, header, xml_offset, "the XML section"));
     if (xml_bytes > header.bytes - header.xml_begin)
         return rejected(name,
@@ -89,30 +92,41 @@ Result<std::span<const std::byte>> PageInput::peek(size_t bytes) {
     return std::span<const std::byte>(buffer_).subspan(first_, usable_bytes);
 }
 
+bool PageInput::sound(uint64_t begin, uint64_t end) const {
+    const auto first = std::ranges::lower_bound(wrong_pages_, begin / kPageContent);
+    return first == wrong_pages_.end() || *first * kPageContent >= end;
+}
+
+Result<uint64_t> PageInput::read_pages(std::span<std::byte> pages) const {
+    const uint64_t begin = next_page_ * kPageBytes, end = begin + pages.size();
+    const uint64_t cut = salvage_ && end > file_->size() ? end - file_->size() : 0;
+    if (cut > kChecksumBytes) return rejected(path(), "has a section that ends early");
+    LUCARNE_TRY(file_->read_at(begin, pages.first(pages.size() - static_cast<size_t>(cut))));
+    return cut;
+}
+
 /// Reads as many pages as fit after the unconsumed bytes, verifies them and closes the gaps left by their
 /// checksums.
 Result<void> PageInput::fill() {
+    std::erase_if(wrong_pages_, [&](uint64_t page) { return (page + 1) * kPageContent <= position(); });
     std::memmove(buffer_.data(), buffer_.data() + first_, last_ - first_);
     last_ -= first_;
     first_ = 0;
     const uint64_t wanted = (end_ + kPageContent - 1) / kPageContent - next_page_;
     const uint64_t pages = std::min<uint64_t>(wanted, (buffer_.size() - last_) / kPageBytes);
     const auto read = std::span(buffer_).subspan(last_, static_cast<size_t>(pages * kPageBytes));
-    LUCARNE_TRY(file_->read_at(next_page_ * kPageBytes, read));
+    LUCARNE_ASSIGN(const uint64_t cut, read_pages(read));
     for (uint64_t page = 0; page < pages; ++page) {
         const auto content = read.subspan(static_cast<size_t>(page * kPageBytes), kPageContent);
-        const auto stored = load<uint32_t>(content.data() + kPageContent);
-        const uint32_t checksum = crc32c(content);
-        if (stored != __builtin_bswap32(checksum) && salvage_) {
-            next_page_ += page;
-            end_ = std::min(end_, next_page_ * kPageContent);
-            first_ += std::exchange(skip_first_, 0);
-            first_ = std::min(first_, last_);
-            return {};
+        const uint32_t checksum = __builtin_bswap32(crc32c(content));
+        const size_t there = kChecksumBytes - static_cast<size_t>(page + 1 == pages ? cut : 0);
+        if (std::memcmp(content.data() + kPageContent, &checksum, there) != 0) {
+            if (!salvage_)
+                return rejected(path(),
+                                fmt::format("is damaged: the checksum of the page at byte {} is wrong",
+                                            (next_page_ + page) * kPageBytes));
+            wrong_pages_.push_back(next_page_ + page);
         }
-        if (stored != __builtin_bswap32(checksum))
-            return rejected(path(), fmt::format("is damaged: the checksum of the page at byte {} is wrong",
-                                                (next_page_ + page) * kPageBytes));
         std::memmove(buffer_.data() + last_, content.data(), kPageContent);
         last_ += kPageContent;
     }

@@ -1,5 +1,6 @@
 // E57 (ASTM E2807-11), read only: several scans become one stream of points. See e57/*.h.
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -41,17 +42,18 @@ class E57Reader final : public PointReader {
             const size_t block = std::min(wanted - batch.count, e57::kBlockRecords);
             LUCARNE_ASSIGN(const size_t count, records_->read(block));
             if (count == 0) {
-                add_loss(lost_, lost::damaged, records_->left());
+                add_loss(lost_, lost::damaged, records_->missing());
                 records_.reset();
                 continue;
             }
             batch.bytes.resize((batch.count + count) * schema.stride);
-            const auto [kept, invalid] =
+            const auto done =
                 e57::convert_block(schema, e57_.document.scans[scan_], e57_.layout.scans[scan_], *records_,
                                    count, batch.bytes.data() + batch.count * schema.stride);
-            batch.count += kept;
-            dropped_ += count - kept;
-            invalid_ += invalid;
+            batch.count += done.kept;
+            dropped_ += count - done.kept;
+            invalid_ += done.invalid;
+            missed_ += done.missed;
         }
         batch.bytes.resize(batch.count * schema.stride);
         return batch.count;
@@ -60,7 +62,8 @@ class E57Reader final : public PointReader {
     Losses losses() const override {
         Losses losses;
         add_loss(losses, "points whose state is invalid", invalid_);
-        add_loss(losses, lost::no_number, dropped_ - invalid_);
+        add_loss(losses, "rays that met nothing", missed_);
+        add_loss(losses, lost::no_number, dropped_ - invalid_ - missed_);
         add_losses(losses, lost_);
         return losses;
     }
@@ -78,7 +81,7 @@ class E57Reader final : public PointReader {
     const E57& e57_;
     std::optional<e57::RecordReader> records_;
     size_t scan_ = 0, next_, last_;
-    uint64_t dropped_ = 0, invalid_ = 0;
+    uint64_t dropped_ = 0, invalid_ = 0, missed_ = 0;
     Losses lost_;
 };
 
@@ -160,15 +163,23 @@ class E57Source final : public PointSource {
     ScanInfo info_;
 };
 
-Result<std::string> read_xml(const std::shared_ptr<const ByteSource>& file, const e57::FileHeader& header) {
+/// The text of the XML section.
+struct Xml {
+    std::string text;
+    std::set<uint64_t> wrong_pages;  ///< with `salvage`
+};
+Result<Xml> read_xml(const std::shared_ptr<const ByteSource>& file, const e57::FileHeader& header,
+                     bool salvage) {
     if (header.xml_end - header.xml_begin > e57::kMostXmlBytes)
         return rejected(file->path().string(),
                         fmt::format("has an XML section of more than {} MiB", e57::kMostXmlBytes >> 20));
-    std::string xml;
-    e57::PageInput input(file, header.xml_begin, header.xml_end);
+    Xml xml;
+    if (header.wrong) xml.wrong_pages.insert(0);
+    e57::PageInput input(file, header.xml_begin, header.xml_end, salvage);
     while (input.left() > 0) {
         LUCARNE_ASSIGN(const auto bytes, input.peek(1));
-        xml.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        xml.text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        xml.wrong_pages.insert(input.wrong_pages().begin(), input.wrong_pages().end());
         input.skip(bytes.size());
     }
     return xml;
@@ -211,6 +222,30 @@ void warn_of_poses(const std::string& name, const e57::Document& document) {
                   document.scans.size());
 }
 
+/// Finds out whether a scan has rays that hit nothing and are neither left out nor marked as invalid: many
+/// points exactly at its origin, where the scanner stood and can measure nothing. Looks at the first records
+/// of the scan. Points on a lattice may be there by chance, unless they form a grid of rays.
+Result<bool> has_missed_rays(const E57& e57, size_t index) {
+    constexpr size_t kBlocks = 16, kFew = 8;
+    const e57::Scan& scan = e57.document.scans[index];
+    const e57::ScanLayout& layout = e57.layout.scans[index];
+    const bool grid = layout.spherical || scan.find("rowIndex") || scan.find("columnIndex");
+    const bool lattice =
+        std::ranges::any_of(layout.coordinates, [&](size_t field) { return scan.fields[field].whole(); });
+    if (scan.records == 0 || layout.invalid || (lattice && !grid)) return false;
+    e57::RecordReader reader(e57.file, e57.sections[index], scan, true);
+    size_t seen = 0, zero = 0;
+    for (size_t block = 0; block < kBlocks; ++block) {
+        auto count = reader.read(e57::kBlockRecords);
+        if (!count && count.error().kind != ErrorKind::input_rejected)
+            return tl::unexpected(std::move(count).error());
+        if (!count || *count == 0) break;
+        seen += *count;
+        zero += e57::count_at_origin(scan, layout, reader, *count);
+    }
+    return zero > kFew && zero < seen;
+}
+
 /// E57 is in metres by definition, whatever unit its coordinate system uses.
 void warn_of_unit(const std::string& name, const e57::Document& document) {
     const SystemUnits units = wkt_units(document.coordinate_system);
@@ -221,15 +256,26 @@ void warn_of_unit(const std::string& name, const e57::Document& document) {
             "{}: its coordinate system is in units of {:.9g} m, but E57 is in metres; metres are assumed; "
             "use --unit if that is wrong",
             name, *units.horizontal);
+    const auto whole = [](const e57::Scan& scan) {
+        const auto fields = scan.find({"cartesianX", "cartesianY", "cartesianZ"});
+        return fields && std::ranges::all_of(*fields, [&](size_t field) {
+                   return scan.fields[field].kind == e57::Field::Kind::integer;
+               });
+    };
+    if (std::ranges::any_of(document.scans, whole))
+        log::warn("{}: its coordinates are whole numbers of metres; if they are millimetres, use --unit mm",
+                  name);
 }
 
 Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     const std::string name = file->path().string();
     LUCARNE_ASSIGN(const auto header, e57::read_file_header(file, options.salvage));
-    LUCARNE_ASSIGN(std::string xml, read_xml(file, header));
+    LUCARNE_ASSIGN(Xml xml, read_xml(file, header, options.salvage));
     E57 e57;
-    LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml));
+    LUCARNE_ASSIGN(e57.document, e57::parse_document(name, xml.text));
+    add_loss(e57.losses, e57::kWrongPages, xml.wrong_pages.size());
+    add_loss(e57.losses, e57::kCutChecksums, header.cut);
     e57.salvage = options.salvage;
     if (!options.quiet) warn_of_poses(name, e57.document);
     if (!options.quiet && !options.metres_per_unit) warn_of_unit(name, e57.document);
@@ -256,6 +302,9 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)
         log::warn("{}: it has more bytes than its header promises; they are ignored", name);
     e57.file = std::move(file);
+    for (size_t i = 0; i < e57.document.scans.size(); ++i) {
+        LUCARNE_ASSIGN(e57.layout.scans[i].zero_is_missed, has_missed_rays(e57, i));
+    }
     return std::make_unique<E57Source>(std::move(e57), options);
 }
 

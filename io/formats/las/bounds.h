@@ -19,6 +19,7 @@ std::optional<std::array<glm::dvec3, 2>> stated_box(const Header& header);
 class StatedBounds {
  public:
     explicit StatedBounds(const Header& header);
+    bool stated() const { return stated_; }  ///< otherwise nothing is outside
 
     /// Looks at every `step`th record (each begins with x, y, z as 32-bit integers). Returns the index of the
     /// first that is far outside; nothing if there is none, or if the header states no box.

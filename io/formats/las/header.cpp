@@ -9,6 +9,7 @@
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/text.h"
+#include "io/formats/las/surplus.h"
 
 namespace lucarne::io::las {
 namespace {
@@ -90,11 +91,12 @@ class RecordReader {
 struct RawHeader {
     uint16_t header_size = 0;
     uint32_t vlr_count = 0, evlr_count = 0;
-    uint64_t evlr_offset = 0;
+    uint64_t evlr_offset = 0, wave_offset = 0;
     uint8_t format_byte = 0;
 };
+constexpr size_t kLargestHeader = 393;  ///< LAS 1.5
 
-Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
+Header parse_block(const std::array<std::byte, kLargestHeader>& block, RawHeader& raw) {
     Header h;
     const std::byte* b = block.data();
     h.file_source_id = load<uint16_t>(b + 4);
@@ -120,12 +122,16 @@ Header parse_block(const std::array<std::byte, 375>& block, RawHeader& raw) {
         h.high[axis] = load<double>(b + 179 + 16 * axis);
         h.low[axis] = load<double>(b + 187 + 16 * axis);
     }
+    if (h.minor >= 3) raw.wave_offset = load<uint64_t>(b + 227);
     if (h.minor >= 4) {
         raw.evlr_offset = load<uint64_t>(b + 235);
         raw.evlr_count = load<uint32_t>(b + 243);
         // Some writers of 1.4 fill in only the old 32-bit count.
         if (const auto count = load<uint64_t>(b + 247); count != 0) h.points = count;
     }
+    constexpr uint16_t kTimeOffset = 1 << 6;
+    if (h.minor >= 5 && raw.header_size >= kLargestHeader && (h.global_encoding & kTimeOffset) != 0)
+        add_loss(h.losses, "offsets of GPS times, which are not kept", load<uint16_t>(b + 391) != 0);
     return h;
 }
 
@@ -159,24 +165,30 @@ Result<void> check_sizes(const ByteSource& file, const Header& h, const RawHeade
     return {};
 }
 
-Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
+Result<void> check_points(const ByteSource& file, Header& h, const RawHeader& raw, bool salvage) {
     const uint64_t bytes = file.size() - h.points_offset;
+    // Points cannot reach into the extended records or wave packets behind them.
+    uint64_t end = file.size();
+    for (const uint64_t record : {raw.evlr_count > 0 ? raw.evlr_offset : 0, raw.wave_offset}) {
+        LUCARNE_ASSIGN(const bool there, is_extended_record(file, record));
+        if (there && record >= h.points_offset) end = std::min(end, record);
+    }
     if (salvage) {
-        const uint64_t most = h.compressed ? bytes * kMostPointsAByte : bytes / h.record_length;
+        const uint64_t most =
+            h.compressed ? bytes * kMostPointsAByte : (end - h.points_offset) / h.record_length;
         if (h.points > most) {
             add_loss(h.losses, lost::cut_off, h.points - most);
             h.points = most;
         }
     }
     if (h.compressed) {
-        const bool bomb =
-            h.points > kLargeScan / h.record_length && h.points / kMostRatio > bytes / h.record_length;
-        if (h.points / kMostPointsAByte > bytes || bomb)
+        if (too_many_for(bytes, h.points, h.record_length))
             return rejected(file.path().string(), fmt::format("promises {}, more than its {} bytes can hold",
                                                               counted(h.points, "points"), file.size()));
-        if (h.points == 0 && bytes > kRoomOfNoPoints)
-            log::warn("{}: its header promises no points, but there are {} bytes for them",
-                      file.path().string(), bytes);
+        if (h.points == 0 && bytes > kRoomOfNoPoints && !salvage)
+            log::warn(
+                "{}: its header promises no points, but {} bytes follow; --salvage reads the points in them",
+                file.path().string(), bytes);
         return {};
     }
     const uint64_t there = bytes / h.record_length;
@@ -184,12 +196,16 @@ Result<void> check_points(const ByteSource& file, Header& h, bool salvage) {
         return rejected(file.path().string(),
                         fmt::format("is truncated: its header promises {}, {} {} there",
                                     counted(h.points, "points"), there, there == 1 ? "is" : "are"));
-    if (h.points == 0 && there > 0)  // an interrupted writer leaves such files
-        log::warn("{}: its header promises no points, but there is room for {}", file.path().string(), there);
-    return {};
+    return take_surplus(file, h, end, salvage);
 }
 
 }  // namespace
+
+bool too_many_for(uint64_t compressed_bytes, uint64_t points, uint16_t record_length) {
+    const bool bomb =
+        points > kLargeScan / record_length && points / kMostRatio > compressed_bytes / record_length;
+    return points / kMostPointsAByte > compressed_bytes || bomb;
+}
 
 const Vlr* Header::find(std::string_view user, uint16_t record) const {
     const auto found =
@@ -199,12 +215,12 @@ const Vlr* Header::find(std::string_view user, uint16_t record) const {
 
 Result<Header> read_header(const ByteSource& file, bool salvage) {
     const std::string name = file.path().string();
-    std::array<std::byte, 375> block{};
+    std::array<std::byte, kLargestHeader> block{};
     LUCARNE_ASSIGN(const size_t got, file.read_some(0, block));
     if (got < header_bytes(0))
         return rejected(name, fmt::format("ends inside its LAS header, at {} bytes", got));
     const auto major = load<uint8_t>(&block[24]), minor = load<uint8_t>(&block[25]);
-    if (major != 1 || minor > 4)
+    if (major != 1 || minor > 5)
         return rejected(name, fmt::format("is LAS {}.{}, which cannot be read", major, minor));
     if (got < header_bytes(minor))
         return rejected(name, fmt::format("ends inside its LAS header, at {} bytes", got));
@@ -215,7 +231,7 @@ Result<Header> read_header(const ByteSource& file, bool salvage) {
     LUCARNE_TRY(records.read(false, raw.vlr_count, raw.header_size, h.points_offset));
     h.compressed = (raw.format_byte & 0xc0) != 0 || h.find("laszip encoded", 22204) != nullptr;
     LUCARNE_TRY(check_format(name, h));
-    LUCARNE_TRY(check_points(file, h, salvage));
+    LUCARNE_TRY(check_points(file, h, raw, salvage));
     if (raw.evlr_count > 0) {
         if (raw.evlr_offset < h.points_offset + (h.compressed ? 0 : h.points * h.record_length))
             log::warn("{}: its extended records begin inside the points, they are left out", name);

@@ -9,8 +9,8 @@
 #include "io/lattice.h"
 #include "io/points.h"
 
-// The public header and the variable length records of LAS 1.0-1.4. Source: ASPRS, "LAS Specification 1.4 -
-// R15" (2019), and the specifications of 1.0 to 1.3.
+// The public header and the variable length records of LAS 1.0-1.5. Sources: ASPRS, "LAS Specification 1.4 -
+// R15" (2019), "LAS Specification 1.5 - R00" (2025), and the specifications of 1.0 to 1.3.
 namespace lucarne::io::las {
 
 using Vlr = LasRecord;
@@ -29,6 +29,7 @@ struct Header : LasNotes {
 
     const Vlr* find(std::string_view user, uint16_t record) const;
 };
+/// Returns the bytes of a header of LAS 1.0-1.4. LAS 1.5 adds 18, which some of its writers leave out.
 constexpr uint16_t header_bytes(uint8_t minor) {
     return minor >= 4 ? 375 : minor == 3 ? 235 : 227;
 }
@@ -59,8 +60,12 @@ constexpr bool has_color(uint8_t f) {
 
 /// Reads everything before the points, and the extended records after them. Rejects what is not LAS of a
 /// known point format, and files that cannot hold the points they promise. Leaves out, with a warning,
-/// records that are broken or too large to keep (kMostRecordBytes in all). With `salvage` the points are
-/// those that are there or may be there, and the missing ones count as a loss.
+/// records that are broken or too large to keep (kMostRecordBytes in all). Warns of bytes that follow the
+/// points and belong to nothing.
+///
+/// With `salvage` the points are those that are there, or of LAZ those that may be there, and the missing
+/// ones count as a loss. Whole records that follow the last point and lie in the stated box are points as
+/// well.
 Result<Header> read_header(const ByteSource& file, bool salvage = false);
 
 inline constexpr uint64_t kMostRecordBytes = uint64_t{64} << 20;
@@ -68,6 +73,9 @@ inline constexpr uint32_t kMostRecords = 100'000;
 /// Even if nothing changes from point to point, LAZ's adaptive models take a hundredth of a bit for each
 /// point (the changes: 128 symbols of 2^15; the bit counts of two differences: 33 symbols each).
 inline constexpr uint64_t kMostPointsAByte = 1000;
+
+/// Returns whether these are more points than compressed bytes can hold, or than real scans shrink to.
+bool too_many_for(uint64_t compressed_bytes, uint64_t points, uint16_t record_length);
 
 /// Returns the header to write for the points of a LAS file. The notes must have `las`. Errors: a cache's
 /// notes are damaged.

@@ -1,4 +1,4 @@
-// LAS 1.0-1.4, point formats 0-10 (wave packets are skipped). Source: see header.h.
+// LAS 1.0-1.5, point formats 0-10 (wave packets are skipped). Source: see header.h.
 #include "io/formats/las/laz/reader.h"
 
 #include <algorithm>
@@ -96,7 +96,7 @@ class LasSource final : public PointSource {
 
     Result<void> describe(const ReadOptions& options) {
         const std::string name = file_->path().string();
-        if (header_.compressed) LUCARNE_TRY(find_chunks(options.salvage));
+        if (header_.compressed) LUCARNE_TRY(find_chunks(options));
         info_.path = name;
         info_.format =
             fmt::format("{} 1.{}, point format {}", compressed_ ? "LAZ" : "LAS", header_.minor,
@@ -127,6 +127,7 @@ class LasSource final : public PointSource {
         }
         info_.color_bits = sampled_color_bits(*this);
         LasNotes kept = header_;
+        kept.minor = std::min<uint8_t>(kept.minor, 4);  // LAS 1.5 is not written
         kept.record_length = static_cast<uint16_t>(kept.record_length - header_.wave_bytes);
         info_.notes.las = std::move(kept);
         info_.notes.color_bits = info_.color_bits;
@@ -186,16 +187,21 @@ class LasSource final : public PointSource {
         header_.global_encoding &= static_cast<uint16_t>(~kWaveBits);
     }
 
-    Result<void> find_chunks(bool salvage) {
+    Result<void> find_chunks(const ReadOptions& options) {
         LUCARNE_ASSIGN(auto compression, laz::read_compression(file_->path().string(), header_));
-        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression, salvage));
-        if (salvage) {
-            uint64_t there = 0;
-            for (const auto& chunk : chunks) there += chunk.points;
-            add_loss(header_.losses, lost::cut_off, header_.points - there);
-            header_.points = there;
+        LUCARNE_ASSIGN(auto chunks, laz::read_chunks(*file_, header_, compression, options.salvage));
+        uint64_t there = 0, left_out = 0;
+        for (const auto& chunk : chunks) {
+            there += chunk.taken();
+            left_out += chunk.left_out;
         }
-        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks), salvage};
+        add_loss(header_.losses, lost::cut_off, header_.points - std::min(there, header_.points));
+        add_loss(header_.losses, lost::uncounted, left_out);
+        if (left_out > 0 && !options.quiet)
+            log::warn("{}: its header counts {} points, {} more follow; --salvage reads them",
+                      file_->path().string(), there, left_out);
+        header_.points = there;
+        compressed_ = laz::Points{file_, header_, std::move(compression), std::move(chunks), options.salvage};
         // Records that a writer of plain LAS must not repeat.
         std::erase_if(header_.vlrs,
                       [](const las::Vlr& vlr) { return vlr.user_id == laz::kUser || vlr.user_id == "copc"; });

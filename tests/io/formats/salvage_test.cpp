@@ -257,14 +257,14 @@ TEST_F(SharedSalvage, OfLazWithADamagedChunkAllOthers) {
     }
 }
 
-TEST_F(SharedSalvage, OfE57EveryScanAsFarAsItsPagesAreWhole) {
+TEST_F(SharedSalvage, OfE57EveryRecordOutsideTheDamagedPage) {
     for (const char* name : {"bunnyInt19.e57", "pump_155k_rgb_with_image.e57"}) {
         const std::string bytes = shared_bytes(std::string("e57/") + name);
         const testing::TemporaryFolder folder;
         const auto path = folder / name;
         testing::write_bytes(path, bytes);
         const auto whole = salvage(path);
-        uint64_t before = 0, most = 0;
+        size_t damaged_points = 0;
         for (size_t place = 1; place < 20; ++place) {
             std::string damaged = bytes;
             damaged[bytes.size() * place / 20] ^= '\x10';
@@ -273,18 +273,16 @@ TEST_F(SharedSalvage, OfE57EveryScanAsFarAsItsPagesAreWhole) {
             const auto usual = read_as_usual(path);
             const auto saved = salvage(path);
             if (!saved || usual) continue;  // the description itself is damaged, or an image
-            EXPECT_GE(saved->records.count, before) << name;
             EXPECT_EQ(saved->records.count + saved->lost, whole->records.count + whole->lost) << name;
-            EXPECT_TRUE(std::equal(saved->records.bytes.begin(), saved->records.bytes.end(),
-                                   whole->records.bytes.begin()))
-                << name;
-            before = saved->records.count;
-            most = std::max(most, before);
-            if (before == 0) continue;
-            EXPECT_THAT(with_salvage_advice(usual.error(), path, {}).line(),
-                        HasSubstr(fmt::format("{} points can be saved with --salvage", before)));
+            if (saved->lost == whole->lost) continue;
+            ++damaged_points;
+            // A page has at most 1020 bytes of a field, of 3 bits or more for each record.
+            EXPECT_LT(saved->lost - whole->lost, 2800u) << name << ' ' << place;
+            EXPECT_THAT(
+                with_salvage_advice(usual.error(), path, {}).line(),
+                HasSubstr(fmt::format("{} points can be saved with --salvage", saved->records.count)));
         }
-        EXPECT_GT(most, whole->records.count / 2) << name;
+        EXPECT_GT(damaged_points, 1u) << name;
     }
 }
 
@@ -314,7 +312,9 @@ TEST(Salvage, OfATruncatedE57WholePacketsOfWholePages) {
     static constexpr uint64_t kPoints = 10'000, kPacket = 100 * 24 + 12;
     const std::string bytes = description_first(kPoints);
     cut_everywhere("a.e57", bytes, [](size_t cut) -> uint64_t {
-        const size_t logical = cut / e57::kPageBytes * e57::kPageContent, begin = 4 * e57::kPageContent + 32;
+        // The checksum of the last page may be cut off.
+        const size_t logical = (cut + 4) / e57::kPageBytes * e57::kPageContent,
+                     begin = 4 * e57::kPageContent + 32;
         return logical < begin ? 0 : std::min<uint64_t>(kPoints, (logical - begin) / kPacket * 100);
     });
 }

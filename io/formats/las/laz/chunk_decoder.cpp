@@ -1,7 +1,6 @@
 #include "io/formats/las/laz/chunk_decoder.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "io/formats/las/laz/layered.h"
 #include "io/formats/las/laz/point_wise.h"
@@ -115,6 +114,21 @@ Result<void> ChunkDecoder::decode(uint64_t count, std::byte* records) {
         state_->layered ? state_->layered->code(records) : state_->point_wise->code(records);
     if (state_->failed()) return cut_off(state_->file);
     return {};
+}
+
+std::optional<uint64_t> count_points(const Compression& compression, std::span<const std::byte> chunk,
+                                     uint64_t most, uint64_t expected) {
+    const size_t bytes = record_bytes(compression);
+    if (compression.layered || chunk.size() < bytes) return std::nullopt;
+    PointWise<Decoder> points(compression, Decoder(chunk.subspan(bytes)), chunk.data());
+    std::vector<std::byte> record(bytes);
+    const auto far = [&](uint64_t count) { return count > expected ? count - expected : expected - count; };
+    std::optional<uint64_t> found;
+    for (uint64_t count = 1; count <= most && !points.coder().failed(); ++count) {
+        if (count > 1) points.code(record.data());
+        if (points.coder().is_finished() && (!found || far(count) < far(*found))) found = count;
+    }
+    return found;
 }
 
 bool ChunkDecoder::ends_well() const {

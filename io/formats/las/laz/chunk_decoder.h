@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "io/formats/las/laz/record.h"
 
@@ -31,6 +32,11 @@ class ChunkDecoder {
     explicit ChunkDecoder(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
+
+/// Returns how many points a point-wise chunk holds: the number nearest to `expected` after which the code
+/// ends exactly where the chunk does. Nothing if there is no such number up to `most`: the chunk is damaged.
+std::optional<uint64_t> count_points(const Compression& compression, std::span<const std::byte> chunk,
+                                     uint64_t most, uint64_t expected);
 
 /// Returns an upper estimate of the memory for a chunk's models while it is decoded.
 uint64_t model_bytes(const Compression& compression);

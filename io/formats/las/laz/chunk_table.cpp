@@ -42,37 +42,109 @@ Result<uint64_t> table_offset(const ByteSource& file, uint64_t points_offset) {
     return 0;
 }
 
-/// Reads the table. Empty if it does not belong to this file.
-Result<std::vector<ChunkPlace>> parse_table(const ByteSource& file, const las::Header& header,
-                                            const Compression& compression, uint64_t table) {
+struct Table {
+    std::vector<ChunkPlace> chunks;
+    bool exact = false;  ///< the chunks reach exactly from the first place to the table
+};
+
+/// Reads the table. Empty if it does not belong to this file. In chunks of fixed size the last one has that
+/// size, too.
+Result<Table> parse_table(const ByteSource& file, const las::Header& header, const Compression& compression,
+                          uint64_t table) {
     std::array<std::byte, kTableHeader> head{};
     LUCARNE_TRY(file.read_at(table, head));
     const uint64_t count = load<uint32_t>(&head[4]);
     const uint64_t first = header.points_offset + kOffsetBytes;
-    if (load<uint32_t>(&head[0]) != 0 || count > (table - first) / header.record_length)
-        return std::vector<ChunkPlace>();
+    if (load<uint32_t>(&head[0]) != 0 || count > (table - first) / header.record_length) return Table();
     // Each chunk takes two numbers, whose longest code is six bytes.
     LUCARNE_ASSIGN(const auto bytes, read_up_to(file, table + kTableHeader, 12 * count + 16));
     Decoder decoder(bytes);
     IntegerModel model(32, 2);
     const bool variable = compression.chunk_points == kVariableChunks;
-    std::vector<ChunkPlace> chunks;
-    uint64_t offset = first, points = 0;
+    Table result;
+    uint64_t offset = first;
     int32_t last_points = 0, last_bytes = 0;
-    for (uint64_t i = 0; i < count && points < header.points; ++i) {
+    for (uint64_t i = 0; i < count; ++i) {
         if (variable) last_points = model.code(decoder, last_points, 0, 0);
         last_bytes = model.code(decoder, last_bytes, 0, 1);
-        ChunkPlace chunk{offset, static_cast<uint32_t>(last_bytes),
-                         variable ? static_cast<uint32_t>(last_points) : compression.chunk_points};
-        chunk.points = std::min(chunk.points, header.points - points);
-        if (decoder.failed() || chunk.bytes > table - offset) return std::vector<ChunkPlace>();
-        points += chunk.points;
+        const ChunkPlace chunk{offset, static_cast<uint32_t>(last_bytes),
+                               variable ? static_cast<uint32_t>(last_points) : compression.chunk_points};
+        if (decoder.failed() || chunk.bytes > table - offset) return Table();
         offset += chunk.bytes;
-        if (chunk.points > 0) chunks.push_back(chunk);
+        if (chunk.points > 0 && chunk.bytes >= header.record_length) result.chunks.push_back(chunk);
     }
-    if (points != header.points) chunks.clear();
-    return chunks;
+    result.exact = offset == table;
+    return result;
 }
+
+/// Fits the chunks of a table to what the header promises, or with `salvage` to what they hold.
+class Settlement {
+ public:
+    Settlement(const ByteSource& file, const las::Header& header, const Compression& compression,
+               bool salvage)
+        : file_(file),
+          header_(header),
+          compression_(compression),
+          salvage_(salvage),
+          name_(file.path().string()) {}
+
+    /// Returns the chunks; none if the table does not belong to the file.
+    Result<std::vector<ChunkPlace>> settle(Table table) const {
+        std::vector<ChunkPlace>& chunks = table.chunks;
+        if (chunks.empty()) return chunks;
+        if (compression_.chunk_points != kVariableChunks) LUCARNE_TRY(count_last(table));
+        uint64_t points = 0;
+        for (const ChunkPlace& chunk : chunks) points += chunk.points;
+        const bool equal = points == header_.points;
+        if (!equal && !table.exact) return std::vector<ChunkPlace>();
+        for (const ChunkPlace& chunk : chunks)
+            if (chunk.points / las::kMostPointsAByte > chunk.bytes) return std::vector<ChunkPlace>();
+        if (equal || salvage_) {
+            if (!equal && las::too_many_for(file_.size(), points, header_.record_length))
+                return rejected(name_, fmt::format("has chunks of {} points, more than its {} bytes can hold",
+                                                   points, file_.size()));
+            return std::move(chunks);
+        }
+        if (points < header_.points)
+            return rejected(name_, fmt::format("its header promises {} points, its chunks hold {}",
+                                               header_.points, points));
+        uint64_t counted = 0;
+        for (ChunkPlace& chunk : chunks) {
+            chunk.left_out = chunk.points - std::min(chunk.points, header_.points - counted);
+            counted += chunk.taken();
+        }
+        return std::move(chunks);
+    }
+
+ private:
+    /// Finds out how many points the last chunk has, where all have the same number but the last.
+    Result<void> count_last(Table& table) const {
+        ChunkPlace& last = table.chunks.back();
+        const uint64_t before = last.points * (table.chunks.size() - 1);
+        if (compression_.layered) {
+            LUCARNE_ASSIGN(const auto head, read_up_to(file_, last.offset, layered_head_bytes(compression_)));
+            const auto size = layered_size(name_, compression_, head);
+            if (size && size->points > 0 && size->points <= last.points) last.points = size->points;
+            return {};
+        }
+        const bool plausible = header_.points > before && header_.points - before <= last.points;
+        const uint64_t expected = plausible ? header_.points - before : last.points;
+        if ((salvage_ || !plausible) && table.exact && last.bytes <= kMostChunkBytes) {
+            LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, last.offset, last.bytes));
+            const uint64_t most = std::min(last.points, bytes.size() * las::kMostPointsAByte);
+            last.points = count_points(compression_, bytes, most, expected).value_or(expected);
+        } else {
+            last.points = expected;
+        }
+        return {};
+    }
+
+    const ByteSource& file_;
+    const las::Header& header_;
+    const Compression& compression_;
+    bool salvage_;
+    std::string name_;
+};
 
 /// Walks from chunk to chunk without a table. Layered chunks state their size; others must be decoded.
 class Walk {
@@ -173,15 +245,16 @@ Result<uint64_t> end_of_chunks(const ByteSource& file, const las::Header& header
 
 Result<std::vector<ChunkPlace>> read_chunks(const ByteSource& file, const las::Header& header,
                                             const Compression& compression, bool salvage) {
-    if (header.points == 0) return std::vector<ChunkPlace>();
+    if (header.points == 0 && !salvage) return std::vector<ChunkPlace>();
     std::vector<ChunkPlace> chunks;
     if (compression.chunked) {
         LUCARNE_ASSIGN(const uint64_t table, table_offset(file, header.points_offset));
         if (table) {
-            LUCARNE_ASSIGN(chunks, parse_table(file, header, compression, table));
+            LUCARNE_ASSIGN(Table found, parse_table(file, header, compression, table));
+            LUCARNE_ASSIGN(chunks, Settlement(file, header, compression, salvage).settle(std::move(found)));
         }
     }
-    if (chunks.empty()) {
+    if (chunks.empty() && header.points > 0) {
         LUCARNE_ASSIGN(chunks, Walk(file, header, compression).go(salvage));
     }
     for (const ChunkPlace& chunk : chunks)

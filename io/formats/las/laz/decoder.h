@@ -57,6 +57,15 @@ class Decoder {
     bool failed() const { return failed_; }
     void fail() { failed_ = true; }  ///< marks the decoded data as invalid
     bool at_end() const { return next_ == end_; }
+    /// Returns whether the code ends here with the bytes with which every encoder ends it (Encoder::finish).
+    bool is_finished() const {
+        if (failed_ || !at_end()) return false;
+        uint32_t read = 0;  // the last four bytes, from which value_ was made
+        for (int i = -4; i < 0; ++i) read = read << 8 | static_cast<uint32_t>(next_[i]);
+        const bool long_interval = length_ > 2 * kLeastLength;
+        const uint32_t last = read - value_ + (long_interval ? kLeastLength : kLeastLength / 2);
+        return read == (last & (long_interval ? 0xff000000 : 0xffff0000));
+    }
     /// Returns how far the decoder has read. After the last symbol that is the end of the code.
     const std::byte* position() const { return next_; }
 

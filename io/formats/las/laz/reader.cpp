@@ -19,7 +19,10 @@ constexpr uint64_t kPiecePoints = 1024;  ///< decoded at a time, and unpacked wh
 struct OpenChunk {
     std::vector<std::byte> bytes;
     std::optional<ChunkDecoder> decoder;
-    uint64_t left = 0;
+    uint64_t points = 0, left = 0;  ///< to be read
+    bool checked = false;           ///< the code must end where the chunk does
+    bool last = false;
+    uint64_t uncounted = 0;  ///< points after the last that the header counts, once that is decoded
 };
 
 Result<OpenChunk> open_chunk(const Points& points, size_t index, uint64_t most_bytes = UINT64_MAX) {
@@ -29,7 +32,9 @@ Result<OpenChunk> open_chunk(const Points& points, size_t index, uint64_t most_b
     LUCARNE_TRY(points.file->read_at(place.offset, chunk.bytes));
     LUCARNE_ASSIGN(chunk.decoder, ChunkDecoder::create(points.file->path().string(), points.compression,
                                                        place.points, chunk.bytes));
-    chunk.left = place.points;
+    chunk.points = chunk.left = place.taken();
+    chunk.last = index + 1 == points.chunks.size();
+    chunk.checked = points.compression.chunked && place.left_out == 0;
     return chunk;
 }
 
@@ -50,9 +55,18 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
         to += piece * schema.stride;
         count -= piece;
     }
-    if (chunk.left == 0 && points.compression.chunked && !chunk.decoder->ends_well())
-        return rejected(points.file->path().string(), "has a chunk of compressed points that is damaged");
-    return {};
+    if (chunk.left > 0 || !chunk.checked || chunk.decoder->ends_well()) return {};
+    // The number of points in the last chunk follows from the header, which may count too few.
+    if (chunk.last && points.compression.chunk_points != kVariableChunks) {
+        const uint64_t most =
+            std::min<uint64_t>(points.compression.chunk_points, chunk.bytes.size() * las::kMostPointsAByte);
+        const auto there = count_points(points.compression, chunk.bytes, most, chunk.points);
+        if (there && *there > chunk.points) {
+            chunk.uncounted = *there - chunk.points;
+            return {};
+        }
+    }
+    return rejected(points.file->path().string(), "has a chunk of compressed points that is damaged");
 }
 
 /// Returns how many points of a damaged chunk can be trusted. If the file ends within a point-wise chunk,
@@ -68,7 +82,7 @@ Result<uint64_t> sound_points(const Points& points, size_t index) {
     std::vector<std::byte> record(points.header.record_length);
     const las::StatedBounds bounds(points.header);
     uint64_t sound = 0;
-    while (sound < place.points && chunk->decoder->decode(1, record.data()) &&
+    while (sound < place.taken() && chunk->decoder->decode(1, record.data()) &&
            !bounds.outside(record.data(), 1, record.size()))
         ++sound;
     return sound;
@@ -100,7 +114,8 @@ class Reader final : public PointReader {
     Result<void> fill() {
         taken_ = 0;
         ready_.clear();
-        if (!large_.decoder && next_ < points_.chunks.size() && points_.chunks[next_].points > most_ready()) {
+        if (!large_.decoder && next_ < points_.chunks.size() &&
+            points_.chunks[next_].taken() > most_ready()) {
             return begin_large();
         }
         return large_.decoder ? fill_from_large() : fill_side_by_side();
@@ -108,10 +123,10 @@ class Reader final : public PointReader {
 
     Result<void> begin_large() {
         const size_t index = next_++;
-        uint64_t sound = points_.chunks[index].points;
+        uint64_t sound = points_.chunks[index].taken();
         if (points_.salvage) {
             LUCARNE_ASSIGN(sound, sound_of_large(index));
-            lose(index, points_.chunks[index].points - sound);
+            lose(index, points_.chunks[index].taken() - sound);
             if (sound == 0) return {};
         }
         LUCARNE_ASSIGN(large_, open_chunk(points_, index));
@@ -125,12 +140,12 @@ class Reader final : public PointReader {
         auto chunk = open_chunk(points_, index);
         Result<void> done = chunk ? Result<void>() : tl::unexpected(chunk.error());
         std::vector<std::byte> records(kPiecePoints * points_.header.record_length);
-        for (uint64_t left = points_.chunks[index].points; done && left > 0;) {
+        for (uint64_t left = points_.chunks[index].taken(); done && left > 0;) {
             const uint64_t piece = std::min(left, kPiecePoints);
             done = chunk->decoder->decode(piece, records.data());
             left -= piece;
         }
-        if (done) return points_.chunks[index].points;
+        if (done) return points_.chunks[index].taken();
         if (done.error().kind != ErrorKind::input_rejected) return tl::unexpected(std::move(done).error());
         return sound_points(points_, index);
     }
@@ -143,7 +158,9 @@ class Reader final : public PointReader {
         const uint64_t count = std::min(large_.left, most_ready());
         ready_.resize(count * schema_.stride);
         LUCARNE_TRY(unpack(points_, schema_, large_, count, ready_.data()));
-        if (large_.left == 0) large_ = {};
+        if (large_.left > 0) return {};
+        add_loss(losses_, lost::uncounted, large_.uncounted);
+        large_ = {};
         return {};
     }
 
@@ -152,7 +169,7 @@ class Reader final : public PointReader {
         std::vector<uint64_t> begins;
         uint64_t count = 0;
         for (; next_ < points_.chunks.size() && begins.size() < most_chunks(); ++next_) {
-            const uint64_t more = points_.chunks[next_].points;
+            const uint64_t more = points_.chunks[next_].taken();
             if (count + more > most_ready()) break;
             begins.push_back(count);
             count += more;
@@ -169,13 +186,14 @@ class Reader final : public PointReader {
                     error.report(i, sound.error());
             }
         });
+        add_loss(losses_, lost::uncounted, std::exchange(uncounted_, 0));
         if (points_.salvage) close_gaps(first, begins, kept);
         return error.result();
     }
 
     /// Decodes all points of a chunk, or with `salvage` the sound ones. Returns their number.
-    Result<uint64_t> take_chunk(size_t index, std::byte* to) const {
-        const uint64_t points = points_.chunks[index].points;
+    Result<uint64_t> take_chunk(size_t index, std::byte* to) {
+        const uint64_t points = points_.chunks[index].taken();
         auto done = take_points(index, points, to);
         if (done) return points;
         if (!points_.salvage || done.error().kind != ErrorKind::input_rejected)
@@ -184,9 +202,11 @@ class Reader final : public PointReader {
         if (sound > 0) LUCARNE_TRY(take_points(index, sound, to));
         return sound;
     }
-    Result<void> take_points(size_t index, uint64_t count, std::byte* to) const {
+    Result<void> take_points(size_t index, uint64_t count, std::byte* to) {
         LUCARNE_ASSIGN(auto chunk, open_chunk(points_, index));
-        return unpack(points_, schema_, chunk, count, to);
+        LUCARNE_TRY(unpack(points_, schema_, chunk, count, to));
+        if (chunk.last) uncounted_ = chunk.uncounted;
+        return {};
     }
 
     /// Moves together the `kept` points of each chunk, which begin at `begins`.
@@ -196,7 +216,7 @@ class Reader final : public PointReader {
             const size_t bytes = kept[i] * schema_.stride;
             std::memmove(ready_.data() + end, ready_.data() + begins[i] * schema_.stride, bytes);
             end += bytes;
-            lose(first + i, points_.chunks[first + i].points - kept[i]);
+            lose(first + i, points_.chunks[first + i].taken() - kept[i]);
         }
         ready_.resize(end);
     }
@@ -216,6 +236,7 @@ class Reader final : public PointReader {
     OpenChunk large_;
     std::vector<std::byte> ready_;
     size_t taken_ = 0;
+    uint64_t uncounted_ = 0;  ///< by the header: points of the last chunk
     Losses losses_;
 };
 

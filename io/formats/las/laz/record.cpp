@@ -69,8 +69,8 @@ Result<Compression> read_compression(const std::string& file, const las::Header&
         return refused(file, fmt::format("is compressed by the unknown LASzip item version {}", version));
     if (extended != compression.layered || compression.items != items_of(header, version))
         return rejected(file, "has a LASzip record that does not fit its point format");
-    if (compression.chunked && compression.chunk_points == 0)
-        return rejected(file, "has LASzip chunks of no points");
+    // LASzip takes no size for chunks of any size, and some writers of COPC rely on it.
+    if (compression.chunked && compression.chunk_points == 0) compression.chunk_points = kVariableChunks;
     return compression;
 }
 

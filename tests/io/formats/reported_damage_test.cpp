@@ -1,0 +1,115 @@
+// Files made after public reports: headers that lie about what follows them, parts that are missing, bodies
+// that do not fit their header.
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+#include "tests/io/io_testing.h"
+
+namespace lucarne::io {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::read_all;
+
+class ReportedDamage : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "the shared reports are not here";
+    }
+    /// What a pass over a file returns, and what it says.
+    struct Seen {
+        uint64_t points = 0;
+        Contents contents;
+        std::string said, error;
+        std::vector<glm::dvec3> positions;
+    };
+    Seen see(const std::string& file, bool salvage) const {
+        Seen seen;
+        ::testing::internal::CaptureStderr();
+        const auto done = pass(file, {"", false, {0, 0, true}, salvage}, seen);
+        seen.said = ::testing::internal::GetCapturedStderr();
+        if (!done) seen.error = done.error().line();
+        return seen;
+    }
+    const std::filesystem::path folder_ = testing::shared_data() / "reports";
+
+ private:
+    Result<void> pass(const std::string& file, const ReadOptions& options, Seen& seen) const {
+        LUCARNE_ASSIGN(const auto source, open_scan(folder_ / file, options));
+        LUCARNE_ASSIGN(const auto records, read_all(*source));
+        LUCARNE_ASSIGN(seen.contents, survey(*source));
+        seen.points = records.count;
+        const Schema& schema = source->schema();
+        for (size_t i = 0; i < records.count; ++i)
+            seen.positions.push_back(position_of(schema, &records.bytes[i * schema.stride]));
+        return {};
+    }
+};
+
+TEST_F(ReportedDamage, ASecondScanOfPtxThatComesEarlyKeepsItsOwnPlace) {
+    EXPECT_THAT(see("lie_more_then_second.ptx", false).error, HasSubstr("the next scan begins at line 611"));
+    const Seen saved = see("lie_more_then_second.ptx", true);
+    EXPECT_EQ(saved.points, 480u + 61);
+    const glm::dvec3 p(-2.604822, -4.865452, -3.053169);  // the first point of the second scan
+    const glm::dvec3 placed = glm::dmat3(.453596, .891207, 0, -.891207, .453596, 0, 0, 0, 1) * p;
+    ASSERT_EQ(saved.positions.size(), 541u);
+    EXPECT_LT(glm::distance(saved.positions[480], placed + glm::dvec3(105, 190, 3.5)), 1e-9);
+}
+
+TEST_F(ReportedDamage, LazGivesAsManyPointsAsItsHeaderCountsOrWithSalvageAsItsChunksHold) {
+    const Seen few = see("ok3_count_less.laz", false), all = see("ok3_count_less.laz", true);
+    EXPECT_EQ(few.error, "");
+    EXPECT_EQ(few.points, 119'989u);
+    EXPECT_EQ(few.contents.losses, (Losses{{std::string(lost::uncounted), 11}}));
+    EXPECT_EQ(all.points, 120'000u);
+    EXPECT_TRUE(all.contents.losses.empty());
+
+    EXPECT_THAT(see("ok3_count_more.laz", false).error, HasSubstr("cut off or damaged"));
+    const Seen more = see("ok3_count_more.laz", true);
+    EXPECT_EQ(more.points, 120'000u);
+    EXPECT_EQ(more.contents.losses, (Losses{{std::string(lost::cut_off), 15}}));
+    EXPECT_EQ(more.positions, all.positions);
+}
+
+TEST_F(ReportedDamage, LasWhoseHeaderCountsNothingIsReadWithSalvage) {
+    const Seen seen = see("count_zero_but_points.las", false);
+    EXPECT_EQ(seen.points, 0u);
+    EXPECT_THAT(seen.said, HasSubstr("as many as 600 records take; --salvage reads them"));
+    EXPECT_EQ(see("count_zero_but_points.las", true).points, 600u);
+}
+
+TEST_F(ReportedDamage, Las15IsRead) {
+    const Seen seen = see("v15.las", false);
+    EXPECT_EQ(seen.error, "");
+    EXPECT_EQ(seen.points, 600u);
+}
+
+TEST_F(ReportedDamage, AnE57ThatLacksItsLastByteIsReadWithSalvage) {
+    EXPECT_THAT(see("last_byte_missing.e57", false).error, HasSubstr("is truncated"));
+    const Seen saved = see("last_byte_missing.e57", true);
+    EXPECT_EQ(saved.error, "");
+    EXPECT_EQ(saved.points, 500u);
+}
+
+TEST_F(ReportedDamage, PointsOfE57AtTheScannerAreLeftOut) {
+    const Seen seen = see("zeros_unflagged.e57", false);
+    EXPECT_EQ(std::ranges::count(seen.positions, glm::dvec3(0.0)), 0);
+    ASSERT_EQ(seen.contents.losses.size(), 1u);
+    EXPECT_EQ(seen.points + seen.contents.losses[0].count, 500u);
+}
+
+TEST_F(ReportedDamage, WholeNumbersInE57MayBeMillimetres) {
+    const Seen seen = see("mm_integers.e57", false);
+    EXPECT_EQ(seen.points, 200u);
+    EXPECT_THAT(seen.said, HasSubstr("--unit mm"));
+}
+
+TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
+    const Seen seen = see("copc_vlr_chunk0.copc.laz", false);
+    EXPECT_EQ(seen.error, "");
+    EXPECT_EQ(seen.points, 1065u);
+}
+
+}  // namespace
+}  // namespace lucarne::io
