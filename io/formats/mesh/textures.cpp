@@ -14,14 +14,14 @@ namespace {
 
 constexpr uint64_t kMostText = uint64_t{64} << 20;  ///< of a material file
 constexpr size_t kMostTexts = 64, kMostTextures = 4096;
+constexpr size_t kMostSearches = 256;                   ///< missing names that are looked for in another case
 constexpr uint64_t kMostAllPixels = uint64_t{1} << 28;  ///< of all textures together, three bytes each
 
-/// Returns the path, or if nothing is there, an entry below `folder` whose name differs only in case: the
-/// file may come from a system that does not distinguish.
+/// Returns the entry below `folder` whose name differs from this path's only in case, as on systems that do
+/// not distinguish; the path itself if there is none.
 std::filesystem::path in_any_case(const std::filesystem::path& path, const std::filesystem::path& folder) {
     constexpr size_t kMostEntries = 65536;
     std::error_code error;
-    if (std::filesystem::exists(path, error)) return path;
     std::filesystem::path found = folder;
     for (const auto& part : path.lexically_relative(folder.empty() ? "." : folder)) {
         std::filesystem::path next = found / part;
@@ -41,16 +41,19 @@ std::filesystem::path in_any_case(const std::filesystem::path& path, const std::
 Companions::Companions(Mesh& mesh, const std::filesystem::path& mesh_file)
     : mesh_(mesh), folder_(mesh_file.parent_path().lexically_normal()) {}
 
-std::filesystem::path Companions::place(std::string_view name, const std::filesystem::path& from) const {
+std::filesystem::path Companions::place(std::string_view name, const std::filesystem::path& from) {
     std::string text(name);
     std::replace(text.begin(), text.end(), '\\', '/');
     std::filesystem::path wanted(text);
     const auto whole = (from / wanted).lexically_normal();
     const auto inside = whole.lexically_relative(folder_.empty() ? "." : folder_);
     const bool drive = text.size() > 1 && text[1] == ':';
-    if (!drive && wanted.is_relative() && !inside.empty() && *inside.begin() != "..")
-        return in_any_case(whole, folder_);
-    return in_any_case(from / wanted.filename(), from);
+    const bool below = !drive && wanted.is_relative() && !inside.empty() && *inside.begin() != "..";
+    const std::filesystem::path found = below ? whole : from / wanted.filename();
+    std::error_code error;
+    if (std::filesystem::exists(found, error) || searches_ == kMostSearches) return found;
+    ++searches_;
+    return in_any_case(found, below ? folder_ : from);
 }
 
 void Companions::count(const ByteSource& file) {

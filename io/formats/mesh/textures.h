@@ -26,7 +26,7 @@ class Companions {
     uint64_t state() const { return state_; }  ///< changes with the size and time of any of the files
 
  private:
-    std::filesystem::path place(std::string_view name, const std::filesystem::path& from) const;
+    std::filesystem::path place(std::string_view name, const std::filesystem::path& from);
     void count(const ByteSource& file);
 
     Mesh& mesh_;
@@ -34,6 +34,7 @@ class Companions {
     std::map<std::filesystem::path, uint32_t> textures_;
     std::map<std::filesystem::path, bool> texts_;
     uint64_t state_ = 0, pixels_ = 0;
+    size_t searches_ = 0;
 };
 
 }  // namespace lucarne::io::mesh

@@ -90,6 +90,16 @@ TEST_F(HeaderText, CellsThatSayThereIsNoNumberAreNone) {
     EXPECT_THAT(error_of("X,Y,Z,distance\n1.5,2.5,3.5,.5\n4,5,oops,1\n7,8,9,1\n").line(), HasSubstr("oops"));
 }
 
+TEST_F(HeaderText, OfAMegabyteIsRejectedInOneLine) {
+    for (const char* word : {"x", "x ", "x\t", "X (mm) ", "[", "# x\n"}) {
+        std::string header;
+        while (header.size() < (size_t{1} << 20)) header += word;
+        const Error error = error_of(header + "\n1.5 2.5 3.5\n");
+        EXPECT_EQ(error.kind, ErrorKind::input_rejected) << word;
+        EXPECT_LT(error.line().size(), 500u) << word;
+    }
+}
+
 TEST_F(HeaderText, OfReportedFilesIsUsed) {
     if (testing::shared_data().empty()) GTEST_SKIP() << "the shared data is not here";
     read_reported("u_mm.csv");
