@@ -10,6 +10,7 @@
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/value_range.h"
+#include "io/formats/crs/frame.h"
 #include "io/formats/crs/wkt.h"
 #include "io/formats/e57/layout.h"
 
@@ -299,7 +300,9 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
     for (size_t i = 0; i < e57.document.scans.size(); ++i) {
         LUCARNE_ASSIGN(e57.layout.scans[i].zero_is_missed, has_missed_rays(e57, i));
     }
-    return std::make_unique<E57Source>(std::move(e57), options);
+    auto source = std::make_unique<E57Source>(std::move(e57), options);
+    if (!options.quiet) warn_of_earth_centre(name, source->info().stated_box);
+    return source;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/text.h"
+#include "io/formats/ply/body.h"
 #include "io/formats/ply/layout.h"
 #include "io/formats/ply/mesh.h"
 #include "io/formats/ply/values.h"
@@ -287,7 +288,8 @@ class PlySource final : public PointSource {
 
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
-    LUCARNE_ASSIGN(const auto header, ply::read_header(file, options.salvage));
+    LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
+    LUCARNE_TRY(ply::fit_body(*file, header));
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);
     LUCARNE_TRY(vertices->describe(options));

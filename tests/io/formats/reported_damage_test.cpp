@@ -105,6 +105,22 @@ TEST_F(ReportedDamage, WholeNumbersInE57MayBeMillimetres) {
     EXPECT_THAT(seen.said, HasSubstr("--unit mm"));
 }
 
+TEST_F(ReportedDamage, HeaderLinesOfPlyMayEndInLineFeedAndCarriageReturn) {
+    const Seen seen = see("lfcr.ply", false);
+    EXPECT_EQ(seen.points, 300u);
+    EXPECT_EQ(seen.said, "");
+    for (const glm::dvec3& at : seen.positions) EXPECT_LT(glm::length(at), 100);
+}
+
+TEST_F(ReportedDamage, CoordinatesThatAreNoMapsNameARemedy) {
+    EXPECT_THAT(see("ecef.las", false).said, HasSubstr("EPSG:32631"));
+    EXPECT_THAT(see("ll_no_crs.las", false).said, HasSubstr("EPSG:32610"));
+}
+
+TEST_F(ReportedDamage, AViewpointOfFourNumbersIsRefused) {
+    EXPECT_THAT(see("extended.pcd", false).error, HasSubstr("has a VIEWPOINT without seven numbers"));
+}
+
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
     const Seen seen = see("copc_vlr_chunk0.copc.laz", false);
     EXPECT_EQ(seen.error, "");
