@@ -233,7 +233,8 @@ Result<bool> has_missed_rays(const E57& e57, size_t index) {
     const bool grid = layout.spherical || scan.find("rowIndex") || scan.find("columnIndex");
     const bool lattice =
         std::ranges::any_of(layout.coordinates, [&](size_t field) { return scan.fields[field].whole(); });
-    if (scan.records == 0 || layout.invalid || (lattice && !grid)) return false;
+    if (e57::record_bits(scan) == 0 || scan.records == 0 || layout.invalid || (lattice && !grid))
+        return false;
     e57::RecordReader reader(e57.file, e57.sections[index], scan, true);
     size_t seen = 0, zero = 0;
     for (size_t block = 0; block < kBlocks; ++block) {

@@ -2,8 +2,10 @@
 // that do not fit their header.
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "tests/io/formats/las/las_builder.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::io {
@@ -119,6 +121,25 @@ TEST_F(ReportedDamage, CoordinatesThatAreNoMapsNameARemedy) {
 
 TEST_F(ReportedDamage, AViewpointOfFourNumbersIsRefused) {
     EXPECT_THAT(see("extended.pcd", false).error, HasSubstr("has a VIEWPOINT without seven numbers"));
+}
+
+TEST_F(ReportedDamage, ChunksOfAnySizeTellTheirNumberOfPoints) {
+    const std::string bytes = testing::read_bytes(folder_ / "copc_vlr_chunk0.copc.laz");
+    const testing::TemporaryFolder folder;
+    for (const uint64_t count : {uint64_t{0}, uint64_t{1060}, uint64_t{3}, uint64_t{1066}, uint64_t{5000}}) {
+        std::string changed = bytes;
+        testing::put(changed, 247, count);
+        testing::put(changed, 107, uint32_t{0});
+        testing::write_bytes(folder / fmt::format("{}.laz", count), changed);
+        for (const bool salvage : {false, true}) {
+            const auto source = open_scan(folder / fmt::format("{}.laz", count), {"", true, {}, salvage});
+            EXPECT_EQ(source.has_value(), salvage || count < 1065) << count;
+            if (!source) continue;
+            const auto records = read_all(**source);
+            ASSERT_TRUE(records) << records.error().line();
+            EXPECT_EQ(records->count, salvage ? 1065u : count);
+        }
+    }
 }
 
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
