@@ -69,42 +69,59 @@ bool same_padding(const std::vector<std::vector<std::byte>>& records, uint64_t l
     });
 }
 
+/// Returns how many whole records follow those that are counted.
+Result<uint64_t> more_records(const ByteSource& file, const StatedBody& body, uint64_t stated) {
+    const uint64_t surplus = body.bytes - stated * body.count;
+    if (surplus % stated != 0) return 0u;
+    StatedBody rest = body;
+    rest.begin += stated * body.count;
+    rest.count = surplus / stated;
+    LUCARNE_ASSIGN(const auto records, sample(file, rest, stated));
+    const bool empty = std::ranges::all_of(records, [](const auto& record) {
+        return std::ranges::all_of(record, [](std::byte b) { return b == std::byte{0}; });
+    });
+    return empty || !all_usual(rest, records, false) ? 0 : rest.count;
+}
+
 }  // namespace
 
 Result<BodyGuess> guess_body(const ByteSource& file, const StatedBody& body) {
     const uint64_t stated = bytes_of(body.types, false), with_doubles = bytes_of(body.types, true);
-    if (body.count < kFewest || body.bytes % body.count != 0) return BodyGuess{};
-    const uint64_t length = body.bytes / body.count;
+    BodyGuess guess;
+    const uint64_t length = body.count < kFewest || body.bytes % body.count ? 0 : body.bytes / body.count;
     if (length == with_doubles && with_doubles > stated) {
         LUCARNE_ASSIGN(const auto as_doubles, sample(file, body, with_doubles));
         LUCARNE_ASSIGN(const auto as_stated, sample(file, body, stated));
-        if (all_usual(body, as_doubles, true) && !all_usual(body, as_stated, false))
-            return BodyGuess{true, 0};
+        guess.doubles = all_usual(body, as_doubles, true) && !all_usual(body, as_stated, false);
+        if (guess.doubles) return guess;
     }
     // Structures are padded to the size of their largest member, or to that of vector registers.
     for (const uint64_t unit : {4, 8, 16}) {
         const uint64_t padded = (stated + unit - 1) / unit * unit;
         if (length != padded || padded == stated) continue;
         LUCARNE_ASSIGN(const auto records, sample(file, body, padded));
-        if (same_padding(records, stated) && all_usual(body, records, false))
-            return BodyGuess{false, static_cast<size_t>(padded - stated)};
+        if (!same_padding(records, stated) || !all_usual(body, records, false)) continue;
+        guess.padding = static_cast<size_t>(padded - stated);
+        return guess;
     }
-    return BodyGuess{};
+    LUCARNE_ASSIGN(guess.more, more_records(file, body, stated));
+    return guess;
 }
 
-Result<BodyGuess> fit_body(const ByteSource& file, const StatedBody& body) {
+Result<BodyGuess> fit_body(const ByteSource& file, const StatedBody& body, bool salvage) {
     const uint64_t stated = bytes_of(body.types, false);
     if (stated == 0 || body.bytes / stated < body.count || body.bytes == stated * body.count)
         return BodyGuess{};
-    LUCARNE_ASSIGN(const BodyGuess guess, guess_body(file, body));
+    LUCARNE_ASSIGN(BodyGuess guess, guess_body(file, body));
     const std::string name = file.path().string();
     if (guess.doubles)
         log::warn("{}: its header states floats, but its points are doubles and are read as such", name);
     else if (guess.padding > 0)
         log::warn("{}: its points take {} bytes each instead of {}; the last {} of each are padding", name,
                   stated + guess.padding, stated, guess.padding);
-    else
-        warn_of_surplus(name, body.bytes - stated * body.count);
+    else if (guess.more == 0 || !salvage)
+        warn_of_surplus(name, body.bytes - stated * body.count, guess.more);
+    if (!salvage) guess.more = 0;
     return guess;
 }
 

@@ -19,17 +19,20 @@ struct StatedBody {
     bool big_endian = false;
 };
 
-/// How the records surely differ from their description; at most one of both.
+/// How the records surely differ from their description; at most one of these.
 struct BodyGuess {
     bool doubles = false;  ///< every f32 is an f64
     size_t padding = 0;    ///< bytes after each record
+    uint64_t more = 0;     ///< records that the count leaves out
 };
 
 /// Makes a guess where it is certain: the records fill the body exactly, and a sample from all over the body
-/// has coordinates of a usual size only if it is read so, or has the same padding in every record.
+/// has coordinates of a usual size only if it is read so, or has the same padding in every record. More
+/// records are those that fill the rest of the body exactly and have coordinates of a usual size.
 Result<BodyGuess> guess_body(const ByteSource& file, const StatedBody& body);
 
-/// Makes the guess and warns of it. Where there is none, warns of bytes behind the records.
-Result<BodyGuess> fit_body(const ByteSource& file, const StatedBody& body);
+/// Makes the guess and warns of it. Where there is none, warns of bytes behind the records. More records
+/// count only with `salvage`; otherwise the warning names them.
+Result<BodyGuess> fit_body(const ByteSource& file, const StatedBody& body, bool salvage);
 
 }  // namespace lucarne::io

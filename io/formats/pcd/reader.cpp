@@ -258,7 +258,7 @@ class PcdSource final : public PointSource {
 };
 
 /// Compares a binary body with what its header promises; see guess_body.
-Result<void> fit_body(const ByteSource& file, Header& header) {
+Result<void> fit_body(const ByteSource& file, Header& header, bool salvage) {
     if (header.encoding != Encoding::binary) return {};
     std::vector<ScalarType> types;
     StatedBody body{header.data_offset, file.size() - header.data_offset, header.points, {}};
@@ -270,7 +270,11 @@ Result<void> fit_body(const ByteSource& file, Header& header) {
         types.insert(types.end(), field.count, field.type);
     }
     body.types = types;
-    LUCARNE_ASSIGN(const BodyGuess guess, io::fit_body(file, body));
+    LUCARNE_ASSIGN(const BodyGuess guess, io::fit_body(file, body, salvage));
+    if (guess.more > 0) {
+        header.points = header.width = header.points + guess.more;
+        header.height = 1;
+    }
     for (Field& field : header.fields)
         if (guess.doubles && field.type == ScalarType::f32) field.type = ScalarType::f64;
     if (guess.padding > 0)
@@ -281,7 +285,7 @@ Result<void> fit_body(const ByteSource& file, Header& header) {
 Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
-    LUCARNE_TRY(fit_body(*file, header));
+    LUCARNE_TRY(fit_body(*file, header, options.salvage));
     auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);
     LUCARNE_TRY(source->describe(options));
     return source;

@@ -25,7 +25,7 @@ std::optional<std::array<uint64_t, 2>> bytes_around(const Header& header, uint64
 
 }  // namespace
 
-Result<void> fit_body(const ByteSource& file, Header& header) {
+Result<void> fit_body(const ByteSource& file, Header& header, bool salvage) {
     Element& vertices = header.elements[header.vertex];
     const auto around = bytes_around(header, file.size());
     if (header.encoding == Encoding::ascii || vertices.has_list() || !around) return {};
@@ -41,9 +41,10 @@ Result<void> fit_body(const ByteSource& file, Header& header) {
         const size_t found = index_of_name(vertices.properties, kAxes[k], &Property::name);
         body.axes[k] = found < types.size() ? found : body.axes[0];  // without z: x again
     }
-    LUCARNE_ASSIGN(const BodyGuess guess, io::fit_body(file, body));
+    LUCARNE_ASSIGN(const BodyGuess guess, io::fit_body(file, body, salvage));
     for (Property& p : vertices.properties)
         if (guess.doubles && p.type == ScalarType::f32) p.type = ScalarType::f64;
+    vertices.count += guess.more;
     for (size_t i = 0; i < guess.padding; ++i) vertices.properties.push_back({"", ScalarType::u8, {}});
     return {};
 }

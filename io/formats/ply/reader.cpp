@@ -289,7 +289,7 @@ class PlySource final : public PointSource {
 Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
-    LUCARNE_TRY(ply::fit_body(*file, header));
+    LUCARNE_TRY(ply::fit_body(*file, header, options.salvage));
     const bool mesh = ply::has_faces(header) && !options.mesh.vertices;
     auto vertices = std::make_unique<PlySource>(file, header, options.salvage, mesh);
     LUCARNE_TRY(vertices->describe(options));

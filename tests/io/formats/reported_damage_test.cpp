@@ -77,7 +77,7 @@ TEST_F(ReportedDamage, LazGivesAsManyPointsAsItsHeaderCountsOrWithSalvageAsItsCh
 TEST_F(ReportedDamage, LasWhoseHeaderCountsNothingIsReadWithSalvage) {
     const Seen seen = see("count_zero_but_points.las", false);
     EXPECT_EQ(seen.points, 0u);
-    EXPECT_THAT(seen.said, HasSubstr("as many as 600 records take; --salvage reads them"));
+    EXPECT_THAT(seen.said, HasSubstr("600 records take as many, and --salvage reads them"));
     EXPECT_EQ(see("count_zero_but_points.las", true).points, 600u);
 }
 

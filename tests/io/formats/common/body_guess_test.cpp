@@ -127,6 +127,28 @@ TEST_F(BinaryBody, PaddingOfRecordsIsLeftOut) {
     expect_points(20, 1e-6, "80 bytes");
 }
 
+TEST_F(BinaryBody, PointsThatTheHeaderDoesNotCountAreReadWithSalvage) {
+    for (const size_t counted : {size_t{0}, size_t{7}, size_t{19}})
+        for (const std::string& header : {ply_header(counted), pcd_header(counted)}) {
+            EXPECT_THAT(said_of(header + body<float>(20)),
+                        HasSubstr(counted == 19 ? "1 record takes as many, and --salvage reads it"
+                                                : "records take as many, and --salvage reads them"));
+            EXPECT_EQ(points(), counted);
+            read(header + body<float>(20), {"", true, {}, true});
+            expect_points(20, 1e-6, header);
+        }
+    // Nothing but zeros, a part of a record, and values that are no coordinates.
+    std::string odd;
+    for (int i = 0; i < 30; ++i) append(odd, i % 3 ? 1e20f : 1.f);
+    for (const std::string& rest : {std::string(120, '\0'), body<float>(5) + "x", odd})
+        for (const std::string& header : {ply_header(20), pcd_header(20)}) {
+            EXPECT_THAT(said_of(header + body<float>(20) + rest),
+                        HasSubstr("more than its header promises\n"));
+            read(header + body<float>(20) + rest, {"", true, {}, true});
+            expect_points(20, 1e-6, header);
+        }
+}
+
 TEST_F(BinaryBody, HeaderLinesMayEndInLineFeedAndCarriageReturn) {
     for (const std::string end : {"\n\r", "\r\n", "\n"})
         for (const std::string& header : {ply_header(20, {}, end), pcd_header(20, end)}) {

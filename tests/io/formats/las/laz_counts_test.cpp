@@ -122,13 +122,13 @@ TEST_P(LazCounts, DamageInTheLastChunkIsStillFound) {
     write();
     std::mt19937 random(9);
     size_t accepted = 0;
-    constexpr size_t kTries = 60;
+    constexpr size_t kTries = 24;
     for (size_t i = 0; i < kTries; ++i) {
         std::string bytes = i % 2 ? sound_ : counting(kPoints - 11);
         bytes[bytes.size() - 2'000 - random() % 4'000] ^= static_cast<char>(1 + random() % 255);
         accepted += error_of(bytes).why.empty();
     }
-    EXPECT_LE(accepted, kTries / 10);
+    EXPECT_LE(accepted, kTries / 8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, LazCounts, ::testing::Values(0, 3, 6, 7),
