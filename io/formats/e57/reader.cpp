@@ -10,6 +10,7 @@
 #include "io/core/log.h"
 #include "io/formats/common/format.h"
 #include "io/formats/common/value_range.h"
+#include "io/formats/crs/frame.h"
 #include "io/formats/crs/wkt.h"
 #include "io/formats/e57/layout.h"
 
@@ -232,7 +233,8 @@ Result<bool> has_missed_rays(const E57& e57, size_t index) {
     const bool grid = layout.spherical || scan.find("rowIndex") || scan.find("columnIndex");
     const bool lattice =
         std::ranges::any_of(layout.coordinates, [&](size_t field) { return scan.fields[field].whole(); });
-    if (scan.records == 0 || layout.invalid || (lattice && !grid)) return false;
+    if (e57::record_bits(scan) == 0 || scan.records == 0 || layout.invalid || (lattice && !grid))
+        return false;
     e57::RecordReader reader(e57.file, e57.sections[index], scan, true);
     size_t seen = 0, zero = 0;
     for (size_t block = 0; block < kBlocks; ++block) {
@@ -305,7 +307,9 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
     for (size_t i = 0; i < e57.document.scans.size(); ++i) {
         LUCARNE_ASSIGN(e57.layout.scans[i].zero_is_missed, has_missed_rays(e57, i));
     }
-    return std::make_unique<E57Source>(std::move(e57), options);
+    auto source = std::make_unique<E57Source>(std::move(e57), options);
+    if (!options.quiet) warn_of_earth_centre(name, source->info().stated_box);
+    return source;
 }
 
 }  // namespace

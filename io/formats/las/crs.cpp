@@ -132,7 +132,6 @@ Units units_of(const Header& header) {
 }
 
 void warn_of_units(const std::string& file, const Units& units, bool given) {
-    if (units.degrees) log::warn("{}: its coordinates are degrees, not lengths", file);
     if (!units.unknown.empty() && !given)
         log::warn(
             "{}: its coordinate system does not state its unit ({}); metres are assumed; "

@@ -19,8 +19,8 @@ struct Units : SystemUnits {
 /// EPSG registry gives the unit of ProjectedCRSGeoKey 3072. The keys for heights are 4099 and 4096.
 Units units_of(const Header& header);
 
-/// Warns about degrees, about an unknown unit (unless the user has `given` one), and about heights in another
-/// unit than the horizontal coordinates.
+/// Warns about an unknown unit (unless the user has `given` one), and about heights in another unit than the
+/// horizontal coordinates.
 void warn_of_units(const std::string& file, const Units& units, bool given);
 
 /// The name of a system that states only a unit of length. It is written for files that have no coordinate

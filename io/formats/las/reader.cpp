@@ -12,6 +12,7 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/stations.h"
+#include "io/formats/crs/frame.h"
 #include "io/formats/las/bounds.h"
 #include "io/formats/las/crs.h"
 #include "io/formats/las/layout.h"
@@ -114,14 +115,17 @@ class LasSource final : public PointSource {
         const las::Units units = las::units_of(header_);
         las::warn_of_units(name, units, options.metres_per_unit.has_value());
         const auto system = las::coordinate_system(header_);
+        info_.stated_box = las::stated_box(header_);
+        const bool placed = !system.name.empty() || system.epsg != 0;
+        if (units.degrees || (!placed && like_degrees(info_.stated_box, header_.scale)))
+            warn_of_degrees(name, info_.stated_box, units.degrees);
+        warn_of_earth_centre(name, info_.stated_box);
         auto unit = units.horizontal;
-        if (!unit && (!system.name.empty() || system.epsg))
-            unit = 1.0;  // a system has a unit: metres are assumed
+        if (!unit && placed) unit = 1.0;  // a system has a unit: metres are assumed
         set_unit(info_, options, unit);
         info_.coordinate_system = system.name;
         info_.epsg = system.epsg;
         info_.losses = header_.losses;
-        info_.stated_box = las::stated_box(header_);
         if (const las::Vlr* poses = header_.find(las::kOurUser, las::kStationsRecord)) {
             LUCARNE_ASSIGN(info_.stations, stations_from_json(name, poses->text()));
         }

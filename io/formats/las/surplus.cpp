@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
-#include "io/core/counted.h"
 #include "io/formats/common/surplus.h"
 #include "io/formats/las/bounds.h"
 
@@ -51,12 +48,7 @@ Result<void> take_surplus(const ByteSource& file, Header& header, uint64_t end, 
                    count_records(file, header, counted_end, salvage ? most : std::min<uint64_t>(most, 1)));
     if (salvage) header.points += records;
     const uint64_t rest = bytes - (salvage ? records * header.record_length : 0);
-    const bool points = !salvage && records > 0;
-    if (rest > 0)
-        warn_of_surplus(file.path().string(), rest,
-                        points ? fmt::format("as many as {} {}; --salvage reads them",
-                                             counted(most, "records"), most == 1 ? "takes" : "take")
-                               : "");
+    if (rest > 0) warn_of_surplus(file.path().string(), rest, !salvage && records > 0 ? most : 0);
     return {};
 }
 

@@ -62,6 +62,8 @@ class HeaderParser {
             if (!line) return wrong("ends without a DATA line");
             ++header_.data_line;
             std::string_view rest = *line;
+            if (header_.data_line > 2) line_feed_first_ = line_feed_first_ && rest.starts_with('\r');
+            while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
             if (rest.starts_with('#')) {
                 rest.remove_prefix(std::min(rest.find_first_not_of("# "), rest.size()));
                 while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
@@ -72,6 +74,9 @@ class HeaderParser {
             if (key.empty()) continue;
             LUCARNE_TRY(entry(key, rest));
         }
+        // Where lines end in LF CR, the last CR is not part of the body.
+        LUCARNE_ASSIGN(const auto next, input_.peek(1));
+        if (line_feed_first_ && !next.empty() && next[0] == std::byte{'\r'}) input_.skip(1);
         header_.data_offset = input_.position();
         LUCARNE_TRY(make_fields());
         LUCARNE_TRY(check_counts());
@@ -172,6 +177,7 @@ class HeaderParser {
     BufferedInput input_;
     Header header_;
     std::optional<Encoding> encoding_;
+    bool line_feed_first_ = true;  ///< every line but the first begins with the CR of the line before
     std::vector<std::string> names_;
     std::string letters_;
     std::vector<uint32_t> sizes_, counts_;

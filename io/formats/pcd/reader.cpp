@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/common/body_guess.h"
 #include "io/formats/common/buffered_input.h"
 #include "io/formats/common/color_depth.h"
 #include "io/formats/common/format.h"
@@ -256,9 +257,35 @@ class PcdSource final : public PointSource {
     ScanInfo info_;
 };
 
+/// Compares a binary body with what its header promises; see guess_body.
+Result<void> fit_body(const ByteSource& file, Header& header, bool salvage) {
+    if (header.encoding != Encoding::binary) return {};
+    std::vector<ScalarType> types;
+    StatedBody body{header.data_offset, file.size() - header.data_offset, header.points, {}};
+    for (const Field& field : header.fields) {
+        for (const auto& [axis, name] : {std::pair{0, "x"}, {1, "y"}, {2, "z"}})
+            if (index_of_name(header.fields, name, &Field::name) ==
+                static_cast<size_t>(&field - header.fields.data()))
+                body.axes[static_cast<size_t>(axis)] = types.size();
+        types.insert(types.end(), field.count, field.type);
+    }
+    body.types = types;
+    LUCARNE_ASSIGN(const BodyGuess guess, io::fit_body(file, body, salvage));
+    if (guess.more > 0) {
+        header.points = header.width = header.points + guess.more;
+        header.height = 1;
+    }
+    for (Field& field : header.fields)
+        if (guess.doubles && field.type == ScalarType::f32) field.type = ScalarType::f64;
+    if (guess.padding > 0)
+        header.fields.push_back({"_", ScalarType::u8, static_cast<uint32_t>(guess.padding)});
+    return {};
+}
+
 Result<std::unique_ptr<PointSource>> open_pcd(std::shared_ptr<const ByteSource> file,
                                               const ReadOptions& options) {
     LUCARNE_ASSIGN(auto header, pcd::read_header(file));
+    LUCARNE_TRY(fit_body(*file, header, options.salvage));
     auto source = std::make_unique<PcdSource>(std::move(file), std::move(header), options.salvage);
     LUCARNE_TRY(source->describe(options));
     return source;

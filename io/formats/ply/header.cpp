@@ -44,6 +44,7 @@ class HeaderParser {
             LUCARNE_ASSIGN(auto line, input_.line(header_.line_end));
             if (!line) return rejected(name_, "ends inside its PLY header, or the header is over 1 MiB");
             std::string_view rest = *line;
+            if (number > 1) line_feed_first_ = line_feed_first_ && rest.starts_with('\r');
             const std::string word = lower(next_word(rest));
             if (number == 1 || word.empty()) continue;  // "ply", checked before
             if (word == "end_header") break;
@@ -67,6 +68,7 @@ class HeaderParser {
                                 fmt::format("line {} of its PLY header: {}", number, understood.error().why));
         }
         if (!format_known) return rejected(name_, "has a PLY header without a format line");
+        LUCARNE_TRY(end_last_line());
         header_.data_offset = input_.position();
         LUCARNE_TRY(find_vertex());
         return std::move(header_);
@@ -82,6 +84,14 @@ class HeaderParser {
         const bool carriage_only =
             at != head.end() && *at == std::byte{'\r'} && (at + 1 == head.end() || at[1] != std::byte{'\n'});
         header_.line_end = carriage_only ? '\r' : '\n';
+        return {};
+    }
+
+    /// Where lines end in LF CR, the last CR is not part of the body.
+    Result<void> end_last_line() {
+        LUCARNE_ASSIGN(const auto next, input_.peek(1));
+        if (line_feed_first_ && header_.line_end == '\n' && !next.empty() && next[0] == std::byte{'\r'})
+            input_.skip(1);
         return {};
     }
 
@@ -164,6 +174,7 @@ class HeaderParser {
     bool salvage_;
     uint64_t size_;
     BufferedInput input_;
+    bool line_feed_first_ = true;  ///< every line but the first begins with the CR of the line before
     Header header_;
 };
 
@@ -199,7 +210,7 @@ std::string_view word_of(ScalarType type) {
 PlyNotes notes_of(const Header& header) {
     PlyNotes notes{{}, header.comments, header.infos};
     for (const Property& p : header.vertices().properties)
-        if (!p.count) notes.properties.push_back({p.name, p.type});
+        if (!p.count && !p.name.empty()) notes.properties.push_back({p.name, p.type});
     return notes;
 }
 

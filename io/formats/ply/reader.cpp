@@ -11,6 +11,7 @@
 #include "io/formats/common/format.h"
 #include "io/formats/common/pick.h"
 #include "io/formats/common/text.h"
+#include "io/formats/ply/body.h"
 #include "io/formats/ply/layout.h"
 #include "io/formats/ply/mesh.h"
 #include "io/formats/ply/splats.h"
@@ -283,6 +284,7 @@ Result<std::unique_ptr<PointSource>> open_ply(std::shared_ptr<const ByteSource> 
     LUCARNE_ASSIGN(auto header, ply::read_header(file, options.salvage));
     if (ply::has_packed_splats(header))
         return ply::open_packed_splats(std::move(file), std::move(header), options);
+    LUCARNE_TRY(ply::fit_body(*file, header, options.salvage));
     if (ply::has_splats(header)) {
         ply::leave_out_harmonics(header);
         auto splats = std::make_unique<PlySource>(std::move(file), std::move(header), options.salvage, false);

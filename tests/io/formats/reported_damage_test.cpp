@@ -2,8 +2,10 @@
 // that do not fit their header.
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "tests/io/formats/las/las_builder.h"
 #include "tests/io/io_testing.h"
 
 namespace lucarne::io {
@@ -75,7 +77,7 @@ TEST_F(ReportedDamage, LazGivesAsManyPointsAsItsHeaderCountsOrWithSalvageAsItsCh
 TEST_F(ReportedDamage, LasWhoseHeaderCountsNothingIsReadWithSalvage) {
     const Seen seen = see("count_zero_but_points.las", false);
     EXPECT_EQ(seen.points, 0u);
-    EXPECT_THAT(seen.said, HasSubstr("as many as 600 records take; --salvage reads them"));
+    EXPECT_THAT(seen.said, HasSubstr("600 records take as many, and --salvage reads them"));
     EXPECT_EQ(see("count_zero_but_points.las", true).points, 600u);
 }
 
@@ -103,6 +105,41 @@ TEST_F(ReportedDamage, WholeNumbersInE57MayBeMillimetres) {
     const Seen seen = see("mm_integers.e57", false);
     EXPECT_EQ(seen.points, 200u);
     EXPECT_THAT(seen.said, HasSubstr("--unit mm"));
+}
+
+TEST_F(ReportedDamage, HeaderLinesOfPlyMayEndInLineFeedAndCarriageReturn) {
+    const Seen seen = see("lfcr.ply", false);
+    EXPECT_EQ(seen.points, 300u);
+    EXPECT_EQ(seen.said, "");
+    for (const glm::dvec3& at : seen.positions) EXPECT_LT(glm::length(at), 100);
+}
+
+TEST_F(ReportedDamage, CoordinatesThatAreNoMapsNameARemedy) {
+    EXPECT_THAT(see("ecef.las", false).said, HasSubstr("EPSG:32631"));
+    EXPECT_THAT(see("ll_no_crs.las", false).said, HasSubstr("EPSG:32610"));
+}
+
+TEST_F(ReportedDamage, AViewpointOfFourNumbersIsRefused) {
+    EXPECT_THAT(see("extended.pcd", false).error, HasSubstr("has a VIEWPOINT without seven numbers"));
+}
+
+TEST_F(ReportedDamage, ChunksOfAnySizeTellTheirNumberOfPoints) {
+    const std::string bytes = testing::read_bytes(folder_ / "copc_vlr_chunk0.copc.laz");
+    const testing::TemporaryFolder folder;
+    for (const uint64_t count : {uint64_t{0}, uint64_t{1060}, uint64_t{3}, uint64_t{1066}, uint64_t{5000}}) {
+        std::string changed = bytes;
+        testing::put(changed, 247, count);
+        testing::put(changed, 107, uint32_t{0});
+        testing::write_bytes(folder / fmt::format("{}.laz", count), changed);
+        for (const bool salvage : {false, true}) {
+            const auto source = open_scan(folder / fmt::format("{}.laz", count), {"", true, {}, salvage});
+            EXPECT_EQ(source.has_value(), salvage || count < 1065) << count;
+            if (!source) continue;
+            const auto records = read_all(**source);
+            ASSERT_TRUE(records) << records.error().line();
+            EXPECT_EQ(records->count, salvage ? 1065u : count);
+        }
+    }
 }
 
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {

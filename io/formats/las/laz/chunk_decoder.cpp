@@ -8,6 +8,9 @@
 namespace lucarne::io::laz {
 namespace {
 
+/// Points are counted only in chunks whose records take no more: counting decodes the whole chunk.
+constexpr uint64_t kMostCountedBytes = uint64_t{32} << 20;
+
 auto cut_off(const std::string& file) {
     return rejected(file, "has compressed points that are cut off or damaged");
 }
@@ -119,6 +122,7 @@ Result<void> ChunkDecoder::decode(uint64_t count, std::byte* records) {
 std::optional<uint64_t> count_points(const Compression& compression, std::span<const std::byte> chunk,
                                      uint64_t most, uint64_t expected) {
     const size_t bytes = record_bytes(compression);
+    most = std::min<uint64_t>(most, kMostCountedBytes / bytes);
     if (compression.layered || chunk.size() < bytes) return std::nullopt;
     PointWise<Decoder> points(compression, Decoder(chunk.subspan(bytes)), chunk.data());
     std::vector<std::byte> record(bytes);

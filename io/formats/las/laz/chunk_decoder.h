@@ -34,7 +34,8 @@ class ChunkDecoder {
 };
 
 /// Returns how many points a point-wise chunk holds: the number nearest to `expected` after which the code
-/// ends exactly where the chunk does. Nothing if there is no such number up to `most`: the chunk is damaged.
+/// ends exactly where the chunk does. Nothing if there is no such number up to `most`: the chunk is damaged,
+/// or its records take over 32 MiB.
 std::optional<uint64_t> count_points(const Compression& compression, std::span<const std::byte> chunk,
                                      uint64_t most, uint64_t expected);
 

@@ -128,14 +128,15 @@ class Settlement {
             return {};
         }
         const bool plausible = header_.points > before && header_.points - before <= last.points;
-        const uint64_t expected = plausible ? header_.points - before : last.points;
+        const uint64_t expected = plausible ? header_.points - before : 0;
         if ((salvage_ || !plausible) && table.exact && last.bytes <= kMostChunkBytes) {
             LUCARNE_ASSIGN(const auto bytes, read_up_to(file_, last.offset, last.bytes));
             const uint64_t most = std::min(last.points, bytes.size() * las::kMostPointsAByte);
-            last.points = count_points(compression_, bytes, most, expected).value_or(expected);
-        } else {
-            last.points = expected;
+            const auto found = count_points(compression_, bytes, most, expected);
+            if (found) last.points = *found;
+            if (found) return {};
         }
+        if (plausible) last.points = expected;
         return {};
     }
 

@@ -20,6 +20,7 @@ struct OpenChunk {
     std::vector<std::byte> bytes;
     std::optional<ChunkDecoder> decoder;
     uint64_t points = 0, left = 0;  ///< to be read
+    uint64_t left_out = 0;          ///< after these
     bool checked = false;           ///< the code must end where the chunk does
     bool last = false;
     uint64_t uncounted = 0;  ///< points after the last that the header counts, once that is decoded
@@ -34,12 +35,35 @@ Result<OpenChunk> open_chunk(const Points& points, size_t index, uint64_t most_b
                                                        place.points, chunk.bytes));
     chunk.points = chunk.left = place.taken();
     chunk.last = index + 1 == points.chunks.size();
-    chunk.checked = points.compression.chunked && place.left_out == 0;
+    chunk.left_out = place.left_out;
+    chunk.checked = points.compression.chunked && place.taken() > 0;
     return chunk;
 }
 
 bool ends_with_file(const Points& points, size_t index) {
     return points.chunks[index].offset + points.chunks[index].bytes >= points.file->size();
+}
+
+/// Checks after the last point that is read that the code ends where the chunk does.
+Result<void> check_end(const Points& points, OpenChunk& chunk) {
+    if (!chunk.checked) return {};
+    const bool all = chunk.left_out == 0;
+    std::vector<std::byte> raw(std::min(chunk.left_out, kPiecePoints) * points.header.record_length);
+    while (chunk.left_out > 0) {
+        const uint64_t piece = std::min(chunk.left_out, kPiecePoints);
+        LUCARNE_TRY(chunk.decoder->decode(piece, raw.data()));
+        chunk.left_out -= piece;
+    }
+    if (chunk.decoder->ends_well()) return {};
+    // The number of points in the last chunk follows from the header, which may count too few.
+    if (all && chunk.last && points.compression.chunk_points != kVariableChunks) {
+        const uint64_t most =
+            std::min<uint64_t>(points.compression.chunk_points, chunk.bytes.size() * las::kMostPointsAByte);
+        const auto there = count_points(points.compression, chunk.bytes, most, chunk.points);
+        chunk.uncounted = std::max(there.value_or(0), chunk.points) - chunk.points;
+        if (chunk.uncounted > 0) return {};
+    }
+    return rejected(points.file->path().string(), "has a chunk of compressed points that is damaged");
 }
 
 /// Decodes the next `count` points of an open chunk to records of the schema.
@@ -55,18 +79,7 @@ Result<void> unpack(const Points& points, const Schema& schema, OpenChunk& chunk
         to += piece * schema.stride;
         count -= piece;
     }
-    if (chunk.left > 0 || !chunk.checked || chunk.decoder->ends_well()) return {};
-    // The number of points in the last chunk follows from the header, which may count too few.
-    if (chunk.last && points.compression.chunk_points != kVariableChunks) {
-        const uint64_t most =
-            std::min<uint64_t>(points.compression.chunk_points, chunk.bytes.size() * las::kMostPointsAByte);
-        const auto there = count_points(points.compression, chunk.bytes, most, chunk.points);
-        if (there && *there > chunk.points) {
-            chunk.uncounted = *there - chunk.points;
-            return {};
-        }
-    }
-    return rejected(points.file->path().string(), "has a chunk of compressed points that is damaged");
+    return chunk.left > 0 ? Result<void>() : check_end(points, chunk);
 }
 
 /// Returns how many points of a damaged chunk can be trusted. If the file ends within a point-wise chunk,

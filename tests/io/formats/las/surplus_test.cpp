@@ -44,7 +44,7 @@ TEST_F(LasSurplus, PointsThatTheHeaderDoesNotCountAreReadWithSalvage) {
     }
     LasFile file = five();
     file.said_points = file.said_old_points = 3;
-    EXPECT_THAT(said_of(file.bytes()), HasSubstr("as many as 2 records take; --salvage reads them"));
+    EXPECT_THAT(said_of(file.bytes()), HasSubstr("2 records take as many, and --salvage reads them"));
     EXPECT_EQ(said_of(five().bytes()), "");
 }
 
