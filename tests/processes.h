@@ -45,20 +45,22 @@ inline std::string bytes_of(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// Ends a test that hangs; not a measurement.
-inline constexpr auto kPatience = std::chrono::seconds(120);
+/// Ends a test that hangs; not a measurement. Long enough for a machine that has a tenth of its time for
+/// tests.
+inline constexpr auto kPatience = std::chrono::seconds(600);
 
 inline bool installed(const std::string& program) {
     return shell("command -v " + program).code == 0;
 }
 
-/// Polls until `there` holds. Returns false after kPatience.
+/// Polls until `there` holds, with a pause after each look. Returns false after `patience`.
 template <class Condition>
-bool eventually(const Condition& there) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
+bool eventually(const Condition& there, std::chrono::milliseconds pause = std::chrono::milliseconds(100),
+                std::chrono::seconds patience = kPatience) {
+    const auto end = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < end) {
         if (there()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        std::this_thread::sleep_for(pause);
     }
     return false;
 }

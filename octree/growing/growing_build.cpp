@@ -269,9 +269,8 @@ void GrowingBuild::State::pending(const Pending& node, std::span<const std::byte
            roots.back()->node.key.parent() == node.key)
         roots.pop_back();
     roots.push_back(std::move(root));
-    // At most a twentieth of the time is spent on making sources.
     const double since = std::chrono::duration<double>(Clock::now() - published).count();
-    if (since < std::max(options.seconds_between, 20 * publishing)) return;
+    if (since < std::max(options.seconds_between, publishing / options.share_of_time)) return;
     auto file = writer.reader();
     if (file) publish(std::make_shared<const InputFile>(std::move(*file)));
 }

@@ -32,6 +32,7 @@ struct GrowingOptions {
     uint64_t sample_points = 400'000;  ///< points of the first source's sample
     Sampling sampling;                 ///< called while the sample is taken; may end it
     double seconds_between = 1.5;      ///< least time between two sources of a running build
+    double share_of_time = 0.05;       ///< share of a running build's time that making sources may take
     /// Points of the first source, if it is to come before a sample of `sample_points` can be read, and how
     /// many points may be read for it. Then the sample grows while the build runs: each round doubles it.
     /// 0: the first source is the whole sample.

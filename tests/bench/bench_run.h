@@ -33,6 +33,8 @@ struct BenchRun {
     double seconds(double full) const { return full * scale; }
     /// Whether the run only checks that the program works.
     bool trial() const { return scale < 0.05; }
+    /// Returns the side of a square picture, pixels.
+    uint32_t side(uint32_t full) const { return trial() ? full / 4 : full; }
     /// Returns the cases to measure: all, or only the first in a trial.
     template <class Case>
     std::vector<Case> cases(std::vector<Case> all) const {

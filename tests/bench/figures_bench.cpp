@@ -103,23 +103,24 @@ void set_vpls(gi::EngineSettings& settings, uint32_t vpls) {
                  static_cast<uint32_t>(std::ceil(64 * std::sqrt(static_cast<double>(vpls)))));
 }
 
-Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesystem::path& folder) {
-    heading("fig. 9: cornell, 256 VPLs, 4 x 4 interleaved, 512 x 512");
+Result<void> figure_9(gi::Device& device, const Scan& scan, const BenchRun& run) {
+    const uint32_t side = run.side(512);
+    heading(fmt::format("fig. 9: cornell, 256 VPLs, 4 x 4 interleaved, {0} x {0}", side));
     fmt::print("{:>8} {:>12} {:>14} {:>16} {:>16}\n", "bounces", "ms a frame", "of all cores",
                "mean luminance", "more than before");
     Stage stage(device, scan);
-    LUCARNE_TRY(stage.open("cornell", {512, 512}));
+    LUCARNE_TRY(stage.open("cornell", {side, side}));
     gi::EngineSettings settings = stage.settings();
     LUCARNE_TRY(stage.frames(settings, 1));  // warm-up: shaders, first loads
     double before = 0;
     for (uint32_t bounces = 0; bounces <= 4; ++bounces) {
         settings.set(gi::kBounces, bounces);
-        LUCARNE_ASSIGN(const auto measured, stage.frames(settings, 3));
+        LUCARNE_ASSIGN(const auto measured, stage.frames(settings, static_cast<int>(run.count(3))));
         fmt::print("{:>8} {:>12.0f} {:>14.0f} {:>16.4f} {:>16}\n", bounces, measured.milliseconds,
                    measured.processor, measured.luminance,
                    bounces ? fmt::format("{:+.1f} %", 100 * (measured.luminance / before - 1)) : "");
         before = measured.luminance;
-        LUCARNE_TRY(stage.write(folder / fmt::format("fig-9-bounces-{}.png", bounces)));
+        LUCARNE_TRY(stage.write(run.folder / fmt::format("fig-9-bounces-{}.png", bounces)));
     }
     return {};
 }
@@ -128,16 +129,17 @@ Result<void> figure_9(gi::Device& device, const Scan& scan, const std::filesyste
 /// the factor n^2; here the indirect light must be the same for every n.
 Result<void> sweep(gi::Device& device, const Scan& scan, const std::string& scene, const std::string& figure,
                    const BenchRun& run) {
+    const uint32_t side = run.side(256);
     Stage stage(device, scan);
-    LUCARNE_TRY(stage.open(scene, {256, 256}));
+    LUCARNE_TRY(stage.open(scene, {side, side}));
     gi::EngineSettings settings = stage.settings();
     LUCARNE_TRY(stage.frames(settings, 1));
     settings.set(gi::kBounces, 0);
     LUCARNE_ASSIGN(const auto direct, stage.frames(settings, 1));
     heading(
-        fmt::format("{}: {}, 256 x 256, all VPLs anew: ms a frame / of all cores (indirect "
+        fmt::format("{}: {}, {} x {}, all VPLs anew: ms a frame / of all cores (indirect "
                     "light over that of interleave 1)",
-                    figure, scene));
+                    figure, scene, side, side));
     fmt::print("{:>6} {:>12} {:>22} {:>22} {:>22}\n", "VPLs", "interleave", "1 bounce", "2 bounces",
                "3 bounces");
     for (const uint32_t vpls : {64u, 128u, 256u, 1024u}) {
@@ -270,7 +272,7 @@ Result<void> make_figures(const BenchRun& run) {
     const auto wanted = [&](int figure) { return only == 0 || only == figure; };
     if (wanted(9) || wanted(10) || wanted(14)) {
         LUCARNE_ASSIGN(Scan cornell, Scan::create("cornell", run.points(2'000'000), run.folder));
-        if (wanted(9)) LUCARNE_TRY(figure_9(*device, cornell, run.folder));
+        if (wanted(9)) LUCARNE_TRY(figure_9(*device, cornell, run));
         if (wanted(10)) LUCARNE_TRY(sweep(*device, cornell, "cornell", "fig. 10", run));
         if (wanted(14)) LUCARNE_TRY(figure_14(cornell, run));
     }

@@ -119,7 +119,8 @@ class Heard {
     template <class Is>
     bool wait_for(const Is& is) {
         std::unique_lock lock(mutex_);
-        return more_.wait_for(lock, std::chrono::seconds(20), [&] { return is(states_, statuses_); });
+        // The time only ends a test that hangs.
+        return more_.wait_for(lock, std::chrono::minutes(5), [&] { return is(states_, statuses_); });
     }
 
  private:

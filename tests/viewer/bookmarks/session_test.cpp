@@ -1,9 +1,6 @@
 // Bookmarks of several scans, loaded and saved while the user changes them.
 #include "viewer/bookmarks/session.h"
 
-#include <chrono>
-#include <thread>
-
 #include <gmock/gmock.h>
 
 #include "tests/viewer/program.h"
@@ -35,10 +32,13 @@ class KeptBookmarks : public testing::Test {
     void follow(const char* scan) { session_->follow({view_, model_}, folder_.path() / scan); }
     /// Calls follow() until the bookmarks of the scan's file are loaded.
     void load(const char* scan, size_t count) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-        while (follow(scan), model_.all.size() != count && std::chrono::steady_clock::now() < end)
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        ASSERT_EQ(model_.all.size(), count);
+        ASSERT_TRUE(test::eventually(
+            [&] {
+                follow(scan);
+                return model_.all.size() == count;
+            },
+            std::chrono::milliseconds(5)))
+            << model_.all.size();
     }
 
     const test::TemporaryFolder folder_;

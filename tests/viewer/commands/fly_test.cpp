@@ -211,7 +211,7 @@ TEST(Fly, SoakEndsWithTheMemoryItBeganWith) {
     const char* asked = std::getenv("LUCARNE_SOAK");
     const Outcome flown =
         test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --size 64x48 --realtime" +
-                      " --engine direct --memory 8M --device-memory 16M --soak " + (asked ? asked : "60") +
+                      " --engine direct --memory 8M --device-memory 16M --soak " + (asked ? asked : "10") +
                       " -o " + (folder / "r.json"));
     ASSERT_EQ(flown.code, 0) << flown.output;
     const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));

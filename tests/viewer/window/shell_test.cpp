@@ -1,6 +1,6 @@
 // Tests what surrounds the picture, without a window: settings, bookmarks, dialogs, open scans.
 #include <fstream>
-#include <thread>
+#include <optional>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -162,11 +162,10 @@ TEST(Bookmarks, AThumbnailIsThePictureMadeSmall) {
 }
 
 std::vector<std::string> answer(NativeDialog& dialog) {
-    for (int i = 0; i < 1000; ++i) {
-        if (const auto chosen = dialog.poll()) return *chosen;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return {"it never ends"};
+    std::optional<std::vector<std::string>> chosen;
+    return test::eventually([&] { return (chosen = dialog.poll()).has_value(); })
+               ? *chosen
+               : std::vector<std::string>{"it never ends"};
 }
 
 TEST(NativeDialog, GivesTheLinesThatItsProgramPrints) {
@@ -218,12 +217,12 @@ class OpenScans : public testing::Test {
               [] {}) {}
     template <class Condition>
     bool eventually(const Condition& there) {
-        for (int i = 0; i < 6000; ++i) {
-            set_.update();
-            if (there()) return true;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        return false;
+        return test::eventually(
+            [&] {
+                set_.update();
+                return there();
+            },
+            std::chrono::milliseconds(10));
     }
     bool settles() {
         return eventually([&] {

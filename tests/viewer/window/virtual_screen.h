@@ -28,7 +28,7 @@ class VirtualScreen {
     /// Returns the setting of the variable for programs on this screen, and a space.
     std::string display() const { return "DISPLAY=:" + number_ + " "; }
     Outcome xdo(const std::string& command) const {
-        return shell(display() + "timeout -s KILL 120 xdotool " + command);
+        return shell(display() + "timeout -s KILL 600 xdotool " + command);
     }
     /// Returns the start of a command that runs the viewer on this screen in the folder, with its settings
     /// there.

@@ -17,7 +17,7 @@
 namespace {
 
 constexpr long kVersion = 5;
-constexpr auto kPatience = std::chrono::seconds(120);
+constexpr auto kPatience = std::chrono::seconds(600);
 
 enum class Ending : int { finished = 0, nothing_there = 1, refused = 3, no_answer = 4 };
 
