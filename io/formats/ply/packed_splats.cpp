@@ -35,7 +35,7 @@ std::optional<size_t> offset_of(const Element& element, std::string_view name, S
 }
 
 /// The place of everything in the file.
-struct Layout {
+struct PackedLayout {
     uint64_t chunks_at = 0, splats_at = 0;
     size_t chunk_bytes = 0, splat_bytes = 0;
     uint64_t splats = 0;
@@ -47,7 +47,7 @@ struct Layout {
 /// The bounds of a chunk.
 using Bounds = std::array<float, 18>;
 
-Bounds bounds_of(const Layout& layout, const std::byte* chunk) {
+Bounds bounds_of(const PackedLayout& layout, const std::byte* chunk) {
     Bounds bounds{};
     for (size_t i = 15; i < 18; ++i) bounds[i] = 1;
     for (size_t i = 0; i < layout.bound_count; ++i) bounds[i] = load<float>(chunk + layout.bounds[i]);
@@ -91,7 +91,7 @@ glm::quat rotation_of(uint32_t word) {
 enum class Outcome { kept, transparent, no_number };
 
 /// Writes the record of a splat.
-Outcome unpack(const Layout& layout, const Bounds& bounds, const std::byte* packed, std::byte* record) {
+Outcome unpack(const PackedLayout& layout, const Bounds& bounds, const std::byte* packed, std::byte* record) {
     const auto word = [&](size_t i) { return load<uint32_t>(packed + layout.words[i]); };
     const glm::vec3 position = between(word(0), bounds, 0);
     if (!usable(position.x) || !usable(position.y) || !usable(position.z)) return Outcome::no_number;
@@ -112,7 +112,8 @@ Outcome unpack(const Layout& layout, const Bounds& bounds, const std::byte* pack
 
 class PackedReader final : public PointReader {
  public:
-    PackedReader(const std::shared_ptr<const ByteSource>& file, const Layout& layout, const Schema& schema)
+    PackedReader(const std::shared_ptr<const ByteSource>& file, const PackedLayout& layout,
+                 const Schema& schema)
         : layout_(layout),
           schema_(schema),
           chunks_(file, layout.chunks_at, layout.splats_at),
@@ -147,7 +148,7 @@ class PackedReader final : public PointReader {
     }
 
  private:
-    const Layout& layout_;
+    const PackedLayout& layout_;
     const Schema& schema_;
     BufferedInput chunks_, splats_;
     Bounds bounds_{};
@@ -273,7 +274,7 @@ class PackedSource final : public PointSource {
 
     std::shared_ptr<const ByteSource> file_;
     Header header_;
-    Layout layout_;
+    PackedLayout layout_;
     Schema schema_;
     ScanInfo info_;
 };
