@@ -188,7 +188,12 @@ class ScanFinder {
         LUCARNE_ASSIGN(const auto first, next_line());
         if (!first) return false;
         const auto columns = whole(first->text);
-        if (!columns) return wrong_line(*first, "the number of columns or rows of a scan");
+        if (!columns) {
+            auto error = wrong_line(*first, "the number of columns or rows of a scan");
+            if (!found_.scans.empty() && is_row_length(row_of(first->text).values))
+                error.value().todo = "if it is a further point of the scan before it, --salvage reads it";
+            return error;
+        }
         const uint64_t begin = first->begin, number = first->number;
         LUCARNE_ASSIGN(const Line second, header_line());
         const auto rows = whole(second.text);

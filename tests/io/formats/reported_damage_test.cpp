@@ -142,6 +142,32 @@ TEST_F(ReportedDamage, ChunksOfAnySizeTellTheirNumberOfPoints) {
     }
 }
 
+TEST_F(ReportedDamage, EveryReportIsReadOrRejectedWhateverItsHeaderCounts) {
+    const testing::MemoryFile file;
+    size_t tried = 0;
+    for (const char* folder : {"reports", "bad"})
+        for (const auto& entry : std::filesystem::directory_iterator(testing::shared_data() / folder)) {
+            if (!entry.is_regular_file() || entry.file_size() > 20'000) continue;
+            const std::string bytes = testing::read_bytes(entry.path());
+            for (size_t at = 0; at + 8 < std::min<size_t>(bytes.size(), 400); at += 7)
+                for (const uint64_t value : {uint64_t{1} << 63, UINT64_MAX}) {
+                    std::string changed = bytes;
+                    if (at > 0) testing::put(changed, at, value);
+                    file.set(changed);
+                    for (const bool salvage : {false, true}) {
+                        const auto source = open_scan(file.path(), {"", true, {0, 100, false}, salvage});
+                        Result<std::unique_ptr<PointReader>> reader;
+                        if (source) reader = (*source)->open();
+                        PointBatch batch;
+                        if (source && reader) (void)(*reader)->read(batch, 1000);
+                        EXPECT_TRUE(source || source.error().kind != ErrorKind::arguments) << entry.path();
+                        ++tried;
+                    }
+                }
+        }
+    EXPECT_GT(tried, 1000u);
+}
+
 TEST_F(ReportedDamage, CopcMayStateNoSizeOfItsChunks) {
     const Seen seen = see("copc_vlr_chunk0.copc.laz", false);
     EXPECT_EQ(seen.error, "");

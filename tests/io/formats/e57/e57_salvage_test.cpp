@@ -125,6 +125,30 @@ TEST_F(E57Salvage, TheLastPageMayLackItsChecksum) {
     }
 }
 
+TEST_F(E57Salvage, HostileCountsAreHarmless) {
+    for (const char* count : {"9223372036854775807", "9223372036854775808", "18446744073709551615"}) {
+        BuiltScan scan = numbered(2, 100);
+        scan.record_count = count;
+        const std::string bytes = BuiltFile{{scan}}.bytes();
+        EXPECT_EQ(error_of(bytes).kind, ErrorKind::input_rejected) << count;
+        if (try_read(bytes, kSalvage)) EXPECT_EQ(points(), 200u) << count;
+    }
+    for (const size_t field : {16u, 24u, 32u, 40u})  // of the file's header
+        for (const uint64_t value : {uint64_t{1} << 63, UINT64_MAX, uint64_t{0}, uint64_t{1023}}) {
+            std::string logical = BuiltFile{{numbered(2, 100)}}.logical();
+            logical.replace(field, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
+            (void)error_of(testing::with_checksums(logical), kSalvage);
+        }
+    for (const size_t field : {8u, 16u})  // of the section's header
+        for (const uint64_t value : {uint64_t{1} << 63, UINT64_MAX, uint64_t{0}, uint64_t{1023}}) {
+            BuiltScan scan = numbered(2, 100);
+            scan.spoil = [&](std::string& section) {
+                section.replace(field, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
+            };
+            (void)error_of(BuiltFile{{scan}}.bytes(), kSalvage);
+        }
+}
+
 /// Returns a scan in which each third point is at its own origin.
 BuiltScan with_zeros(size_t count, const std::string& more_fields, const std::string& pose = {}) {
     BuiltScan scan{testing::kXyzFields + more_fields, count, {}, pose};
