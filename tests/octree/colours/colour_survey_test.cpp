@@ -267,7 +267,7 @@ TEST(SolveGains, OutliersDoNotMatter) {
 TEST(SolveGains, ALongChainDoesNotDriftAway) {
     constexpr size_t kStations = 600;
     std::vector<PatchRatio> ratios;
-    for (uint16_t i = 0; i + 1 < kStations; ++i)  // each seems 2 % brighter than the one before
+    for (uint16_t i = 0; i + 1u < kStations; ++i)  // each seems 2 % brighter than the one before
         ratios.insert(ratios.end(), 30, {i, static_cast<uint16_t>(i + 1), {-29, -29, -29}});
     const auto gains = solve_gains(ratios, kStations);
     double sum = 0, most = 0;

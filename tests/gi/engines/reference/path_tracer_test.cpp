@@ -14,6 +14,7 @@ namespace lucarne::gi::reference {
 using tracing::scatter;
 namespace {
 
+// Takes over ten CPU-seconds: an error below a per mille needs so many paths.
 TEST(Reference, ClosedFurnaceAfterBounceKIsOneMinusRhoToTheKPlusOne) {
     for (const float rho : {0.5f, 0.8f}) {
         const auto surfels = scenes::closed_box(1, 40, glm::vec3(rho));

@@ -32,10 +32,10 @@ class VplGlossyTest : public OnDevice {
 TEST_F(VplGlossyTest, theGlossyFurnaceReturnsNoMoreThanItsLobesMay) {
     AnalyticScene scene;
     scene.surfels = scenes::closed_box(2, 80, glm::vec3(.3f));
-    scene.camera = look(glm::vec3(.3f, .4f, .5f), glm::vec3(1.2f, 1.3f, .9f), 1, 64);
+    scene.camera = look(glm::vec3(.3f, .4f, .5f), glm::vec3(1.2f, 1.3f, .9f), 1, 32);
     scene.settings.set(vpl::kVpls, 1024);
     scene.settings.set(vpl::kInterleave, 1);
-    for (const float exponent : {10.0f, 100.0f, 1000.0f}) {
+    for (const float exponent : {10.0f, 1000.0f}) {
         scene.materials = {material(1, .3f, exponent, 1)};
         // What a lobe would reflect if none of it were below the horizon.
         const double most = .3 + .3 * (exponent + 2) / (exponent + 1);
@@ -72,7 +72,7 @@ TEST_F(VplGlossyTest, aSingleFrameOfFewVplsDoesNotSparkle) {
         scene.settings.set(vpl::kVpls, 256);
         scene.settings.set(vpl::kAtlas, 1024);
         scene.settings.set(vpl::kInterleave, 4);
-        scene.settings.set(reference::kSamples, 1024);
+        scene.settings.set(reference::kSamples, 128);
         // Take the mean of the reference over 4 x 4 pixels, because a path tracer has fireflies of its own.
         const auto truth = render(scene, "reference").radiance;
         constexpr size_t kPictureSide = 64, kBlock = 4;
@@ -94,7 +94,7 @@ TEST_F(VplGlossyTest, lobesOfAllWidthsAgreeWithTheReference) {
         AnalyticScene scene = glossy_corner(exponent);
         scene.settings.set(vpl::kVpls, 1024);
         scene.settings.set(vpl::kInterleave, 1);
-        scene.settings.set(reference::kSamples, 256);
+        scene.settings.set(reference::kSamples, 64);
         EXPECT_NEAR(mean(scene) / mean(scene, "reference"), 1, .05) << exponent;
     }
 }
@@ -147,7 +147,7 @@ Landed landed(const AnalyticScene& scene, const scenes::Rendered& rendered) {
 
 TEST_F(VplGlossyTest, aCausticHasItsPlaceItsEnergyAndWithTheFramesItsWidth) {
     AnalyticScene scene = mirror_and_wall();
-    scene.settings.set(reference::kSamples, 1024);
+    scene.settings.set(reference::kSamples, 256);
     const Landed truth = landed(scene, render(scene, "reference"));
     const Landed first = landed(scene, render(scene)), later = landed(scene, render(scene, "vpl", 1000));
     for (const Landed& light : {first, later}) {
