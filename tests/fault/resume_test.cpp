@@ -38,7 +38,7 @@ class Conversion : public testing::Test {
     }
     /// The memory is so small that there are several chunks.
     std::string convert(const std::string& options) const {
-        return "convert --memory 32M " + options + " " + quoted(scan_) + " -o " + quoted(cache_);
+        return "convert --memory 48M " + options + " " + quoted(scan_) + " -o " + quoted(cache_);
     }
     std::vector<fs::path> leftovers() const {
         std::vector<fs::path> found;

@@ -238,7 +238,7 @@ void add_convert(CommandLine& line) {
         .show_default("auto");
     command
         .add("--memory", options->memory,
-             "Cap on the memory of the process, whatever the size of the input (at least 32M)")
+             "Cap on the memory of the process, whatever the size of the input (at least 48M)")
         .show_default()
         .type_name("BYTES");
     command.add("--threads", options->build.threads, "Number of threads; 0: all cores")

@@ -66,7 +66,7 @@ void add_delete(CommandLine& line) {
         .type_name("N");
     command
         .add("--memory", options->memory,
-             "Cap on the memory of the process, without the cache's directory (at least 32M)")
+             "Cap on the memory of the process, without the cache's directory (at least 48M)")
         .show_default()
         .type_name("BYTES");
     command.add("--threads", options->edit.threads, "Number of threads; 0: all cores")

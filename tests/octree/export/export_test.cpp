@@ -179,12 +179,16 @@ TEST(Export, KnowsNoWhiteOfScansThatAreNotThere) {
     EXPECT_EQ(Exporter(source, {}).info().color_bits, io::ScanInfo{}.color_bits);
 }
 
-TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreWhereAllAreSoInLas) {
-    auto a = of_colour(io::ScalarType::u16, 200, 8), b = of_colour(io::ScalarType::u16, 100, 8);
-    for (auto* scan : {&a, &b}) scan->info().notes.las.emplace().point_format = 2;
+TEST(Export, LeavesColoursOf8BitsIn16AsTheyAreInLas) {
+    const auto computed = of_colour(io::ScalarType::u16, 200, 16);  // written as they are
     const TempFolder folder;
-    ASSERT_TRUE(convert({&a, &b}, folder / "a.luc"));
-    ASSERT_TRUE(export_to(folder / "a.luc", folder / "b.las"));
+    ASSERT_TRUE(convert({&computed}, folder / "a.luc"));
+    ASSERT_TRUE(export_to(folder / "a.luc", folder / "a.las"));
+    const auto las = io::open_scan(folder / "a.las");
+    ASSERT_TRUE(las) << las.error().line();
+    ASSERT_EQ((*las)->info().color_bits, 8u);
+    ASSERT_TRUE(convert({las->get(), las->get()}, folder / "b.luc"));
+    ASSERT_TRUE(export_to(folder / "b.luc", folder / "b.las"));
     EXPECT_EQ((*io::open_scan(folder / "b.las"))->info().color_bits, 8u);
 }
 
