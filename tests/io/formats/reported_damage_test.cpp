@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <gmock/gmock.h>
 
 #include "tests/io/formats/las/las_builder.h"

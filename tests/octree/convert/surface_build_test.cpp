@@ -1,6 +1,8 @@
 // Normals and areas through the whole conversion.
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include <fmt/format.h>

@@ -1,5 +1,8 @@
 #include "io/formats/common/color_depth.h"
 
+#include <algorithm>
+#include <array>
+
 #include <fmt/format.h>
 
 #include "tests/io/formats/e57/e57_builder.h"

@@ -131,7 +131,9 @@ TEST_F(E57Salvage, HostileCountsAreHarmless) {
         scan.record_count = count;
         const std::string bytes = BuiltFile{{scan}}.bytes();
         EXPECT_EQ(error_of(bytes).kind, ErrorKind::input_rejected) << count;
-        if (try_read(bytes, kSalvage)) EXPECT_EQ(points(), 200u) << count;
+        if (try_read(bytes, kSalvage)) {
+            EXPECT_EQ(points(), 200u) << count;
+        }
     }
     for (const size_t field : {16u, 24u, 32u, 40u})  // of the file's header
         for (const uint64_t value : {uint64_t{1} << 63, UINT64_MAX, uint64_t{0}, uint64_t{1023}}) {

@@ -1,5 +1,7 @@
 // Headers of text: units in brackets, tabs between names that hold blanks, and cells that say that they hold
 // no number.
+#include <cmath>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
