@@ -230,11 +230,11 @@ Result<bool> has_missed_rays(const E57& e57, size_t index) {
     constexpr size_t kBlocks = 16, kFew = 8;
     const e57::Scan& scan = e57.document.scans[index];
     const e57::ScanLayout& layout = e57.layout.scans[index];
+    if (scan.records == 0) return false;  // it may have no coordinates
     const bool grid = layout.spherical || scan.find("rowIndex") || scan.find("columnIndex");
     const bool lattice =
         std::ranges::any_of(layout.coordinates, [&](size_t field) { return scan.fields[field].whole(); });
-    if (e57::record_bits(scan) == 0 || scan.records == 0 || layout.invalid || (lattice && !grid))
-        return false;
+    if (e57::record_bits(scan) == 0 || layout.invalid || (lattice && !grid)) return false;
     e57::RecordReader reader(e57.file, e57.sections[index], scan, true);
     size_t seen = 0, zero = 0;
     for (size_t block = 0; block < kBlocks; ++block) {
