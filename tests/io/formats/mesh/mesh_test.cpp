@@ -11,23 +11,13 @@
 #include "io/core/parallel.h"
 #include "io/core/random.h"
 #include "io/formats/mesh/sampler.h"
-#include "io/image/image.h"
-#include "tests/io/formats/scan_text.h"
+#include "tests/io/formats/mesh/mesh_scan.h"
 
 namespace lucarne::io {
 namespace {
 
+using namespace testing;  // NOLINT: the fixture and its options
 using ::testing::HasSubstr;
-
-ReadOptions every(double spacing) {
-    return {"", true, {spacing, 0, false}};
-}
-ReadOptions about(uint64_t samples) {
-    return {"", true, {0, samples, false}};
-}
-const ReadOptions kVertices{"", true, {0, 0, true}};
-
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 /// Distances between nearby points, found with a grid.
 class Neighbours {
@@ -57,61 +47,6 @@ class Neighbours {
     const std::vector<glm::dvec3>& points_;
     double cell_;
     std::map<Key, std::vector<size_t>> cells_;
-};
-
-class MeshScan : public testing::TextScan {
- protected:
-    std::vector<glm::dvec3> positions() const {
-        std::vector<glm::dvec3> all;
-        for (size_t i = 0; i < points(); ++i) all.push_back(position(i));
-        return all;
-    }
-    glm::dvec3 triple(size_t i, std::string_view name) const {
-        return {value(i, name, 0), value(i, name, 1), value(i, name, 2)};
-    }
-    const MeshNotes& notes() const { return *source_->info().notes.mesh; }
-
-    /// Reads an OBJ or PLY file from a folder that also holds the files it names.
-    void read_folder(const std::string& name, const ReadOptions& options) {
-        const auto source = open_scan(folder_ / name, options);
-        ASSERT_TRUE(source) << source.error().line();
-        source_ = std::move(const_cast<std::unique_ptr<PointSource>&>(*source));
-        const auto records = testing::read_all(*source_);
-        ASSERT_TRUE(records) << records.error().line();
-        records_ = *records;
-    }
-    void put(const std::string& name, const std::string& text) const {
-        testing::write_bytes(folder_ / name, text);
-    }
-    /// Upper half red, lower half blue; the left quarter green from top to bottom.
-    void put_picture(const std::string& name) const {
-        Image8 image{64, 64, {}};
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x) {
-                const std::array<uint8_t, 3> color = x < 16   ? std::array<uint8_t, 3>{10, 200, 30}
-                                                     : y < 32 ? std::array<uint8_t, 3>{201, 11, 12}
-                                                              : std::array<uint8_t, 3>{13, 14, 203};
-                image.bytes.insert(image.bytes.end(), color.begin(), color.end());
-            }
-        ASSERT_TRUE(write_png(folder_ / name, image, true));
-    }
-    /// Expects a unit square whose texture coordinates span the picture of put_picture: u along x, v along y.
-    void expect_picture_upright() const {
-        size_t seen = 0;
-        for (size_t i = 0; i < points(); ++i) {
-            const glm::dvec3 p = position(i);
-            if (std::abs(p.x - 0.25) < 0.05 || std::abs(p.y - 0.5) < 0.05 || std::min(p.x, p.y) < 0.03 ||
-                std::max(p.x, p.y) > 0.97)
-                continue;  // between two colours
-            const glm::dvec3 wanted = p.x < 0.25  ? glm::dvec3(10, 200, 30)
-                                      : p.y > 0.5 ? glm::dvec3(201, 11, 12)
-                                                  : glm::dvec3(13, 14, 203);
-            ASSERT_EQ(triple(i, "color"), wanted) << p.x << ' ' << p.y;
-            ++seen;
-        }
-        EXPECT_GT(seen, 500u);
-    }
-    const testing::TemporaryFolder folder_;
 };
 
 /// Returns a sphere of radius 1 as `rings` rings of quads, which turn left seen from outside.
@@ -248,71 +183,6 @@ TEST_F(MeshScan, NormalsAndCoordinatesThatNoFaceNamesAreNotThoseOfOtherVertices)
     for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "color"), glm::dvec3(0)) << "of the material";
 }
 
-TEST_F(MeshScan, TexturesStandUpright) {
-    put_picture("a b.png");
-    put("m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd -blendu on a b.png\n");
-    put("a.obj",
-        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-        "usemtl painted\nf 1/1 2/2 3/3 4/4\n");
-    read_folder("a.obj", every(0.02));
-    expect_picture_upright();
-}
-
-TEST_F(MeshScan, TexturesRepeatAndAreScaledAsTheMaterialSays) {
-    put_picture("p.png");
-    put("m.mtl", "newmtl painted\nmap_Kd -s 0.5 0.5 1 -o 0.25 3.5 0 p.png\n");
-    // 0.5 * vt + (0.25, 3.5) spans the picture from (2, -4): the texture repeats everywhere.
-    put("a.obj",
-        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 3.5 -15\nvt 5.5 -15\nvt 5.5 -13\nvt 3.5 -13\n"
-        "usemtl painted\nf -4/-4 -3/-3 -2/-2 -1/-1\n");
-    read_folder("a.obj", every(0.02));
-    expect_picture_upright();
-}
-
-TEST_F(MeshScan, PlyHasTexturesByFaceOrByVertexAsMeshLabWritesThem) {
-    put_picture("p.png");
-    const std::string head =
-        "ply\nformat ascii 1.0\ncomment TextureFile p.png\nelement vertex 4\nproperty float "
-        "x\nproperty float y\nproperty float z\n";
-    put("face.ply", head +
-                        "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
-                        "texcoord\nproperty int texnumber\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
-                        "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 1 1 0 1 0\n");
-    read_folder("face.ply", every(0.02));
-    expect_picture_upright();
-    put("vertex.ply",
-        head +
-            "property float s\nproperty float t\nelement face 1\nproperty list uchar int "
-            "vertex_index\nend_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
-    read_folder("vertex.ply", every(0.02));
-    expect_picture_upright();
-}
-
-TEST_F(MeshScan, NamesOfFilesMayBeQuotedOrDifferInCase) {
-    std::filesystem::create_directories(folder_ / "tex dir");
-    put_picture("tex dir/my p.png");
-    const std::string square =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-        "usemtl painted\nf 1/1 2/2 3/3 4/4\n";
-    for (const std::string picture : {"\"tex dir/my p.png\"", "'tex dir/my p.png'", "\"Tex Dir\\My P.PNG\"",
-                                      "TEX DIR/MY P.PNG", "-blendu on \"tex dir/my p.png\""})
-        for (const std::string library :
-             {"\"my m.mtl\"", "my m.mtl", "My M.MTL", "\"other.mtl\" \"my m.mtl\""}) {
-            put("my m.mtl", "newmtl painted\nKd 0 0 0\nmap_Kd " + picture + "\n");
-            put("a.obj", "mtllib " + library + "\n" + square);
-            SCOPED_TRACE(picture + " of " + library);
-            read_folder("a.obj", every(0.02));
-            expect_picture_upright();
-        }
-    put("Face.ply",
-        "ply\nformat ascii 1.0\ncomment TextureFile \"tex dir/my p.png\"\nelement vertex 4\nproperty float "
-        "x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\nproperty "
-        "list "
-        "uchar int vertex_index\nend_header\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n");
-    read_folder("Face.ply", every(0.02));
-    expect_picture_upright();
-}
-
 TEST_F(MeshScan, ColoursComeFromFacesVerticesAndMaterials) {
     read(
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
@@ -397,13 +267,6 @@ TEST_F(MeshScan, IndicesThatNameNothingAreRejected) {
                 HasSubstr("face 1 has no value for its property vertex_indices"));
 }
 
-TEST_F(MeshScan, TextureCoordinatesAndNormalsThatAreNotThereAreNone) {
-    read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1/1/2 2/2/1 3/-3/0\n", every(0.05));
-    EXPECT_NEAR(static_cast<double>(points()), 200, 30);
-    for (size_t i = 0; i < points(); ++i) EXPECT_EQ(triple(i, "normal"), glm::dvec3(0, 0, 1));
-    EXPECT_EQ(notes().missing_corners, 5u);
-}
-
 TEST_F(MeshScan, FacesMayNameWhatStandsFurtherDown) {
     read("v 0 0 0\nf 1//1 2//1 3//1\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nv 5 5 5\n", every(0.05));
     EXPECT_NEAR(static_cast<double>(points()), 200, 30);
@@ -471,46 +334,6 @@ TEST_F(MeshScan, FoldedSheetsUponSheetsAskForBoundedMemory) {
     const auto all = positions();
     const Neighbours near(all, 0.05);
     for (size_t i = 0; i < all.size(); ++i) ASSERT_GE(near.nearest(all[i], i), 0.75 * 0.05);
-}
-
-TEST_F(MeshScan, NothingOutsideTheMeshsFolderIsOpened) {
-    std::filesystem::create_directory(folder_ / "inner");
-    put_picture("secret.png");
-    put("secret.mtl", "newmtl m\nKd 1 0 0\n");
-    put("inner/m.mtl", "newmtl m\nmap_Kd ../secret.png\n");
-    put("inner/a.obj", "mtllib ../secret.mtl\nmtllib m.mtl m.mtl " + (folder_ / "secret.mtl").string() +
-                           "\n" + "vt 0 0\nusemtl m\n" + kSquare);
-    read_folder("inner/a.obj", every(0.1));
-    EXPECT_EQ(notes().textures, 0u);
-    EXPECT_EQ(schema().find("color"), nullptr);
-    // A path on the machine where the file was written; the picture is beside the mesh now.
-    put_picture("inner/p.png");
-    put("inner/m.mtl", "newmtl m\nmap_Kd C:\\work\\textures\\p.png\n");
-    read_folder("inner/a.obj", every(0.1));
-    EXPECT_EQ(notes().textures, 1u);
-}
-
-TEST_F(MeshScan, ATextureThatIsNoneIsDoneWithout) {
-    put("p.png", "no picture at all");
-    put("m.mtl", "newmtl m\nKd 0.2 0.4 1\nmap_Kd p.png\n");
-    put("a.obj", "mtllib m.mtl\nusemtl m\n" + kSquare);
-    read_folder("a.obj", every(0.1));
-    EXPECT_EQ(triple(0, "color"), glm::dvec3(51, 102, 255));
-}
-
-TEST_F(MeshScan, AChangedTextureOrSpacingIsAnotherStateOfTheFile) {
-    put_picture("p.png");
-    put("m.mtl", "newmtl m\nmap_Kd p.png\n");
-    put("a.obj", "mtllib m.mtl\nusemtl m\n" + kSquare);
-    read_folder("a.obj", every(0.1));
-    const auto before = source_->info().modified;
-    read_folder("a.obj", every(0.1));
-    EXPECT_EQ(source_->info().modified, before);
-    read_folder("a.obj", every(0.2));
-    EXPECT_NE(source_->info().modified, before);
-    put("m.mtl", "newmtl m\nmap_Kd p.png\n\n");
-    read_folder("a.obj", every(0.1));
-    EXPECT_NE(source_->info().modified, before);
 }
 
 TEST_F(MeshScan, BinaryPlyOfEitherEndGivesTheSameAsText) {
