@@ -182,11 +182,10 @@ void write_colors(const Scan& scan, const ScanLayout& layout, const RecordReader
 
 }  // namespace
 
-double largest_color(const Scan& scan, RecordReader& reader) {
-    constexpr uint64_t kSampled = uint64_t{1} << 18;  // records
+double largest_color(const Scan& scan, RecordReader& reader, uint64_t most) {
     const auto fields = scan.find(kColorFields);
     double largest = 0;
-    for (uint64_t done = 0; fields && done < kSampled;) {
+    for (uint64_t done = 0; fields && done < most;) {
         const auto count = reader.read(kBlockRecords);
         if (!count || *count == 0) break;  // the pass over the points will report the error
         Column column;

@@ -36,9 +36,8 @@ struct Layout {
 };
 
 inline constexpr std::array<std::string_view, 3> kColorFields = {"colorRed", "colorGreen", "colorBlue"};
-/// Returns the largest colour component of the first records of a scan: of all of them, for most scans. 0 if
-/// there is none.
-double largest_color(const Scan& scan, RecordReader& reader);
+/// Returns the largest colour component of the first `most` records of a scan; 0 if there is none.
+double largest_color(const Scan& scan, RecordReader& reader, uint64_t most);
 
 /// Returns a layout with the union of the scans' fields. Scans without records are ignored. Errors: scans
 /// without coordinates, more than kMostFields attributes in all.

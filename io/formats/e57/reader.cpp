@@ -294,11 +294,14 @@ Result<std::unique_ptr<PointSource>> open_e57(std::shared_ptr<const ByteSource> 
         e57.sections.push_back(section.value_or(e57::Section{}));
     }
     LUCARNE_TRY(check_apart(name, header, e57));
+    // All records of most scans. Files of many scans share the number, so that they open as quickly.
+    constexpr uint64_t kSampled = uint64_t{1} << 18;
+    const uint64_t each = std::max(kSampled / std::max<size_t>(1, e57.sections.size()), e57::kBlockRecords);
     for (size_t i = 0; i < e57.sections.size(); ++i) {
         e57::Scan& scan = e57.document.scans[i];
         if (scan.records == 0 || scan.states_color() || !scan.find(e57::kColorFields)) continue;
         e57::RecordReader records(file, e57.sections[i], scan, options.salvage);
-        scan.largest_color = e57::largest_color(scan, records);
+        scan.largest_color = e57::largest_color(scan, records, each);
     }
     LUCARNE_ASSIGN(e57.layout, e57::make_layout(name, e57.document));
     if (file->size() / e57::kPageBytes * e57::kPageContent > header.bytes)

@@ -77,6 +77,15 @@ TEST_F(E57Salvage, LosesTheRecordsOfAPageAndNoOthers) {
     }
 }
 
+TEST_F(E57Salvage, AScanWithoutRecordsNeedsNoFields) {
+    BuiltScan empty;
+    empty.records = 0;
+    read(BuiltFile{{empty, numbered(1, 50), empty}}.bytes());
+    EXPECT_EQ(points(), 50u);
+    read(BuiltFile{{empty}}.bytes(), kSalvage);
+    EXPECT_EQ(points(), 0u);
+}
+
 TEST_F(E57Salvage, EndsAScanWhereAPacketCannotBeMeasured) {
     const size_t each = 100;
     std::string bytes = BuiltFile{{numbered(60, each), numbered(1, 50)}}.bytes();
