@@ -11,6 +11,7 @@ namespace lucarne::octree {
 namespace {
 
 constexpr size_t kHeadBytes = 64 << 10;
+constexpr int kRecords = 2;  ///< version of the stages' records (save and restore); raise it with any change
 
 /// Empty for sources that are not files.
 std::string file_identity(const std::filesystem::path& path) {
@@ -28,9 +29,9 @@ std::string file_identity(const std::filesystem::path& path) {
 
 std::string build_identity(const BuildOptions& options) {
     std::string text =
-        fmt::format("format {}, --memory {}, --normals mode {}, --neighbours {}, search {} {}\n",
-                    format::kVersion, options.memory, static_cast<int>(options.normals), options.neighbours,
-                    static_cast<int>(options.neighbour_search), options.read_options);
+        fmt::format("format {}, records {}, --memory {}, --normals mode {}, --neighbours {}, search {} {}\n",
+                    format::kVersion, kRecords, options.memory, static_cast<int>(options.normals),
+                    options.neighbours, static_cast<int>(options.neighbour_search), options.read_options);
     for (const auto* input : options.inputs) {
         SourceHeader header{.schema = input->schema()};
         header.scans.push_back(input->info());
