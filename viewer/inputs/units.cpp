@@ -15,10 +15,9 @@ namespace lucarne::viewer {
 
 namespace {
 
-// The foot and the US survey foot differ by 2e-6.
 constexpr std::array<std::pair<double, std::string_view>, 7> kUnits = {{{1, "m"},
-                                                                        {0.3048, "ft"},
-                                                                        {1200.0 / 3937, "US ft"},
+                                                                        {io::kFoot, "ft"},
+                                                                        {io::kSurveyFoot, "US ft"},
                                                                         {0.01, "cm"},
                                                                         {0.001, "mm"},
                                                                         {1000, "km"},

@@ -12,8 +12,6 @@ struct Unit {
     std::string_view name;
     double metres;
 };
-// The foot and the US survey foot differ by 2e-6.
-constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937;
 constexpr std::array kUnits = std::to_array<Unit>({
     {"m", 1},
     {"metre", 1},
