@@ -15,7 +15,7 @@ using testing::BuiltFile;
 using testing::BuiltScan;
 using ::testing::HasSubstr;
 
-constexpr ReadOptions kSalvage{"", true, {}, true};
+const ReadOptions kSalvage{"", true, {}, true};
 
 class E57Salvage : public testing::TextScan {
  protected:

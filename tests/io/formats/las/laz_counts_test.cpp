@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ReadOptions kSalvage{"", true, {}, true};
+const ReadOptions kSalvage{"", true, {}, true};
 constexpr uint32_t kPoints = 60'000;  ///< in chunks of 50 000
 
 /// The parameter is the format of the points.

@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 using testing::LasFile;
 using testing::record0;
 
-constexpr ReadOptions kSalvage{"", true, {}, true};
+const ReadOptions kSalvage{"", true, {}, true};
 
 class LasSurplus : public testing::TextScan {
  protected:

@@ -114,7 +114,7 @@ TEST_F(Ptx, TruncationAnywhereIsRejected) {
     }
 }
 
-constexpr ReadOptions kSalvage{"", true, {}, true};
+const ReadOptions kSalvage{"", true, {}, true};
 
 /// Returns rows of points that are equal in their own frame, in order.
 std::string rows_of(int count, int first = 0) {
