@@ -34,7 +34,7 @@ float SplatSurface::area(const std::byte* record, float estimated, double face) 
     const double radius = io::load<float>(record + radius_->offset);
     const auto own = static_cast<float>(std::numbers::pi * radius * radius / (kCoverageRaw * face));
     if (!(own > kStrayArea && std::isfinite(own))) return estimated;
-    return estimated > kStrayArea ? std::min(estimated, 4 * own) : own;
+    return estimated > 0 ? std::min(estimated, 4 * own) : own;
 }
 
 }  // namespace lucarne::octree

@@ -16,8 +16,8 @@ class SplatSurface {
     /// oriented with the whole surface. Upward where there is none.
     glm::vec3 normal(const std::byte* record, const glm::vec3& estimated) const;
     /// Returns a share of the surface in faces of `face` square units. A splat's size replaces a share that
-    /// is unknown (0) or that of an outlier, because sparse splats are large ones. It bounds the others: the
-    /// disc gets no larger than twice the splat.
+    /// is unknown (0), and bounds the others: the disc gets no larger than twice the splat, which is
+    /// transparent there. Outliers stay outliers: trained scenes have many splats in the air.
     float area(const std::byte* record, float estimated, double face) const;
 
  private:

@@ -92,7 +92,7 @@ TEST(SplatSurface, NormalsAreTheShortestAxesTurnedAsTheWholeSurfaceIs) {
         << "a room's point inward";
 }
 
-TEST(SplatSurface, SizesBoundSharesAndReplaceThoseOfOutliers) {
+TEST(SplatSurface, SizesBoundSharesAndReplaceUnknownOnes) {
     const io::Schema schema = splat_schema();
     const SplatSurface splats(schema);
     std::vector<std::byte> record(schema.stride);
@@ -100,7 +100,7 @@ TEST(SplatSurface, SizesBoundSharesAndReplaceThoseOfOutliers) {
     const double face = 4;  // square metres
     const auto own = static_cast<float>(std::numbers::pi * 0.01 / (kCoverageRaw * face));
     EXPECT_FLOAT_EQ(splats.area(record.data(), 0, face), own);
-    EXPECT_FLOAT_EQ(splats.area(record.data(), kStrayArea, face), own);
+    EXPECT_EQ(splats.area(record.data(), kStrayArea, face), kStrayArea) << "outliers stay outliers";
     EXPECT_FLOAT_EQ(splats.area(record.data(), own / 3, face), own / 3);
     EXPECT_FLOAT_EQ(splats.area(record.data(), 100 * own, face), 4 * own);
     for (const float none : {0.0f, NAN, INFINITY}) {
