@@ -22,7 +22,7 @@ inline void write_unfinished(const io::PointSource& source, std::span<const std:
 
 inline void read_and_write(std::shared_ptr<const ByteSource> file, bool salvage) {
     const auto source =
-        io::open_scan(std::move(file), {"", true, {0, 2000, false}, salvage});  // few samples of a mesh
+        io::open_scan(std::move(file), {"", true, {0, 500, false}, salvage});  // few samples of a mesh
     if (!source) return;
     const auto reader = (*source)->open();
     if (!reader) return;

@@ -29,7 +29,7 @@ void Seeds::add_scan(std::string_view name, std::string_view bytes) const {
     const auto refuse = [&](const std::string& why) {
         throw std::runtime_error(fmt::format("the seed {} is refused: {}", (folder_ / name).string(), why));
     };
-    const auto source = io::open_scan(folder_ / name, {"", true, {0, 2000, false}});
+    const auto source = io::open_scan(folder_ / name, {"", true, {0, 500, false}});
     if (!source) return refuse(source.error().line());
     const auto reader = (*source)->open();
     if (!reader) return refuse(reader.error().line());
