@@ -17,6 +17,7 @@
 
 #include "io/core/error.h"
 #include "io/core/interrupt.h"
+#include "io/core/options.h"
 #include "io/files/temporary_folder.h"
 
 namespace lucarne::bench {
@@ -33,8 +34,11 @@ struct BenchRun {
     double seconds(double full) const { return full * scale; }
     /// Whether the run only checks that the program works.
     bool trial() const { return scale < 0.05; }
-    /// Returns the side of a square picture, pixels.
-    uint32_t side(uint32_t full) const { return trial() ? full / 4 : full; }
+    /// Returns a picture's width or height, pixels.
+    uint32_t side(uint32_t full) const { return trial() ? full / 8 : full; }
+    ImageSize size(ImageSize full) const { return {side(full.width), side(full.height)}; }
+    /// Returns how many frames to draw.
+    int frames(int full) const { return trial() ? std::min(full, 2) : full; }
     /// Returns the cases to measure: all, or only the first in a trial.
     template <class Case>
     std::vector<Case> cases(std::vector<Case> all) const {

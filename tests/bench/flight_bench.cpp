@@ -97,16 +97,21 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     LUCARNE_ASSIGN(viewer::CameraPath path, viewer::load_path(kPath));
     path.frames_per_second = way.frames_per_second;
     while (path.keys.size() > 2 && path.keys.back().time > way.seconds) path.keys.pop_back();
+    // A trial flies three frames.
+    path.keys.back().time =
+        std::min(path.keys.back().time, std::max(way.seconds, 2 / way.frames_per_second));
     const viewer::FlightOptions how{.size = way.size, .wait = way.wait, .flicker = true};
     LUCARNE_ASSIGN(viewer::Flight flight, viewer::fly(*pipeline, path, how));
     return Flown{std::move(flight.frames)};
 }
 
-Result<void> energy(const std::string& cache, double seconds) {
+Result<void> energy(const std::string& cache, const bench::BenchRun& run) {
+    const double seconds = run.seconds(13);
+    const ImageSize size = run.size({384, 216});
     const auto as_is = [](viewer::Preset&) {};
     const double bytes = static_cast<double>(std::filesystem::file_size(cache));
     const viewer::PipelineOptions caps{kCap, kCap, 2};
-    LUCARNE_ASSIGN(const Flown capped, fly(cache, {.seconds = seconds}, caps, as_is));
+    LUCARNE_ASSIGN(const Flown capped, fly(cache, {.seconds = seconds, .size = size}, caps, as_is));
     figure("the cache over each of the caps of 128 MiB", bytes / static_cast<double>(kCap), "times");
     row("memory of the stream on the host", capped.most(&viewer::MemoryUse::host), "MiB", 128);
     row("memory of the device, all buffers", capped.most(&viewer::MemoryUse::device), "MiB", 128);
@@ -118,7 +123,7 @@ Result<void> energy(const std::string& cache, double seconds) {
                           capped.most(&viewer::MemoryUse::resident, 0, half)),
         "MiB", 16);
     const viewer::PipelineOptions all{uint64_t{4} << 30, uint64_t{16} << 30, 2};
-    LUCARNE_ASSIGN(const Flown same, fly(cache, {.seconds = seconds}, all, as_is));
+    LUCARNE_ASSIGN(const Flown same, fly(cache, {.seconds = seconds, .size = size}, all, as_is));
     row("energy against the same budgets without caps", 100 * (capped.luminance() / same.luminance() - 1),
         "%", 3);
     // As fine as the device's buffers allow: the surfels that cast light and shadow are held in one buffer,
@@ -127,7 +132,7 @@ Result<void> energy(const std::string& cache, double seconds) {
         preset.budgets = {
             .view = 16'000'000, .light_view = 16'000'000, .light = 7'000'000, .pixel_spacing = 0.5};
     };
-    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5, .seconds = seconds}, all, fine));
+    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5, .seconds = seconds, .size = size}, all, fine));
     double of_capped = 0;
     for (size_t i = 0; i < whole.frames.size() && 2 * i < frames; ++i)
         of_capped += *capped.frames[2 * i].luminance;
@@ -136,12 +141,15 @@ Result<void> energy(const std::string& cache, double seconds) {
     return {};
 }
 
-Result<void> flicker(const std::string& cache, double seconds) {
+Result<void> flicker(const std::string& cache, const bench::BenchRun& run) {
     const viewer::PipelineOptions caps{kCap, kCap, 2};
     for (const bool wait : {true, false})
         for (const bool reuse : {false, true})
             for (const int32_t only : {-1, 1}) {
-                const Way slowly{.frames_per_second = 12, .seconds = seconds, .wait = wait};
+                const Way slowly{.frames_per_second = 12,
+                                 .seconds = run.seconds(3),
+                                 .wait = wait,
+                                 .size = run.size({384, 216})};
                 LUCARNE_ASSIGN(const Flown flown, fly(cache, slowly, caps, [&](viewer::Preset& preset) {
                                    preset.engine.set(gi::vpl::kReuse, reuse);
                                    preset.engine.set(gi::kOnlyBounce, only);
@@ -157,8 +165,8 @@ Result<void> flicker(const std::string& cache, double seconds) {
 
 Result<void> measure(const bench::BenchRun& run) {
     LUCARNE_ASSIGN(const std::string cache, cache_in(run));
-    LUCARNE_TRY(energy(cache, run.seconds(13)));
-    return flicker(cache, run.seconds(3));
+    LUCARNE_TRY(energy(cache, run));
+    return flicker(cache, run);
 }
 
 }  // namespace

@@ -121,8 +121,8 @@ struct Pass {
     std::vector<double> wall, cpu;  // s
 };
 
-Result<void> time_passes(Device& device, std::vector<Pass>& passes) {
-    for (int i = 0; i < 9; ++i)
+Result<void> time_passes(Device& device, std::vector<Pass>& passes, int frames) {
+    for (int i = 0; i < frames; ++i)
         for (Pass& pass : passes) {
             device.finish();
             const double wall_start = now(CLOCK_MONOTONIC), cpu_start = now(CLOCK_PROCESS_CPUTIME_ID);
@@ -141,10 +141,11 @@ Result<void> time_passes(Device& device, std::vector<Pass>& passes) {
     return {};
 }
 
-Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
+Result<void> measure_at(const bench::BenchRun& run, uint64_t points, ImageSize full) {
+    const auto [width, height] = run.size(full);
     LUCARNE_ASSIGN(const auto device, Device::headless());
     const CameraView view = look({0.3f, 1, 3}, {0, 50, 5}, width, height, 1.0f);
-    std::vector<Surfel> surfels = sample(view, points);
+    std::vector<Surfel> surfels = sample(view, run.points(points));
     const SurfelCloud cloud(std::move(surfels), {{-16, -1, -1}, 64}, 1024, kThinned);
     LUCARNE_ASSIGN(const auto packed, load_cloud(*device, cloud));
     GBuffer gbuffer;
@@ -168,12 +169,12 @@ Result<void> measure_at(size_t points, uint32_t width, uint32_t height) {
     const auto empty = std::count(ids.begin(), ids.end(), kNoSurfel);
     fmt::print("{} surfels in {} nodes, {}x{}: {} pixels empty\n", packed->cut.surfels(),
                cloud.nodes().size(), width, height, empty);
-    return time_passes(*device, passes);
+    return time_passes(*device, passes, run.frames(9));
 }
 
 Result<void> measure(const bench::BenchRun& run) {
-    LUCARNE_TRY(measure_at(run.points(5'000'000), 1280, 720));
-    return measure_at(run.points(1'000'000), 512, 512);
+    LUCARNE_TRY(measure_at(run, 5'000'000, {1280, 720}));
+    return measure_at(run, 1'000'000, {512, 512});
 }
 
 }  // namespace

@@ -22,12 +22,26 @@ using nlohmann::json;
 struct Ground {
     const bench::BenchRun& run;
 
+    /// The path to fly; in a trial half a second of it.
+    std::string path() const {
+        if (!run.trial()) return LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
+        return write("path.json", R"({"frames_per_second": 25, "keys": [
+            {"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65},
+            {"time": 0.5, "position": [0.2, 4.2, 1.9], "target": [-0.2, 16, 5.1], "fov": 65}]})");
+    }
+    std::string size() const {
+        const ImageSize size = run.size({384, 216});
+        return fmt::format("{}x{}", size.width, size.height);
+    }
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(file(name)) << text;
+        return file(name);
+    }
     std::string cache() const { return file(fmt::format("nave-{}.luc", points())); }
     std::string file(const std::string& name) const { return run.folder / name; }
     uint64_t points() const { return run.points(4'000'000); }
 };
 
-constexpr const char* kPath = LUCARNE_SOURCE_DIR "/data/flythroughs/nave.json";
 constexpr const char* kScene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
 
 Result<void> make_cache(const Ground& ground) {
@@ -42,10 +56,11 @@ Result<void> make_cache(const Ground& ground) {
 /// Flies and returns the report.
 Result<json> fly(const Ground& ground, std::vector<std::string> arguments) {
     const std::string report = ground.file("report.json");
-    for (const char* also :
-         {"--path", kPath, "--scene", kScene, "--engine", "direct", "--size", "384x216", "--overwrite", "-o"})
-        arguments.emplace_back(also);
-    arguments.push_back(report);
+    for (const std::string& also : {std::string("--path"), ground.path(), std::string("--scene"),
+                                    std::string(kScene), std::string("--engine"), std::string("direct"),
+                                    std::string("--size"), ground.size(), std::string("--overwrite"),
+                                    std::string("-o"), report})
+        arguments.push_back(also);
     arguments.insert(arguments.begin(), "fly");
     LUCARNE_TRY(run_lucarne(arguments));
     std::ifstream file(report);
@@ -82,14 +97,15 @@ Result<void> bench_prefetch(const Ground& ground) {
 
 Result<void> bench_popping(const Ground& ground) {
     // A slow path: every picture is nearly the one before.
-    const std::string slow = ground.file("slow.json");
-    std::ofstream(slow) << R"({"frames_per_second": 25, "keys": [
-        {"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65},
-        {"time": 2, "position": [0.1, 3.8, 1.85], "target": [-0.1, 15.5, 5.1], "fov": 65}]})";
+    const std::string slow =
+        ground.write("slow.json", fmt::format(R"({{"frames_per_second": 25, "keys": [
+        {{"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65}},
+        {{"time": {}, "position": [0.1, 3.8, 1.85], "target": [-0.1, 15.5, 5.1], "fov": 65}}]}})",
+                                              ground.run.trial() ? .2 : 2));
     const std::string report = ground.file("report.json");
     LUCARNE_TRY(
         run_lucarne({"fly", ground.cache(), "--popping", "--path", slow, "--scene", kScene, "--engine",
-                     "direct", "--size", "384x216", "--points", "400000", "--overwrite", "-o", report}));
+                     "direct", "--size", ground.size(), "--points", "400000", "--overwrite", "-o", report}));
     std::ifstream file(report);
     const json flight = json::parse(file);
     row("largest change between pictures over that of the whole cloud",

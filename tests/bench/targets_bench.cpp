@@ -92,7 +92,7 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     LUCARNE_ASSIGN(request.camera, viewer::find_camera(scene, ""));
     LUCARNE_ASSIGN(auto pipeline, viewer::open_pipeline(*device, source, options, drawing, scene));
 
-    request.size = {512, 512};
+    request.size = run.size({512, 512});
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // warm-up: shaders, first loads
     const auto frames = [&](const std::string& what, uint32_t bounces, bool anew,
                             double target) -> Result<void> {
@@ -100,7 +100,7 @@ Result<void> bench_frames(const bench::BenchRun& run) {
         settings.set(gi::kBounces, bounces);
         pipeline->set_settings(settings);
         LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
-        LUCARNE_ASSIGN(const FrameTimes times, moving_frames(*pipeline, request, 9, "", anew));
+        LUCARNE_ASSIGN(const FrameTimes times, moving_frames(*pipeline, request, run.frames(9), "", anew));
         row("512x512, preset interactive, " + what, times.wall, "ms", target);
         fmt::print("  of all cores: {:.0f} ms; the last frame's passes in ms:", times.cpu);
         for (const auto& entry : times.last.passes)
@@ -117,7 +117,7 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     request.moving = true;
     request.light_seconds = .03;
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
-    LUCARNE_ASSIGN(const FrameTimes in_motion, moving_frames(*pipeline, request, 40, "", true));
+    LUCARNE_ASSIGN(const FrameTimes in_motion, moving_frames(*pipeline, request, run.frames(40), "", true));
     row("512x512, preset interactive, three bounces, light in steps", in_motion.wall, "ms", 120);
     row("the same, 95 % of the frames", in_motion.slow, "ms", 150);
     request.moving = false;
@@ -126,10 +126,10 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     LUCARNE_TRY(pipeline->set_engine("direct"));
     pipeline->set_budgets(
         {.view = 5'000'000, .light_view = 100'000, .light = 100'000, .pixel_spacing = 1e-3});
-    request.size = {1280, 720};
+    request.size = run.size({1280, 720});
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));
-    LUCARNE_ASSIGN(const FrameTimes gbuffer, moving_frames(*pipeline, request, 9, "G-buffer"));
-    LUCARNE_ASSIGN(const FrameTimes blending, moving_frames(*pipeline, request, 9, "blending"));
+    LUCARNE_ASSIGN(const FrameTimes gbuffer, moving_frames(*pipeline, request, run.frames(9), "G-buffer"));
+    LUCARNE_ASSIGN(const FrameTimes blending, moving_frames(*pipeline, request, run.frames(9), "blending"));
     const std::string what = fmt::format("{:.2f}M surfels into a 1280x720 G-buffer",
                                          1e-6 * static_cast<double>(gbuffer.last.view_points));
     row(what, gbuffer.wall, "ms", 50);
@@ -167,6 +167,7 @@ Result<void> measure(const bench::BenchRun& run) {
     LUCARNE_TRY(bench_frames(run));
     LUCARNE_TRY(bench_still(run));
     LUCARNE_TRY(bench_normals(run));
+    if (run.trial()) return {};  // bench_formats and bench_convert run these as well
     LUCARNE_TRY(bench::bench_formats(run));
     return bench_conversion(run);
 }
