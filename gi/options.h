@@ -92,6 +92,7 @@ class EngineSettings {
     const OptionValue& get(const OptionInfo& option) const;
     void set(const OptionInfo& option, OptionValue value);
     bool has(const OptionInfo& option) const { return values_.contains(option.key); }
+    bool empty() const { return values_.empty(); }
     /// Copies every value of `over`, replacing values set here.
     void override_with(const EngineSettings& over);
     /// Copies those values of `under` that are not set here.

@@ -13,6 +13,7 @@ uniform uint view_height;
 uniform vec2 view_shift;  // of the rays from the middles of their pixels, pixels (CameraView)
 uniform float point_scale;   // scale of the radii
 uniform float point_pixels;  // if over 0: the diameter of all points
+uniform float point_most;    // if over 0: the largest diameter of a point, pixels
 
 struct Disc {
     vec3 centre;
@@ -43,6 +44,12 @@ bool is_small(Disc disc) {
     return max(pixels.x, pixels.y) <= kSmallRadius * view_scale(disc.centre.z);
 }
 
+// Returns the radius of a disc at a depth that is drawn with this diameter, in pixels.
+float radius_of_pixels(float diameter, float depth) {
+    vec2 pixels = pixels_per_tangent();
+    return 0.5 * diameter * max(view_scale(depth), 0.0) / min(pixels.x, pixels.y);
+}
+
 uint pixel_index(vec2 pixel) { return uint(pixel.y) * view_width + uint(pixel.x); }
 
 // Transforms a surfel to the view. Returns false if no part of its disc is in front of the near plane, and for
@@ -51,10 +58,8 @@ bool view_disc(uint item, PackedSurfel surfel, out Disc disc) {
     disc.centre = to_view(surfel_position(item, surfel) - view_origin.xyz);
     disc.radius = point_scale * cut_surfel_radius(item, surfel);
     if (!(disc.radius > 0.0)) return false;
-    if (point_pixels > 0.0) {
-        vec2 pixels = pixels_per_tangent();
-        disc.radius = 0.5 * point_pixels * max(view_scale(disc.centre.z), 0.0) / min(pixels.x, pixels.y);
-    }
+    if (point_pixels > 0.0) disc.radius = radius_of_pixels(point_pixels, disc.centre.z);
+    else if (point_most > 0.0) disc.radius = min(disc.radius, radius_of_pixels(point_most, disc.centre.z));
     if (!(disc.centre.z + disc.radius > view_forward.w)) return false;
     // Outside a side plane of the view. Without this test a disc beside the eye would cover every pixel.
     vec2 side = vec2(view_right.w, view_down.w);

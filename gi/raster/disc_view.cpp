@@ -34,6 +34,7 @@ void set_disc_view(const Program& program, const CameraView& view, const PointSi
     program.set("view_height", view.height);
     program.set("point_scale", size.scale);
     program.set("point_pixels", size.pixels);
+    program.set("point_most", size.most);
 }
 
 }  // namespace lucarne::gi

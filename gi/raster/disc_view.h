@@ -14,6 +14,7 @@ namespace lucarne::gi {
 struct PointSize {
     float scale = 1;   ///< scale of the discs' radii
     float pixels = 0;  ///< if over 0: the diameter of every point, which then faces the eye
+    float most = 0;    ///< if over 0: the largest diameter of a disc, pixels
 };
 
 /// A view as disc.glsl describes it: x right, y down, z along the forward axis.

@@ -45,7 +45,8 @@ class Stage {
         options.scene = bench::scene_file(scene);
         LUCARNE_TRY(viewer::take_render_settings(options));
         LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-        LUCARNE_ASSIGN(gi::Scene loaded, viewer::load_scene_for(options, *source));
+        LUCARNE_ASSIGN(const viewer::SceneForScan made, viewer::load_scene_for(options, *source));
+        const gi::Scene& loaded = made.scene;
         LUCARNE_ASSIGN(request_.camera, viewer::find_camera(loaded, ""));
         request_.size = size;
         request_.wait = true;

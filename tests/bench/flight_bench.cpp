@@ -88,18 +88,17 @@ Result<Flown> fly(const std::string& cache, const Way& way, const viewer::Pipeli
     options.scene = kScene;
     LUCARNE_TRY(viewer::take_render_settings(options));
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
+    LUCARNE_ASSIGN(viewer::SceneForScan loaded, viewer::load_scene_for(options, *source));
     drawing.caps = caps;
     drawing.preset.engine.set(gi::kBounces, 3);
     change(drawing.preset);
     LUCARNE_ASSIGN(const auto pipeline,
-                   viewer::open_pipeline(*device, source, options, drawing, std::move(scene)));
+                   viewer::open_pipeline(*device, source, options, drawing, std::move(loaded.scene)));
     LUCARNE_ASSIGN(viewer::CameraPath path, viewer::load_path(kPath));
     path.frames_per_second = way.frames_per_second;
     while (path.keys.size() > 2 && path.keys.back().time > way.seconds) path.keys.pop_back();
     // A trial flies three frames.
-    path.keys.back().time =
-        std::min(path.keys.back().time, std::max(way.seconds, 2 / way.frames_per_second));
+    path.keys.back().time = std::min(path.keys.back().time, std::max(way.seconds, 2 / way.frames_per_second));
     const viewer::FlightOptions how{.size = way.size, .wait = way.wait, .flicker = true};
     LUCARNE_ASSIGN(viewer::Flight flight, viewer::fly(*pipeline, path, how));
     return Flown{std::move(flight.frames)};
@@ -132,7 +131,8 @@ Result<void> energy(const std::string& cache, const bench::BenchRun& run) {
         preset.budgets = {
             .view = 16'000'000, .light_view = 16'000'000, .light = 7'000'000, .pixel_spacing = 0.5};
     };
-    LUCARNE_ASSIGN(const Flown whole, fly(cache, {.frames_per_second = 0.5, .seconds = seconds, .size = size}, all, fine));
+    LUCARNE_ASSIGN(const Flown whole,
+                   fly(cache, {.frames_per_second = 0.5, .seconds = seconds, .size = size}, all, fine));
     double of_capped = 0;
     for (size_t i = 0; i < whole.frames.size() && 2 * i < frames; ++i)
         of_capped += *capped.frames[2 * i].luminance;

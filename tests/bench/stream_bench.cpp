@@ -56,10 +56,10 @@ Result<void> make_cache(const Ground& ground) {
 /// Flies and returns the report.
 Result<json> fly(const Ground& ground, std::vector<std::string> arguments) {
     const std::string report = ground.file("report.json");
-    for (const std::string& also : {std::string("--path"), ground.path(), std::string("--scene"),
-                                    std::string(kScene), std::string("--engine"), std::string("direct"),
-                                    std::string("--size"), ground.size(), std::string("--overwrite"),
-                                    std::string("-o"), report})
+    for (const std::string& also :
+         {std::string("--path"), ground.path(), std::string("--scene"), std::string(kScene),
+          std::string("--engine"), std::string("direct"), std::string("--size"), ground.size(),
+          std::string("--overwrite"), std::string("-o"), report})
         arguments.push_back(also);
     arguments.insert(arguments.begin(), "fly");
     LUCARNE_TRY(run_lucarne(arguments));
@@ -97,11 +97,10 @@ Result<void> bench_prefetch(const Ground& ground) {
 
 Result<void> bench_popping(const Ground& ground) {
     // A slow path: every picture is nearly the one before.
-    const std::string slow =
-        ground.write("slow.json", fmt::format(R"({{"frames_per_second": 25, "keys": [
+    const std::string slow = ground.write("slow.json", fmt::format(R"({{"frames_per_second": 25, "keys": [
         {{"time": 0, "position": [0, 3.2, 1.8], "target": [0, 15, 5], "fov": 65}},
         {{"time": {}, "position": [0.1, 3.8, 1.85], "target": [-0.1, 15.5, 5.1], "fov": 65}}]}})",
-                                              ground.run.trial() ? .2 : 2));
+                                                                   ground.run.trial() ? .2 : 2));
     const std::string report = ground.file("report.json");
     LUCARNE_TRY(
         run_lucarne({"fly", ground.cache(), "--popping", "--path", slow, "--scene", kScene, "--engine",

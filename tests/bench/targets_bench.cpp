@@ -86,11 +86,11 @@ Result<void> bench_frames(const bench::BenchRun& run) {
     options.scene = LUCARNE_SOURCE_DIR "/data/scenes/nave.json";
     LUCARNE_TRY(viewer::take_render_settings(options));
     LUCARNE_ASSIGN(viewer::Drawing drawing, viewer::resolve(options));
-    LUCARNE_ASSIGN(gi::Scene scene, viewer::load_scene_for(options, *source));
+    LUCARNE_ASSIGN(const viewer::SceneForScan loaded, viewer::load_scene_for(options, *source));
     viewer::FrameRequest request;
     request.wait = true;
-    LUCARNE_ASSIGN(request.camera, viewer::find_camera(scene, ""));
-    LUCARNE_ASSIGN(auto pipeline, viewer::open_pipeline(*device, source, options, drawing, scene));
+    LUCARNE_ASSIGN(request.camera, viewer::find_camera(loaded.scene, ""));
+    LUCARNE_ASSIGN(auto pipeline, viewer::open_pipeline(*device, source, options, drawing, loaded.scene));
 
     request.size = run.size({512, 512});
     LUCARNE_TRY(moving_frames(*pipeline, request, 2, ""));  // warm-up: shaders, first loads

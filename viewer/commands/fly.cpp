@@ -128,9 +128,10 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
         }
     const auto begin = Clock::now();
     LUCARNE_ASSIGN(const auto source, open_input(options.input));
-    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
+    loaded.first_view = false;  // the path has the cameras
     LUCARNE_ASSIGN(const auto pipeline,
-                   open_pipeline(*device, source, drawing_options, drawing, std::move(scene)));
+                   open_pipeline(*device, source, drawing_options, drawing, loaded.scene));
     conditions.start.open_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 
     FlightOptions how{drawing.size, !options.realtime, {}, options.overwrite};
@@ -173,6 +174,7 @@ Result<Json> fly_once(const FlyOptions& options, const Plan& plan, const CameraP
               flight.frames.size(), report["frame_ms"]["p50"].get<double>(),
               report["frame_ms"]["p95"].get<double>(),
               memory_text(drawing.caps, flight.frames.back().stats.memory));
+    if (const std::string chosen = chosen_text(loaded); !chosen.empty()) log::info("{}", chosen);
     return report;
 }
 

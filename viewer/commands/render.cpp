@@ -185,9 +185,9 @@ Result<void> render(RenderOptions options) {
     auto opening = std::async(std::launch::async, [&] { return open_source(options); });
     LUCARNE_ASSIGN(const auto device, gi::Device::headless());  // starts while the input is checked
     LUCARNE_ASSIGN(const auto source, opening.get());
-    LUCARNE_ASSIGN(gi::Scene scene, load_scene_for(options.drawing, *source));
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, *source));
     FrameRequest request;
-    LUCARNE_ASSIGN(request.camera, find_camera(scene, options.camera));
+    LUCARNE_ASSIGN(request.camera, find_camera(loaded.scene, options.camera));
     request.size = drawing.size;
     request.wait = true;
     request.accumulate = options.frames > 1 || options.seconds > 0;
@@ -195,7 +195,7 @@ Result<void> render(RenderOptions options) {
     request.antialiased = !options.aliased;
 
     LUCARNE_ASSIGN(const auto pipeline,
-                   open_pipeline(*device, source, options.drawing, drawing, std::move(scene)));
+                   open_pipeline(*device, source, options.drawing, drawing, loaded.scene));
     LUCARNE_ASSIGN(const Rendered rendered, render_frames(*pipeline, request, options));
     const size_t pixels = size_t{drawing.size.width} * drawing.size.height;
     io::Image picture{drawing.size.width, drawing.size.height,
@@ -213,6 +213,7 @@ Result<void> render(RenderOptions options) {
               drawing.size.height, pipeline->engine().name, drawing.preset.name, rendered.frames,
               rendered.frames == 1 ? "" : "s", rendered.seconds,
               memory_text(drawing.caps, rendered.last.memory), fit_text(rendered.last));
+    if (const std::string chosen = chosen_text(loaded); !chosen.empty()) log::info("{}", chosen);
     if (options.first) log::info("first picture after {:.2f} s", seconds_since_start());
     return {};
 }

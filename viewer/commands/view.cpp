@@ -32,10 +32,13 @@ struct ViewOptions {
 
 /// Returns the starting view of what is open. Called on a thread, because it reads nodes.
 Result<StartingView> starting_view(const ViewOptions& options, const octree::NodeSource& source) {
+    LUCARNE_ASSIGN(SceneForScan loaded, load_scene_for(options.drawing, source));
     StartingView start;
-    LUCARNE_ASSIGN(start.scene, load_scene_for(options.drawing, source));
-    LUCARNE_ASSIGN(start.camera, find_camera(start.scene, options.camera));
-    start.site = survey_site(source);
+    LUCARNE_ASSIGN(start.camera, find_camera(loaded.scene, options.camera));
+    start.fits_window = loaded.first_view && options.camera.empty();
+    start.scene = std::move(loaded.scene);
+    if (options.drawing.scene.empty()) start.scene.look.axes = start.scene.look.scale_bar = true;
+    start.site = std::move(loaded.site);
     start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;
     return start;
@@ -57,6 +60,8 @@ ViewModel first_model(const ViewOptions& options, const Drawing& drawing) {
     model.view.frame_time = options.frame_time_ms * 1e-3;
     model.view.caps = drawing.caps;
     model.scene_file.set_path(options.drawing.scene);
+    if (options.drawing.scene.empty())  // the background until there is a picture
+        set_mood(model.view.scene, Mood::scan_colours, {}, {});
     if (!options.measurements.empty()) {
         model.measure.file = options.measurements;
         model.measure.commands.push(LoadMeasurements{});

@@ -115,6 +115,7 @@ struct Pipeline::State {
 
     FrameRequest last;
     double last_seconds = 0;  // duration of the last frame
+    double most_pixels = 0;   // FrameRequest::most_pixels of the last frame
     gi::CameraView camera{};
     gi::GBuffer gbuffer;
     Presentation presentation;
@@ -337,7 +338,8 @@ Result<gi::Engine*> Pipeline::State::drawing_engine(const FrameRequest& request)
 Result<void> Pipeline::State::draw(gi::Engine& drawing, const FrameRequest& request) {
     times.begin("G-buffer");
     const gi::PointSize size{static_cast<float>(scene.look.point_size),
-                             static_cast<float>(scene.look.point_pixels)};
+                             static_cast<float>(scene.look.point_pixels),
+                             static_cast<float>(request.most_pixels)};
     LUCARNE_TRY(gi::rasterize(device, cuts.view(), camera, gbuffer, size));
     times.end();
     if (!scene.look.single_discs) {
@@ -384,7 +386,8 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     times.end();
     LUCARNE_ASSIGN(gi::Engine* const drawing, drawing_engine(request));
     LUCARNE_TRY(build_cuts(drawing->reads_light_cuts()));
-    if (!request.accumulate || !presentation.averaged()) presentation.restart();
+    const bool other_points = std::exchange(most_pixels, request.most_pixels) != request.most_pixels;
+    if (!request.accumulate || !presentation.averaged() || other_points) presentation.restart();
     const bool shifted = request.accumulate && request.antialiased;
     shift_rays(camera, shifted ? presentation.accumulated() : 0);
     LUCARNE_TRY(draw(*drawing, request));

@@ -44,6 +44,7 @@ struct FrameRequest {
     bool accumulate = false;   ///< averages with earlier frames as long as nothing drawn changes
     bool antialiased = true;   ///< shifts the rays of averaged frames; false: all of them as in the first
     bool transparent = false;  ///< keeps the points' light apart from the background in averages
+    double most_pixels = 0;    ///< if over 0: the largest diameter of a point in the picture, pixels
     bool moving = false;       ///< a frame of a motion: the engine may reuse data of earlier frames
     /// For motion in real time: the time that may be spent on light that outlasts a frame, s
     /// (gi::Frame::light_seconds).

@@ -186,6 +186,10 @@ Result<Mood> find_mood(std::string_view name) {
     return bad_arguments("--mood", fmt::format("unknown mood '{}'", name), "choose one of: " + known);
 }
 
+std::string_view mood_name(Mood mood) {
+    return std::ranges::find(kMoods, mood, &MoodInfo::mood)->name;
+}
+
 Mood usual_mood(const Site& site) {
     return in_rooms(site) ? Mood::evening : Mood::daylight;
 }

@@ -28,6 +28,8 @@ std::span<const MoodInfo> moods();
 /// Errors (ErrorKind::arguments): there is no mood of that name.
 Result<Mood> find_mood(std::string_view name);
 
+std::string_view mood_name(Mood mood);
+
 /// Returns the light that a site is first shown in.
 Mood usual_mood(const Site& site);
 /// Returns the engine that shows a mood: `unlit` for scan colours, the default engine for the others.

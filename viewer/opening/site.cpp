@@ -13,7 +13,6 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr size_t kMostNodes = 64;
-constexpr size_t kEnoughPoints = 100000;
 constexpr size_t kMostOutline = 5000;
 
 /// Share of the places to stand that are in rooms from which a scan is one of rooms.
@@ -98,7 +97,18 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
 }
 
 Site survey_site(const octree::NodeSource& source) {
-    return survey_site(coarse_points(source), octree::robust_bounds(source), source.header().metres_per_unit);
+    const auto points = coarse_points(source);
+    Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit);
+    // A source of many nodes is no sketch, even if the coarsest ones have few points.
+    site.sure = points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes;
+    return site;
+}
+
+bool alike(const Site& a, const Site& b) {
+    constexpr double kSame = .05;  // of the diagonal
+    const double size = std::max(glm::distance(a.box[0], a.box[1]), glm::distance(b.box[0], b.box[1]));
+    const double moved = std::max(glm::distance(a.box[0], b.box[0]), glm::distance(a.box[1], b.box[1]));
+    return a.kind == b.kind && a.inside.has_value() == b.inside.has_value() && moved <= kSame * size;
 }
 
 }  // namespace lucarne::viewer

@@ -35,7 +35,8 @@ struct Site {
     SiteKind kind = SiteKind::object;
     std::array<glm::dvec3, 2> box{};  ///< robust bounds
     double metres_per_unit = 1;
-    std::vector<glm::dvec3> outline;      ///< points that a view of all has to contain; at least one
+    bool sure = true;                 ///< false: seen in few points, more of which may show something else
+    std::vector<glm::dvec3> outline;  ///< points that a view of all has to contain; at least one
     std::optional<StandingPlace> inside;  ///< if there is a room
 };
 
@@ -43,8 +44,15 @@ struct Site {
 /// be read are left out. An empty cloud is an object around its box.
 Site survey_site(const octree::NodeSource& source);
 
+/// Points from which a site is sure.
+inline constexpr size_t kEnoughPoints = 100'000;
+
 /// The same for points that are known already, in a box (world units).
 Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3, 2>& box,
                  double metres_per_unit);
+
+/// Returns whether two sites are of one kind and their boxes differ by less than a twentieth, as those of a
+/// sample and of more points of the same scan do: views and light made for one suit the other.
+bool alike(const Site& a, const Site& b);
 
 }  // namespace lucarne::viewer

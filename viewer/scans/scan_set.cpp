@@ -83,6 +83,7 @@ struct Opened {
 struct ScanSet::Joined {
     Source source;
     Result<StartingView> start;
+    std::vector<uint64_t> ids;  ///< of the scans in the source
 };
 
 /// Results of the threads.
@@ -345,17 +346,22 @@ void ScanSet::join_visible() {
     if (!stale_ || joining_) return;
     stale_ = false;
     std::vector<Source> visible;
+    std::vector<uint64_t> ids;
     for (const ScanRow& row : rows_)
-        if (const auto item = items_.find(row.id); row.visible && item != items_.end() && item->second.source)
+        if (const auto item = items_.find(row.id);
+            row.visible && item != items_.end() && item->second.source) {
             visible.push_back(item->second.source);
+            ids.push_back(row.id);
+        }
     joining_ = true;
     joiner_.push(
         "the open scans",
-        [visible = std::move(visible), start_of = start_of_]() mutable -> Result<Joined> {
+        [visible = std::move(visible), ids = std::move(ids),
+         start_of = start_of_]() mutable -> Result<Joined> {
             if (visible.empty()) return Joined{};
             LUCARNE_ASSIGN(Source source, octree::join_sources(std::move(visible)));
             auto start = start_of(*source);
-            return Joined{std::move(source), std::move(start)};
+            return Joined{std::move(source), std::move(start), std::move(ids)};
         },
         [shared = shared_](Result<Joined> joined) {
             {
@@ -380,6 +386,7 @@ void ScanSet::take_joined() {
         return;
     }
     source_ = std::move((*joined)->source);
+    shown_ = std::move((*joined)->ids);
     start_.reset();
     if (!source_) return;
     if ((*joined)->start)

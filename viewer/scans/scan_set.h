@@ -55,6 +55,7 @@ struct ScanRow {
 struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
+    bool fits_window = false;  ///< the camera is the site's first view, to be fitted to the window
     Site site;
     std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;
@@ -93,6 +94,8 @@ class ScanSet {
     const std::shared_ptr<const octree::NodeSource>& source() const { return source_; }
     /// The starting view; nothing if finding it failed (see error()).
     const std::optional<StartingView>& start() const { return start_; }
+    /// The ids of the scans that source() shows.
+    const std::vector<uint64_t>& shown() const { return shown_; }
     bool converting() const;
     /// Whether no work is pending, so that rows and source() are final.
     bool settled() const;
@@ -121,6 +124,7 @@ class ScanSet {
     std::map<uint64_t, Item> items_;
     uint64_t next_id_ = 1;
     std::shared_ptr<const octree::NodeSource> source_;
+    std::vector<uint64_t> shown_;
     std::optional<StartingView> start_;
     std::optional<Error> problem_;  ///< error of joining the visible scans
     bool stale_ = false, joining_ = false;

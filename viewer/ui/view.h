@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewer/camera/camera.h"
+#include "viewer/camera/glide.h"
 #include "viewer/camera/navigation.h"
 #include "viewer/frame/picture_worker.h"
 #include "viewer/frame/presets.h"
@@ -23,6 +24,7 @@ struct View {
     double scene_size;                ///< diagonal, world units
     std::array<glm::dvec3, 2> box{};  ///< bounding box of the open scans, world units
     CameraRig rig;
+    CameraGlide glide;
     gi::SceneCamera home;  ///< the starting view
     Site site;             ///< what the open scans show
     Navigation navigation;
@@ -53,8 +55,19 @@ struct View {
         ++shown_changes;
     }
     void go_to(const gi::SceneCamera& camera) {
+        glide.stop();
         rig = CameraRig(camera);
         rig.set_clearance(scene_size);
+    }
+    /// Moves there smoothly, frame by frame (advance()).
+    void glide_to(const gi::SceneCamera& camera) { glide.start(rig.camera(), camera); }
+    /// Moves the camera on its way. Returns whether it moved.
+    bool advance(double seconds) {
+        const auto camera = glide.advance(seconds);
+        if (!camera) return false;
+        rig = CameraRig(*camera);
+        rig.set_clearance(scene_size);
+        return true;
     }
     /// Takes a preset's settings and budgets. Errors: no preset has this name.
     Result<void> choose_preset(std::string_view name);

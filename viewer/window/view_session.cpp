@@ -13,6 +13,7 @@
 #include "io/core/process.h"
 #include "io/files/free_name.h"
 #include "viewer/frame/rgba.h"
+#include "viewer/opening/first_view.h"
 #include "viewer/ui/on_screen.h"
 #include "viewer/window/actions/actions.h"
 #include "viewer/window/panels/panels.h"
@@ -24,11 +25,30 @@ namespace {
 constexpr double kSharp = 0.1;       ///< s without motion until the picture is made at full size
 constexpr double kRest = 0.25;       ///< and at full quality
 constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
+constexpr float kSketchDots = 4;     ///< most pixels of a point while more of them are to come
 constexpr double kNone = -1;         ///< FrameRequest::light_seconds: not even one step
 constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
 
 double axis(int less, int more) {
     return (ImGui::IsKeyDown(more) ? 1.0 : 0.0) - (ImGui::IsKeyDown(less) ? 1.0 : 0.0);
+}
+
+/// Returns whether more points of a visible scan are to come.
+bool is_sketch(const ScanRow& row) {
+    return row.visible && (row.state == ScanState::sample || row.state == ScanState::converting ||
+                           row.state == ScanState::stopped);
+}
+
+/// Draws the background of the first picture, before there is one.
+void draw_backdrop(const gi::Backdrop& backdrop) {
+    if (backdrop.kind != gi::Backdrop::Kind::gradient) return;
+    const auto colour = [](const glm::dvec3& c) {
+        return ImGui::ColorConvertFloat4ToU32(
+            ImVec4(static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z), 1));
+    };
+    const ImU32 top = colour(backdrop.top), bottom = colour(backdrop.bottom);
+    ImGui::GetBackgroundDrawList()->AddRectFilledMultiColor(ImVec2(0, 0), ImGui::GetIO().DisplaySize, top,
+                                                            top, bottom, bottom);
 }
 
 /// Returns the window's title. Leaves out files that could not be opened.
@@ -112,22 +132,37 @@ void ViewSession::follow_device() {
 void ViewSession::take_extent() {
     const auto& start = scans_.start();
     if (!start) return;
+    const bool first = !std::exchange(placed_, true);
+    const bool others = shown_scans_ != scans_.shown();
+    shown_scans_ = scans_.shown();
+    // More points of the same scans must not shake the picture. Only once, when there are enough of them, the
+    // view follows if they show something else than the first few.
+    const bool sure = start->site.sure || scans_.settled();
+    const bool follows = first || others || (sure && !sure_ && !alike(placed_for_, start->site));
+    sure_ = sure || (sure_ && !others);
     model_.view.scene_size = start->scene_size();
     model_.view.box = start->box;
     model_.view.site = start->site;
     model_.view.rig.set_clearance(model_.view.scene_size);
-    const bool first = !std::exchange(placed_, true);
     if (first) model_.view.navigation.set_scene(start->scene_size(), start->metres_per_unit);
     if (!first && model_.view.scene_version != own_scene_) return;
-    if (!first && start->camera.position == model_.view.home.position &&
-        start->camera.target == model_.view.home.target)
-        return;
+    if (start->fits_window && !follows) return;
+    placed_for_ = start->site;
+    gi::SceneCamera home = start->camera;
+    if (start->fits_window) home = first_view(start->site, picture_shape(model_.view.side_bar));
+    const bool same_home =
+        home.position == model_.view.home.position && home.target == model_.view.home.target;
+    if (!first && same_home) return;
     const auto camera = model_.view.rig.camera();
-    const bool at_home = first || (CameraRig(model_.view.home).camera().position == camera.position &&
-                                   CameraRig(model_.view.home).camera().target == camera.target);
+    const bool at_home = first || model_.view.glide.under_way() ||
+                         (CameraRig(model_.view.home).camera().position == camera.position &&
+                          CameraRig(model_.view.home).camera().target == camera.target);
     model_.view.scene = start->scene;
-    model_.view.home = start->camera;
-    if (at_home) model_.view.go_to(model_.view.home);
+    model_.view.home = home;
+    if (first)
+        model_.view.go_to(home);
+    else if (at_home)
+        model_.view.glide_to(home);
     model_.view.scene_changed();
     own_scene_ = model_.view.scene_version;
     model_.scene_file.mark(model_.view);
@@ -217,8 +252,10 @@ void ViewSession::take_input() {
     if (at_light && !io.WantCaptureMouse) {
         light_.take_gesture(model_.lighting());
     } else if (take_navigation()) {
+        model_.view.glide.stop();
         moved_ = Clock::now();
     }
+    if (model_.view.advance(io.DeltaTime)) moved_ = Clock::now();
 }
 
 void ViewSession::draw_panels() {
@@ -232,6 +269,7 @@ void ViewSession::draw_panels() {
     measure_.draw(model_.measuring());
     draw_flythrough(model_.publishing());
     draw_side_bar(model_, placed_);
+    if (!shot_) draw_status_line(model_);
     if (model_.show_help) draw_help(model_.show_help, actions_);
     if (const auto error = worker_.error(); !error) model_.view.message = error.error().line();
     draw_message(model_,
@@ -259,6 +297,9 @@ void ViewSession::send_request() {
         if (!request.sketch) request.frame.size = size;
         request.frame.light_seconds = request.sketch ? kNone : kLightShare * model_.view.frame_time;
     }
+    if (std::ranges::any_of(scans_.rows(), is_sketch))
+        request.frame.most_pixels =
+            std::max(1.5f, scaled(kSketchDots) * request.frame.size.height / window_.framebuffer().height);
     const bool goes_on = sent_.moving && !sent_.sketch;
     if (request.moving && !request.sketch && !goes_on) last_moving_ = Clock::now();
     request.scene_version = model_.view.scene_version;
@@ -339,7 +380,10 @@ Result<void> ViewSession::show_until_closed() {
         take_picture();
         window_.set_text_size(model_.settings.text_size);
         window_.begin_frame();
-        if (model_.view.picture) window_.show(*model_.view.picture);
+        if (model_.view.picture)
+            window_.show(*model_.view.picture);
+        else if (!scans_.rows().empty())
+            draw_backdrop(model_.view.scene.look.backdrop);
         files_.take_files();
         follow_scans();
         light_.follow_sky(model_.lighting());

@@ -98,7 +98,10 @@ class ViewSession {
     Closing closing_;
     BookmarkSession bookmarks_;
     FloorFinder floor_;
-    bool placed_ = false;  ///< the starting view has been applied
+    bool placed_ = false;                ///< the starting view has been applied
+    Site placed_for_;                    ///< what it was made for
+    bool sure_ = false;                  ///< enough points have been seen to be sure of that
+    std::vector<uint64_t> shown_scans_;  ///< the ids of the scans that it shows
     bool first_told_ = false;
     ControllerInput controller_{&Window::wake};
     RecoveryTries tries_;

@@ -235,7 +235,7 @@ glm::vec3 PathTracer::before_what_hides(const glm::vec3& origin, const Start& st
                          surfel.radius);
 }
 
-PathSums PathTracer::trace(const Start& start, uint64_t index) const {
+PathSums PathTracer::trace(const Start& start, uint64_t index, const std::atomic<bool>* stop) const {
     PathSums sums;
     const uint64_t samples = std::max(settings_.samples, 1u);
     // With one path a frame the halves alternate.
@@ -251,7 +251,9 @@ PathSums PathTracer::trace(const Start& start, uint64_t index) const {
     if (counts(0)) sums.exact = glm::dvec3(first.emission + sharp_light(first));
     if (!anything_random()) return sums;
     const uint64_t key = mix64(mix64(settings_.seed, settings_.frame), index);
+    constexpr uint64_t kBetween = 256;  // paths between two looks at `stop`
     for (uint64_t i = 0; i < samples; ++i) {
+        if (stop && i % kBetween == 0 && *stop) break;
         Random random(key, i);
         const glm::vec3 light = path(first, random);
         const uint64_t half = half_of(i);
@@ -269,7 +271,7 @@ std::vector<PathSums> PathTracer::trace(std::span<const Start> starts, Progress*
     std::vector<PathSums> sums(starts.size());
     parallel_ranges(starts.size(), 64, [&](size_t first, size_t last) {
         if (stop && *stop) return;
-        for (size_t i = first; i < last; ++i) sums[i] = trace(starts[i], i);
+        for (size_t i = first; i < last; ++i) sums[i] = trace(starts[i], i, stop);
         if (progress) progress->add(last - first);
     });
     return sums;

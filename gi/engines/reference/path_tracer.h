@@ -61,8 +61,9 @@ class PathTracer {
     std::vector<PathSums> trace(std::span<const Start> starts, Progress* progress = nullptr,
                                 const std::atomic<bool>* stop = nullptr) const;
 
-    /// Returns the sum of one start; `index` selects its random numbers.
-    PathSums trace(const Start& start, uint64_t index) const;
+    /// Returns the sum of one start; `index` selects its random numbers. Leaves out further paths once `stop`
+    /// is true (unless it is null).
+    PathSums trace(const Start& start, uint64_t index, const std::atomic<bool>* stop = nullptr) const;
 
  private:
     struct Vertex;

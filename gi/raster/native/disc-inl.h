@@ -80,9 +80,11 @@ HWY_INLINE Mask place_discs(const DiscView& view, const Packed& p, const V3& ori
     discs.radius = mul(set(view.size.scale), radius);
     drawn = hn::And(drawn, hn::Gt(discs.radius, hn::Zero(Floats())));
     const F scale = view_scale(view, discs.centre.z);
-    if (view.size.pixels > 0) {
+    if (view.size.pixels > 0 || view.size.most > 0) {
         const F least = hn::Min(pixels_per_tangent_x(view), pixels_per_tangent_y(view));
-        discs.radius = over(mul(set(0.5f * view.size.pixels), hn::Max(scale, hn::Zero(Floats()))), least);
+        const float diameter = view.size.pixels > 0 ? view.size.pixels : view.size.most;
+        const F radius = over(mul(set(0.5f * diameter), hn::Max(scale, hn::Zero(Floats()))), least);
+        discs.radius = view.size.pixels > 0 ? radius : hn::Min(discs.radius, radius);
     }
     drawn = hn::And(drawn, hn::Gt(add(discs.centre.z, discs.radius), set(view.forward.w)));
     const auto outside = [&](F along, float side) {

@@ -45,9 +45,12 @@ class Placing {
             reach[i] = glm::dot(half, glm::abs(axes_[i])) * 1.0001f + 1e-6f;
         }
         float radius = view_.size.scale * bounds.radius;
+        const float per_pixel =
+            0.5f * (flat ? 1.0f : std::max(centre.z + reach.z, 0.0f)) / std::min(scale_.x, scale_.y);
         if (view_.size.pixels > 0)
-            radius = 0.5f * view_.size.pixels * (flat ? 1.0f : std::max(centre.z + reach.z, 0.0f)) /
-                     std::min(scale_.x, scale_.y);
+            radius = view_.size.pixels * per_pixel;
+        else if (view_.size.most > 0)
+            radius = std::min(radius, view_.size.most * per_pixel);
         const glm::vec3 low = centre - reach - radius, high = centre + reach + radius;
         if (!(high.z > view_.forward.w)) return false;
         placed.nearest = low.z - 0.01f * radius;

@@ -74,7 +74,8 @@ std::vector<Shown> table() {
             {"a spot's view", clutter(0.02f), spot_view(spot, 256), {}},
             {"points of three pixels", clutter(0.02f), camera, {.scale = 1, .pixels = 3}},
             {"points of fifty pixels", clutter(0.1f), camera, {.scale = 1, .pixels = 50}},
-            {"half the radii", clutter(0.02f), camera, {.scale = 0.5f, .pixels = 0}},
+            {"discs of six pixels at most", clutter(0.1f), camera, {.scale = 1, .most = 6}},
+            {"half the radii", clutter(0.02f), camera, {.scale = 0.5f}},
             {"one pixel", clutter(0.05f), look({0, 0, 0}, {0, 1, 0}, 1, 1, 0.9f), {}}};
 }
 

@@ -1,11 +1,11 @@
 #include "viewer/publish/render_worker.h"
 
+#include <fstream>
 #include <semaphore>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "octree/tree/robust_bounds.h"
 #include "tests/viewer/program.h"
 #include "viewer/inputs/input.h"
 
@@ -25,8 +25,12 @@ class Rendering : public testing::Test {
         const auto source = open_input(cache_);
         ASSERT_TRUE(source) << source.error().line();
         order_.source = *source;
-        const auto [low, high] = octree::robust_bounds(*order_.source);  // as in `render`
-        order_.scene = gi::default_scene(low, high, order_.source->header().metres_per_unit, 64.0 / 48);
+        std::ofstream(scene_) << R"({"lights": [{"type": "point", "position": [0.3, 0.3, 0.4],
+            "intensity": [40, 40, 40]}], "cameras": [{"name": "front", "position": [0.28, -0.7, 0.28],
+            "target": [0.28, 0.3, 0.28]}]})";
+        const auto scene = gi::load_scene(scene_);
+        ASSERT_TRUE(scene) << scene.error().line();
+        order_.scene = *scene;
         order_.method.engine = "direct";
         order_.method.settings = find_preset(kDefaultPreset)->engine;
         order_.method.budgets = find_preset(kDefaultPreset)->budgets;
@@ -59,6 +63,7 @@ class Rendering : public testing::Test {
     static std::unique_ptr<test::TemporaryFolder> shared_;
     static std::string cache_;
     test::TemporaryFolder folder_;
+    const std::string scene_ = folder_ / "scene.json";
     RenderOrder order_;
     std::counting_semaphore<> changed_{0};
     RenderWorker worker_{[this] { changed_.release(); }};
@@ -73,8 +78,8 @@ TEST_F(Rendering, SavesWhatTheCommandRenders) {
     ASSERT_TRUE(done) << done.error().line();
     EXPECT_THAT(*done, HasSubstr("window.png"));
     EXPECT_FALSE(worker_.state().running);
-    const auto ran =
-        test::lucarne("render " + cache_ + " --engine direct --size 64x48 -o " + (folder_ / "command.png"));
+    const auto ran = test::lucarne("render " + cache_ + " --engine direct --size 64x48 --scene " + scene_ +
+                                   " -o " + (folder_ / "command.png"));
     ASSERT_EQ(ran.code, 0) << ran.output;
     EXPECT_EQ(test::bytes_of(folder_ / "window.png"), test::bytes_of(folder_ / "command.png"));
 }

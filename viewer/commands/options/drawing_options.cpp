@@ -8,9 +8,7 @@
 #include "gi/scene/render_settings_file.h"
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
-#include "octree/tree/robust_bounds.h"
 #include "viewer/opening/first_view.h"
-#include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -79,22 +77,13 @@ std::string mood_names() {
     return names;
 }
 
-/// Lights the scene for what the scan shows. Scenes without cameras of their own get the first view.
-Result<void> take_mood(const DrawingOptions& options, const octree::NodeSource& source, double aspect,
-                       bool own_cameras, gi::Scene& scene) {
-    LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
-    const Site site = survey_site(source);
+/// Returns the first view of a scan, followed by the overview where that is another one.
+std::vector<gi::SceneCamera> usual_cameras(const Site& site, double aspect) {
     const PictureShape shape{aspect, {}};
-    if (!own_cameras) {
-        scene.cameras = {first_view(site, shape)};
-        const gi::SceneCamera outside = outside_view(site, shape);
-        if (outside.name != scene.cameras[0].name) scene.cameras.push_back(outside);
-        const glm::dvec3& eye = scene.cameras[0].position;
-        log::info("{}: camera '{}' at {:.2f} {:.2f} {:.2f}", site_name(site.kind), scene.cameras[0].name,
-                  eye.x, eye.y, eye.z);
-    }
-    set_mood(scene, mood, site, scene.cameras[0]);
-    return {};
+    std::vector<gi::SceneCamera> cameras{first_view(site, shape)};
+    gi::SceneCamera outside = outside_view(site, shape);
+    if (outside.name != cameras[0].name) cameras.push_back(std::move(outside));
+    return cameras;
 }
 
 bool all_have_normals(const octree::NodeSource& source) {
@@ -124,7 +113,10 @@ void warn_of_extent(const octree::SourceHeader& header) {
 void add_drawing_options(Arguments& command, DrawingOptions& options) {
     command.add("--scene", options.scene, "Lights, materials, cameras and exposure (data/README.md)")
         .type_name("FILE");
-    command.add("--mood", options.mood, "Light for what the scan shows, and a camera to see it; see below")
+    command
+        .add(
+            "--mood", options.mood,
+            "Light for what the scan shows, and a camera to see it, see below; without a scene: scan-colours")
         .type_name("NAME");
     command.add("--engine", options.render.engine, "Method of lighting, see below")
         .show_default(std::string(gi::default_engine().name))
@@ -169,6 +161,8 @@ Result<void> take_render_settings(DrawingOptions& options) {
     if (!options.mood.empty()) {
         LUCARNE_ASSIGN(const Mood mood, find_mood(options.mood));
         usual.engine = engine_of(mood);
+    } else if (options.scene.empty() && options.render.options.empty()) {
+        usual.engine = engine_of(Mood::scan_colours);  // engines that light are asked for by their options
     }
     usual.preset = kDefaultPreset;
     fill(options.render, usual);
@@ -197,26 +191,51 @@ Result<Drawing> resolve(const DrawingOptions& options) {
     return drawing;
 }
 
-Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
-    const auto [low, high] = octree::robust_bounds(source);
+Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
+    SceneForScan loaded;
+    loaded.site = survey_site(source);
+    gi::Scene& scene = loaded.scene;
     LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
     const double aspect = static_cast<double>(size.width) / size.height;
-    gi::Scene scene = gi::default_scene(low, high, source.header().metres_per_unit, aspect);
-    bool own_cameras = false;
+    const auto [low, high] = loaded.site.box;
+    scene = gi::default_scene(low, high, source.header().metres_per_unit, aspect);
     if (!options.scene.empty()) {
-        const auto cameras = std::move(scene.cameras);
+        const auto overview = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
-        own_cameras = !scene.cameras.empty();
-        if (!own_cameras) scene.cameras = cameras;
+        loaded.own_cameras = !scene.cameras.empty();
+        if (!loaded.own_cameras) scene.cameras = overview;
         if (scene.comparison && scene.comparison->engine.empty())
             scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     }
-    if (!options.mood.empty()) LUCARNE_TRY(take_mood(options, source, aspect, own_cameras, scene));
+    if (!options.mood.empty()) {
+        LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
+    } else if (options.scene.empty()) {
+        loaded.mood = options.render.engine == engine_of(Mood::scan_colours) ? Mood::scan_colours
+                                                                             : usual_mood(loaded.site);
+    }
+    if (loaded.mood) {
+        loaded.first_view = !loaded.own_cameras;
+        if (loaded.first_view) scene.cameras = usual_cameras(loaded.site, aspect);
+        // Scan colours leave the lights as they are; another engine may use them later.
+        if (options.scene.empty()) set_mood(scene, usual_mood(loaded.site), loaded.site, scene.cameras[0]);
+        set_mood(scene, *loaded.mood, loaded.site, scene.cameras[0]);
+    }
     if (options.exposure) scene.exposure_ev = options.exposure;
     LUCARNE_TRY(apply(options.look, scene.look));
     LUCARNE_TRY(apply(options.light, scene));
     LUCARNE_TRY(gi::check_attribute(source, scene.look));
-    return scene;
+    return loaded;
+}
+
+std::string chosen_text(const SceneForScan& loaded) {
+    std::string chosen;
+    if (loaded.first_view) {
+        const gi::SceneCamera& camera = loaded.scene.cameras[0];
+        chosen = fmt::format("camera '{}' at {:.2f} {:.2f} {:.2f}", camera.name, camera.position.x,
+                             camera.position.y, camera.position.z);
+    }
+    if (loaded.mood) chosen += fmt::format("{}mood {}", chosen.empty() ? "" : ", ", mood_name(*loaded.mood));
+    return chosen.empty() ? chosen : fmt::format("{}: {}", site_name(loaded.site.kind), chosen);
 }
 
 Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name) {

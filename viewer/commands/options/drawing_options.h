@@ -12,13 +12,14 @@
 #include "viewer/commands/options/light_options.h"
 #include "viewer/commands/options/look_options.h"
 #include "viewer/frame/pipeline.h"
+#include "viewer/opening/moods.h"
 
 namespace lucarne::viewer {
 
 /// The options that `render`, `view` and `fly` share: lighting, picture size and memory caps.
 struct DrawingOptions {
-    std::string scene;          ///< path; empty: gi::default_scene
-    std::string mood;           ///< light and camera for what the scan shows; empty: the scene's
+    std::string scene;  ///< path; empty: light and cameras for what the scan shows
+    std::string mood;   ///< replaces the scene's light; empty: the scene's, else the scan's own colours
     gi::RenderSettings render;  ///< engine, preset, and single settings that override the preset
     std::string size = "1280x720";
     std::string points;
@@ -48,12 +49,26 @@ struct Drawing {
 /// unknown preset or engine, a malformed size or amount of memory.
 Result<Drawing> resolve(const DrawingOptions& options);
 
-/// Loads the scene file, or makes the default scene for this cloud. The scene has at least one camera. A mood
-/// replaces the scene's light, and the cameras of scenes without any: the first one is then the first view of
-/// what the scan shows, and is logged. `size` in the options is the picture's.
-/// Errors: those of reading the file; ErrorKind::arguments if no point has the attribute that colours are
-/// requested from.
-Result<gi::Scene> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
+/// A scene made for a scan.
+struct SceneForScan {
+    gi::Scene scene;
+    Site site;                 ///< what the scan shows
+    std::optional<Mood> mood;  ///< the light is this mood's; none: the scene file's
+    bool own_cameras = false;  ///< the cameras are those of the scene file
+    bool first_view = false;   ///< the first camera is the first view of what the scan shows
+};
+
+/// Loads the scene file. Without one the scan is shown by its own colours, or by the light that suits it if
+/// the engine lights it. The scene has at least one camera. A mood in the options replaces the light of the
+/// file. With a mood, or without a file, the first camera is the first view of what the scan shows, unless
+/// the file has cameras, and an overview follows. `size` in the options is the picture's, `render.engine` is
+/// set (take_render_settings()). Loads a sample of the coarsest nodes. Errors: those of reading the file;
+/// ErrorKind::arguments if no point has the attribute that colours are requested from.
+Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
+
+/// Returns what was chosen for the scan: "interior: camera 'inside' at 1.20 3.40 1.60, mood evening". Empty
+/// if the scene file has chosen it all.
+std::string chosen_text(const SceneForScan& loaded);
 
 /// Returns the camera called `name`, or the first camera if `name` is empty. Errors (ErrorKind::arguments):
 /// there is no camera of that name; the message lists the cameras.

@@ -19,6 +19,7 @@ void draw_statistics_panel(const ViewModel& model);  ///< figures of the last pi
 void draw_controller_panel(ViewModel& model);        ///< mapping of the 6-DoF controller
 
 void draw_help(bool& shown, std::span<const BoundAction> actions);  ///< every action and gesture
+void draw_status_line(const ViewModel& model);                      ///< the point under the cursor
 void draw_message(const ViewModel& model, bool busy);               ///< one line at the bottom
 
 }  // namespace lucarne::viewer

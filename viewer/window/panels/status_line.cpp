@@ -1,0 +1,32 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/ui/on_screen.h"
+#include "viewer/window/panels/panels.h"
+
+namespace lucarne::viewer {
+
+void draw_status_line(const ViewModel& model) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto& picture = model.view.picture;
+    if (!picture || io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
+    const auto point = picture->pick(cursor());
+    if (!point) return;
+    // Millimetres, whatever the unit.
+    const int decimals = std::max(0L, std::lround(3 + std::log10(picture->metres_per_unit)));
+    const std::string text =
+        fmt::format("{:.{}f}  {:.{}f}  {:.{}f}", point->x, decimals, point->y, decimals, point->z, decimals);
+    ImGui::SetNextWindowPos(ImVec2(io.DisplaySize.x - 8, io.DisplaySize.y - 8), ImGuiCond_Always,
+                            ImVec2(1.0f, 1.0f));
+    ImGui::SetNextWindowBgAlpha(0.6f);
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                   ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                                   ImGuiWindowFlags_NoNav;
+    if (ImGui::Begin("##coordinates", nullptr, flags)) ImGui::TextUnformatted(text.c_str());
+    ImGui::End();
+}
+
+}  // namespace lucarne::viewer
