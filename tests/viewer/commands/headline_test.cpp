@@ -92,7 +92,8 @@ TEST_F(Headline, UnderCapsOfATenthOfTheCacheThreeBouncesKeepTheirEnergyAndMemory
 TEST_F(Headline, CapsTooSmallAreAnErrorOfOneLine) {
     const std::string cache = cache_of("20k");
     const auto refused = [&](const std::string& caps) {
-        return test::lucarne("render " + cache + " -o " + (folder_ / "p.png") + " --engine vpl --size 64x48 " + caps);
+        return test::lucarne("render " + cache + " -o " + (folder_ / "p.png") +
+                             " --engine vpl --size 64x48 " + caps);
     };
     EXPECT_EQ(refused("--memory 10").code, 2);
     EXPECT_EQ(refused("--memory much").code, 2);

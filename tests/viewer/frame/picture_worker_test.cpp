@@ -132,7 +132,7 @@ TEST_F(Worker, APictureAtRestHoldsNothingOfTheOneBeforeTheMotion) {
 TEST_F(Worker, MotionDoesNotWaitForAPictureAtRest) {
     // A picture that would take hours is given up, also in favour of the end.
     request_.method.engine = "reference";
-    request_.method.settings = gi::default_settings(gi::Effort::high);
+    request_.method.settings = gi::default_settings(gi::Effort::preview);
     gi::EngineSettings& settings = request_.method.settings;
     settings.set(*gi::find_option("samples"), int64_t{1} << 20);
     worker_->request(request_);

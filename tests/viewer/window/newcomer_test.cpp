@@ -62,7 +62,7 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     open_window();
     ASSERT_TRUE(picture(lit)) << "open\n" << log();
     EXPECT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "cornell.las.luc"); }));
-    xdo("key Tab");  // panels would take clicks
+    xdo("key Tab sleep 0.3 key 0");  // panels would take clicks
     std::optional<io::Image8> seen =
         changed(io::Image8{kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight * 3)}, 1);
     ASSERT_TRUE(seen);
@@ -72,7 +72,7 @@ TEST_F(Newcomer, OpensLooksLightsMeasuresClipsAndFindsItAllAgain) {
     ASSERT_TRUE(next) << "orbit";
 
     xdo("key l");
-    seen = changed(*next, 1);
+    seen = changed(*next, 0.4);
     ASSERT_TRUE(seen) << "light";
 
     xdo("key ctrl+2");

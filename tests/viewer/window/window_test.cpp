@@ -112,14 +112,15 @@ TEST_F(ViewerWindow, SavesItselfForScripts) {
 
 TEST_F(ViewerWindow, AScanAsItIsEndsAsThePictureOfItsCache) {
     resolution_ = 0.5;  // 256 pictures take half the time
-    start(" --scale 0.5");
+    const std::string options = " --scale 0.5 --scene " LUCARNE_SOURCE_DIR "/data/scenes/cornell.json";
+    start(options);
     // Only completely averaged pictures agree, up to single steps of some bytes.
     const auto finished = [&] { return log().ends_with("lucarne-0001.png\n"); };
     const auto of_cache = picture([&](const io::Image8& now) { return finished() && lit(now); });
     ASSERT_TRUE(of_cache);
     viewer_.reset();
     cache_ = folder_ / "cornell.las";
-    start(" --scale 0.5");
+    start(options);
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(cache_ + ".luc"); })) << "no cache is kept";
     EXPECT_TRUE(picture([&](const io::Image8& now) {
         return finished() && difference(now, *of_cache) < 0.05;
