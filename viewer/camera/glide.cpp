@@ -21,6 +21,18 @@ Direction direction_of(const gi::SceneCamera& camera) {
 
 }  // namespace
 
+gi::SceneCamera gone_toward(const gi::SceneCamera& camera, const glm::dvec3& point, double distance) {
+    glm::dvec3 way = point - camera.position;
+    way.z = 0;
+    const double length = glm::length(way);
+    if (!(length > 0)) return camera;
+    way *= (length - std::min(distance, length / 2)) / length;
+    gi::SceneCamera gone = camera;
+    gone.position += way;
+    gone.target += way;
+    return gone;
+}
+
 void CameraGlide::start(const gi::SceneCamera& from, const gi::SceneCamera& to) {
     from_ = from;
     to_ = to;

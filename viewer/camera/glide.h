@@ -6,6 +6,10 @@
 
 namespace lucarne::viewer {
 
+/// Returns the camera after it has gone toward a point at its own height, up to `distance` from it, or half
+/// way if it is nearer. It looks in the same direction as before.
+gi::SceneCamera gone_toward(const gi::SceneCamera& camera, const glm::dvec3& point, double distance);
+
 /// Moves a camera smoothly to another place, so that the eye can follow.
 class CameraGlide {
  public:

@@ -52,7 +52,7 @@ bool Navigation::apply(const NavigationInput& input, CameraRig& rig) {
     const bool dragged = input.drag != glm::dvec2(0.0);
     if (dragged && input.rotate) {
         const double yaw = -input.drag.x * kTurn, pitch = -input.drag.y * kTurn;
-        if (turns_scene()) {
+        if (turns_scene() && !(mode_ == NavigationMode::orbit && input.inside)) {
             rig.orbit(yaw, pitch);
         } else {
             rig.look(yaw, pitch);

@@ -25,13 +25,15 @@ struct NavigationInput {
     glm::dvec2 drag{0.0};                ///< shares of the window's height, right and down
     double scroll = 0;                   ///< notches; up is positive
     bool rotate = false, shift = false;  ///< kind of the drag: turn, or move sideways
-    glm::dvec3 keys{0.0};                ///< right, up, forward: -1, 0 or 1 each
-    bool fast = false;                   ///< Shift is held
-    double seconds = 0;                  ///< since the last frame
+    bool inside = false;   ///< the camera stands in a room: turning about a point leads into walls
+    glm::dvec3 keys{0.0};  ///< right, up, forward: -1, 0 or 1 each
+    bool fast = false;     ///< Shift is held
+    double seconds = 0;    ///< since the last frame
 };
 
-/// Turns input into camera moves. Orbit and turntable: drags turn about the pivot and pan, scrolling moves
-/// toward the pivot. Fly and walk: drags look around, keys move, scrolling sets the speed.
+/// Turns input into camera moves. Orbit and turntable: drags turn about the pivot (orbit inside a room: look
+/// around) and pan, scrolling moves toward the pivot. Fly and walk: drags look around, keys move, scrolling
+/// sets the speed.
 class Navigation {
  public:
     /// `scene_size`: the scene's diagonal, world units. It sets the initial flying speed.

@@ -38,6 +38,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     start.fits_window = loaded.first_view && options.camera.empty();
     start.scene = std::move(loaded.scene);
     if (options.drawing.scene.empty()) start.scene.look.axes = start.scene.look.scale_bar = true;
+    start.mood = loaded.mood;
     start.site = std::move(loaded.site);
     start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;

@@ -32,13 +32,7 @@ void add(const Lighting& model) {
 }
 template <Mood Of>
 void light_as(const Lighting& model) {
-    remember_lights(model);
-    set_mood(model.view.scene, Of, model.view.site, model.view.rig.camera());
-    const std::string engine(engine_of(Of));
-    if (Of == Mood::scan_colours || model.view.method.engine == engine_of(Mood::scan_colours))
-        model.view.method.engine = engine;
-    model.lights.selected = 0;
-    model.view.scene_changed();
+    take_mood(model, Of);
 }
 bool has_site(const Lighting& model) {
     return !model.view.site.outline.empty();
@@ -90,6 +84,17 @@ std::span<const Action<const Lighting>> light_actions() {
         Entry{{GLFW_KEY_H, GLFW_MOD_ALT}, "Light", "Handles", toggle_handles, nullptr, shows_handles},
     };
     return kActions;
+}
+
+void take_mood(const Lighting& model, Mood mood) {
+    remember_lights(model);
+    set_mood(model.view.scene, mood, model.view.site, model.view.rig.camera());
+    const std::string_view unlit = engine_of(Mood::scan_colours);
+    if (mood == Mood::scan_colours || model.view.method.engine == unlit)
+        model.view.method.engine = engine_of(mood);
+    model.lights.selected = 0;
+    model.lights.mood = mood;
+    model.view.scene_changed();
 }
 
 void place_light_at_camera(const Lighting& model) {

@@ -37,6 +37,7 @@ double fitting_strength(const gi::SceneLight& light, double ev, double metres_pe
 }  // namespace
 
 void remember_lights(const Lighting& model) {
+    model.lights.mood.reset();
     auto& undo = model.lights.undo;
     if (!undo.empty() && undo.back() == model.view.scene.lights) return;
     undo.push_back(model.view.scene.lights);
@@ -46,6 +47,7 @@ void remember_lights(const Lighting& model) {
 void undo_lights(const Lighting& model) {
     auto& undo = model.lights.undo;
     if (undo.empty()) return;
+    model.lights.mood.reset();
     model.view.scene.lights = std::move(undo.back());
     undo.pop_back();
     model.lights.selected = std::min(model.lights.selected, model.view.scene.lights.size());

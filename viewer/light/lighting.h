@@ -28,6 +28,9 @@ void draw_light_panel(const Lighting& model);  ///< lamps, suns, sky, emitting c
 void draw_sun(const Lighting& model);          ///< part of the light panel: direction of the selected sun
 void draw_sky(const Lighting& model);
 void draw_emitters(const Lighting& model);
+/// Lights the open scans in a mood, with the engine that shows it.
+void take_mood(const Lighting& model, Mood mood);
+void draw_mood_bar(const Lighting& model);  ///< the moods as buttons over the picture, if there is room
 /// Draws lights' handles over the picture, and lets the mouse drag them. Returns true while one is dragged.
 bool take_light_handles(const Lighting& model);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gi/scene/scene.h"
+#include "viewer/opening/moods.h"
 #include "viewer/ui/command_queue.h"
 
 namespace lucarne::viewer {
@@ -25,7 +26,8 @@ struct LoadSky {
 
 /// What the window remembers for lights in addition to the scene.
 struct LightModel {
-    size_t selected = 0;  ///< index of the selected light
+    std::optional<Mood> mood;  ///< the mood that the lights are of; none once one of them was changed
+    size_t selected = 0;       ///< index of the selected light
     bool show_handles = true;
     bool lumens = false;   ///< show strengths in lm and lx
     double kelvin = 6500;  ///< the panel's colour temperature

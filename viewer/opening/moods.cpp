@@ -16,11 +16,12 @@ namespace lucarne::viewer {
 namespace {
 
 constexpr std::array kMoods = {
-    MoodInfo{Mood::scan_colours, "scan-colours", "the points' own colours, with ambient occlusion"},
-    MoodInfo{Mood::daylight, "daylight", "sun and sky"},
-    MoodInfo{Mood::evening, "evening", "warm lamps in rooms, a low sun outside"},
-    MoodInfo{Mood::raking_light, "raking-light", "grazing light, which shows relief"},
-    MoodInfo{Mood::museum, "museum", "spots from above, before a dark background"},
+    MoodInfo{Mood::scan_colours, "scan-colours", "Scan colours",
+             "the points' own colours, with ambient occlusion"},
+    MoodInfo{Mood::daylight, "daylight", "Daylight", "sun and sky"},
+    MoodInfo{Mood::evening, "evening", "Evening", "warm lamps in rooms, a low sun outside"},
+    MoodInfo{Mood::raking_light, "raking-light", "Raking light", "grazing light, which shows relief"},
+    MoodInfo{Mood::museum, "museum", "Museum", "spots from above, before a dark background"},
 };
 
 // Kelvin.

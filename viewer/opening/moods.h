@@ -21,7 +21,8 @@ enum class Mood : uint8_t {
 };
 struct MoodInfo {
     Mood mood;
-    std::string_view name;  ///< on the command line
+    std::string_view name;   ///< on the command line
+    std::string_view label;  ///< in the window
     std::string_view help;
 };
 std::span<const MoodInfo> moods();

@@ -17,6 +17,7 @@
 #include "gi/scene/scene.h"
 #include "io/core/job_queue.h"
 #include "viewer/inputs/input.h"
+#include "viewer/opening/moods.h"
 #include "viewer/opening/site.h"
 
 namespace lucarne::viewer {
@@ -56,6 +57,7 @@ struct StartingView {
     gi::Scene scene;
     gi::SceneCamera camera;
     bool fits_window = false;  ///< the camera is the site's first view, to be fitted to the window
+    std::optional<Mood> mood;  ///< the light is this mood's
     Site site;
     std::array<glm::dvec3, 2> box{};  ///< the box to look at, world units
     double metres_per_unit = 1;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include <glm/vector_relational.hpp>
+
 #include "viewer/camera/camera.h"
 #include "viewer/camera/glide.h"
 #include "viewer/camera/navigation.h"
@@ -28,6 +30,7 @@ struct View {
     gi::SceneCamera home;  ///< the starting view
     Site site;             ///< what the open scans show
     Navigation navigation;
+    bool entered = false;  ///< the user has gone inside
 
     gi::Scene scene;
     uint64_t scene_version = 1, shown_changes = 0;
@@ -58,6 +61,12 @@ struct View {
         glide.stop();
         rig = CameraRig(camera);
         rig.set_clearance(scene_size);
+    }
+    /// Whether the camera stands in a room of the scan, as opposed to looking at it from outside.
+    bool inside() const {
+        const glm::dvec3& eye = rig.position();
+        return site.inside && (entered || site.kind == SiteKind::interior) && !rig.orthographic() &&
+               glm::all(glm::greaterThan(eye, site.box[0])) && glm::all(glm::lessThan(eye, site.box[1]));
     }
     /// Moves there smoothly, frame by frame (advance()).
     void glide_to(const gi::SceneCamera& camera) { glide.start(rig.camera(), camera); }

@@ -25,6 +25,7 @@ namespace {
 constexpr double kSharp = 0.1;       ///< s without motion until the picture is made at full size
 constexpr double kRest = 0.25;       ///< and at full quality
 constexpr double kStep = 1.0 / 60;   ///< s between the window's frames while something moves
+constexpr double kInFront = 1.2;     ///< m: how near the camera goes to what was clicked twice
 constexpr float kSketchDots = 4;     ///< most pixels of a point while more of them are to come
 constexpr double kNone = -1;         ///< FrameRequest::light_seconds: not even one step
 constexpr uint32_t kIdleFrames = 4;  ///< frames until ImGui's windows have their final sizes
@@ -158,6 +159,7 @@ void ViewSession::take_extent() {
                          (CameraRig(model_.view.home).camera().position == camera.position &&
                           CameraRig(model_.view.home).camera().target == camera.target);
     model_.view.scene = start->scene;
+    model_.lights.mood = start->mood;
     model_.view.home = home;
     if (first)
         model_.view.go_to(home);
@@ -219,10 +221,14 @@ bool ViewSession::take_navigation() {
         if (model_.view.picture && (goes || twice || (starts && mode == NavigationMode::orbit)))
             if (const auto point = model_.view.picture->pick(cursor())) {
                 model_.view.rig.set_pivot(*point);
-                if (twice)
+                if (twice && model_.view.inside() && mode == NavigationMode::orbit)
+                    model_.view.glide_to(gone_toward(model_.view.rig.camera(), *point,
+                                                     kInFront / model_.view.picture->metres_per_unit));
+                else if (twice)
                     model_.view.message =
                         fmt::format("turning around {:.2f} {:.2f} {:.2f}", point->x, point->y, point->z);
             }
+        input.inside = model_.view.inside();
         input.rotate = ImGui::IsMouseDown(ImGuiMouseButton_Left);
         input.shift =
             ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
@@ -269,6 +275,7 @@ void ViewSession::draw_panels() {
     measure_.draw(model_.measuring());
     draw_flythrough(model_.publishing());
     draw_side_bar(model_, placed_);
+    if (!shot_ && placed_) draw_mood_bar(model_.lighting());
     if (!shot_) draw_status_line(model_);
     if (model_.show_help) draw_help(model_.show_help, actions_);
     if (const auto error = worker_.error(); !error) model_.view.message = error.error().line();

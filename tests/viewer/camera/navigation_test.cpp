@@ -30,6 +30,17 @@ TEST(CameraRig, LooksAtTheTargetItWasMadeWith) {
     EXPECT_EQ(rig.right().z, 0) << "the horizon is level";
 }
 
+TEST(Navigation, DragsInARoomLookAroundAndDoNotMoveTheCamera) {
+    for (const auto mode : {NavigationMode::orbit, NavigationMode::turntable}) {
+        CameraRig rig = rig_at({0, 0, 0}, {0, 4, 0});
+        Navigation navigation(10);
+        navigation.set_mode(mode);
+        EXPECT_TRUE(navigation.apply({.drag = {0.1, 0.05}, .rotate = true, .inside = true}, rig));
+        EXPECT_EQ(rig.position() == glm::dvec3(0), mode == NavigationMode::orbit);
+        EXPECT_LT(rig.forward().y, .99);
+    }
+}
+
 TEST(CameraRig, OrbitingLeavesThePivotWhereItIsInThePicture) {
     CameraRig rig = rig_at({10, 0, 5}, {0, 0, 0});
     rig.set_pivot({1, 2, -1});  // beside the middle

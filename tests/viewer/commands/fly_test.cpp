@@ -211,8 +211,9 @@ TEST(Fly, SoakEndsWithTheMemoryItBeganWith) {
     const char* asked = std::getenv("LUCARNE_SOAK");
     const Outcome flown =
         test::lucarne("fly " + cache + " --path " + (folder / "path.json") + " --size 64x48 --realtime" +
-                      " --engine direct --memory 8M --device-memory 16M --soak " + (asked ? asked : "10") +
-                      " -o " + (folder / "r.json"));
+                      " --engine direct --scene " LUCARNE_SOURCE_DIR
+                      "/data/scenes/cornell.json --memory 8M --device-memory 16M --soak " +
+                      (asked ? asked : "10") + " -o " + (folder / "r.json"));
     ASSERT_EQ(flown.code, 0) << flown.output;
     const auto report = nlohmann::json::parse(bytes_of(folder / "r.json"));
     const auto& soak = report["soak"];

@@ -128,6 +128,22 @@ TEST(Site, BadCloudsGiveADefinedView) {
         }
 }
 
+TEST(Site, IsAlikeIfMorePointsOfTheSameScanAreSeen) {
+    std::vector<dvec3> points;
+    add_faces(points, kRoom, 20000, true, 3);
+    const Site few = survey_site(points, kRoom, 1), more = room();
+    EXPECT_TRUE(alike(few, more));
+    EXPECT_TRUE(alike(more, few));
+    Site grown = more;
+    grown.box[1].y += .04 * glm::distance(kRoom[0], kRoom[1]);
+    EXPECT_TRUE(alike(few, grown));
+    grown.box[1].y += .02 * glm::distance(kRoom[0], kRoom[1]);
+    EXPECT_FALSE(alike(few, grown)) << "the box is larger by more than a twentieth";
+    Site other = more;
+    other.kind = SiteKind::object;
+    EXPECT_FALSE(alike(few, other));
+}
+
 TEST(FirstView, AllPointsFillTheFreePartOfThePicture) {
     const std::vector<dvec3> mountain = terrain(20000);
     const Site site = survey_site(mountain, {dvec3(0, 0, -20), dvec3(400, 400, 20)}, 1);

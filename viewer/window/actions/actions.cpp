@@ -29,10 +29,10 @@ std::span<const Gesture> gestures() {
     static constexpr std::array kGestures = {
         Gesture{"left drag",
                 "turn around the point under the cursor (orbit), around the pivot (turntable); look around "
-                "(fly, walk)"},
+                "(in a room, fly, walk)"},
         Gesture{"right or middle drag", "shift the view"},
         Gesture{"scroll", "go to the point under the cursor (orbit, turntable); speed (fly, walk)"},
-        Gesture{"double-click", "choose the point to turn around"},
+        Gesture{"double-click", "choose the point to turn around; in a room, go there"},
         Gesture{"W A S D, E Q", "fly or walk; with Shift faster"},
         Gesture{"click", "measure the point there, with a tool; select what a label belongs to"},
         Gesture{"left drag on a clip's handle", "move the box's face, or the plane; the ring turns the box"},

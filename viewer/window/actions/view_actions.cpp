@@ -23,12 +23,14 @@ void fit(ViewModel& model) {
     model.view.rig.fit(model.view.box, picture_shape(model.view.side_bar));
 }
 void go_inside(ViewModel& model) {
+    model.view.entered = true;
     model.view.go_to(inside_view(model.view.site, picture_shape(model.view.side_bar)));
 }
 bool has_inside(const ViewModel& model) {
     return model.view.site.inside.has_value();
 }
 void go_outside(ViewModel& model) {
+    model.view.entered = false;
     model.view.go_to(outside_view(model.view.site, picture_shape(model.view.side_bar)));
 }
 bool has_picture(const ViewModel& model) {
@@ -38,6 +40,7 @@ bool has_picture(const ViewModel& model) {
 /// Looks at all open scans from outside. Seen from above, north (y) is up.
 template <int kYaw, int kPitch>
 void look(ViewModel& model) {
+    model.view.entered = false;
     model.view.rig.look_along(kYaw * kRight, kPitch * kRight);
     fit(model);
 }
