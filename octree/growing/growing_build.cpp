@@ -14,6 +14,7 @@
 #include "io/core/guarded.h"
 #include "io/core/log.h"
 #include "octree/cache/cache.h"
+#include "octree/colours/colour_survey.h"
 #include "octree/convert/build_inputs.h"
 #include "octree/convert/chunks/record_loader.h"
 #include "octree/convert/nodes/build_listener.h"
@@ -112,6 +113,7 @@ struct GrowingBuild::State final : BuildListener {
     Result<void> take_first();
     ScanFacts facts_of(const QuickSample& points, const Cube& root) const;
     ShownSample with_surface(QuickSample points, const Cube& root) const;
+    void show_sample(const Cube& root);
     void grow();
     void end_growing();
     void publish(std::shared_ptr<const ByteSource> file);
@@ -148,13 +150,26 @@ Result<void> GrowingBuild::State::take_first() {
     LUCARNE_ASSIGN(const Cube root, root_cube(points.min, points.max));
     header = header_of(*unifier, facts_of(points, root), schema);
     sample = with_surface(std::move(points), root);
-    loose = along_curve(sample, unifier->schema(), schema, root);
-    publish(nullptr);
+    show_sample(root);
     return {};
 }
 
 ScanFacts GrowingBuild::State::facts_of(const QuickSample& points, const Cube& root) const {
     return {.points = points.points, .min = points.min, .max = points.max, .root = root};
+}
+
+/// Publishes the sample. Its points that no camera saw, and the gains of its stations, are found as those of
+/// the cache will be.
+void GrowingBuild::State::show_sample(const Cube& root) {
+    loose = along_curve(sample, unifier->schema(), schema, root);
+    ColourSurvey survey(header);
+    if (survey.has_colours()) {
+        NodeData all{static_cast<uint32_t>(loose.codes.size()), std::move(loose.records)};
+        survey.add(root, all);
+        loose.records = std::move(all.records);
+        header.station_colours = survey.result();
+    }
+    publish(nullptr);
 }
 
 /// Called by the grower as well, which must not read `header` or `schema` here.
@@ -200,8 +215,7 @@ void GrowingBuild::State::grow() {
         else
             header = header_of(*unifier, facts_of(larger.points, *root), schema);
         sample = std::move(larger);
-        loose = along_curve(sample, unifier->schema(), schema, header.root);
-        publish(nullptr);
+        show_sample(header.root);
     }
 }
 
@@ -237,8 +251,7 @@ void GrowingBuild::State::scanned(const SourceHeader& facts, const io::Schema& r
     header.schema = schema = records;  // a few points without a normal may not be in the sample
     header_is_final = true;
     sample.move_to(header.root);
-    loose = along_curve(sample, unifier->schema(), schema, header.root);
-    publish(nullptr);
+    show_sample(header.root);
 }
 
 void GrowingBuild::State::building(const io::Schema& records) {

@@ -138,6 +138,33 @@ TEST(GrowingBuild, ItsFirstSourceCoversTheWholeExtent) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is converted before it is begun";
 }
 
+TEST(GrowingBuild, EverySourceKnowsWhichPointsNoCameraSaw) {
+    const TempFolder folder;
+    io::Schema schema;
+    schema.add("color", io::ScalarType::u8, 3);
+    constexpr uint64_t kPoints = 100'000;
+    auto scan = std::make_unique<ComputedSource>(schema, kPoints, [](uint64_t index, std::byte* record) {
+        Random random(7, index);
+        const glm::dvec3 p(random.uniform(), static_cast<double>(index) / kPoints, 0);
+        const auto grey = static_cast<uint8_t>(p.x < 0.2 ? 0 : 40 + 160 * random.uniform());
+        for (int axis = 0; axis < 3; ++axis) io::store(record + 8 * axis, p[axis]);
+        io::store(record + 24, std::array<uint8_t, 3>{grey, grey, grey});
+    });
+    scan->make_seekable();
+    GrowingBuild::Inputs inputs;
+    inputs.push_back(std::move(scan));
+    const auto build = GrowingBuild::open(std::move(inputs), options_for(folder / "a.luc"));
+    ASSERT_TRUE(build) << build.error().line();
+    const auto sources = all_sources(**build);
+    EXPECT_GE(sources.size(), 3u);
+    for (const auto& source : sources) {
+        const auto& colours = source->header().station_colours;
+        ASSERT_EQ(colours.size(), 1u);
+        ASSERT_TRUE(colours[0].unphotographed);
+        EXPECT_NEAR(colours[0].unphotographed->x, 0.22, 0.02);
+    }
+}
+
 TEST(GrowingBuild, EverySourceHasEachPointOnceAndMoreOfThemThanTheLast) {
     const TempFolder folder;
     const auto build = GrowingBuild::open(inputs_of(500'000), options_for(folder / "a.luc"));

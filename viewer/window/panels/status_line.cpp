@@ -19,7 +19,8 @@ void draw_status_line(const ViewModel& model) {
     const int decimals = std::max(0L, std::lround(3 + std::log10(picture->metres_per_unit)));
     const std::string text =
         fmt::format("{:.{}f}  {:.{}f}  {:.{}f}", point->x, decimals, point->y, decimals, point->z, decimals);
-    ImGui::SetNextWindowPos(ImVec2(io.DisplaySize.x - 8, io.DisplaySize.y - 8), ImGuiCond_Always,
+    // Left of the sign of how far the picture is.
+    ImGui::SetNextWindowPos(ImVec2(io.DisplaySize.x - scaled(110), io.DisplaySize.y - 8), ImGuiCond_Always,
                             ImVec2(1.0f, 1.0f));
     ImGui::SetNextWindowBgAlpha(0.6f);
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
