@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "io/core/options.h"
+
 namespace lucarne::gi {
 
 Result<const EngineEntry*> find_engine(std::string_view name) {
-    std::string known;
+    std::vector<std::string_view> names;
     for (const EngineEntry& entry : engines()) {
         if (entry.info.name == name) return &entry;
-        known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
+        names.push_back(entry.info.name);
     }
-    return bad_arguments("engine " + std::string(name), "no engine has this name",
-                         "the engines are " + known);
+    return bad_arguments("engine '" + std::string(name) + "'", "is unknown", advice(name, names));
 }
 
 Result<std::unique_ptr<Engine>> make_engine(std::string_view name) {

@@ -1,12 +1,36 @@
 #include "io/core/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace lucarne {
+namespace {
+
+/// Returns how many letters have to be inserted, deleted, replaced, or exchanged with their neighbour to make
+/// one word of another (the optimal string alignment distance).
+size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<size_t>> cost(a.size() + 1, std::vector<size_t>(b.size() + 1));
+    for (size_t i = 0; i <= a.size(); ++i)
+        for (size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                cost[i][j] = i + j;
+                continue;
+            }
+            const size_t other = a[i - 1] != b[j - 1];
+            cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + other});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
+        }
+    return cost[a.size()][b.size()];
+}
+
+}  // namespace
 
 Result<uint64_t> parse_bytes(std::string_view option, std::string_view text) {
     double number = 0;
@@ -66,6 +90,19 @@ std::string bytes_text(uint64_t bytes) {
     int unit = 0;
     while (value >= 1024 && unit < 4) value /= 1024, ++unit;
     return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.1f} {}", value, kUnits[unit]);
+}
+
+std::string advice(std::string_view unknown, std::span<const std::string_view> names) {
+    constexpr size_t kLongest = 64;  // what is longer resembles no name
+    std::string_view nearest;
+    size_t least = 3;
+    for (const std::string_view name : names) {
+        const size_t away = unknown.size() <= kLongest ? distance(unknown, name) : least;
+        if (away < least && 3 * away <= name.size()) nearest = name, least = away;
+    }
+    const std::string all = fmt::format("{}", fmt::join(names, ", "));
+    return nearest.empty() ? "choose one of: " + all
+                           : fmt::format("did you mean {}? (all: {})", nearest, all);
 }
 
 }  // namespace lucarne

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "io/core/error.h"
@@ -20,6 +22,10 @@ struct ImageSize {
 };
 /// Converts "1280x720" to a size. Width and height must be between 1 and 16384.
 Result<ImageSize> parse_size(std::string_view option, std::string_view text);
+
+/// Returns what to do about an unknown name: "did you mean vpl? (all: direct, vpl)" if one of the names is
+/// the nearest and differs in at most two letters and a third of them, else "choose one of: direct, vpl".
+std::string advice(std::string_view unknown, std::span<const std::string_view> names);
 
 /// Returns an amount as text: "1.5 GiB".
 std::string bytes_text(uint64_t bytes);

@@ -87,7 +87,7 @@ Result<std::unique_ptr<PointSource>> open_scan(std::shared_ptr<const ByteSource>
         return scan;
     }
     if (told) return told->open(file, options);
-    return rejected(path.string(), "is in no format that can be read", "convert it to LAS or PLY");
+    return rejected(path.string(), "has an unrecognised format", "convert it to LAS or PLY");
 }
 
 std::string_view first_statement(std::string_view head) {
@@ -120,7 +120,7 @@ Result<std::unique_ptr<PointWriter>> create_scan(const std::filesystem::path& pa
         return format->create(path, schema, info, options);
     }
     return bad_arguments(
-        path.string(), fmt::format("the extension '{}' names no format that can be written", extension),
+        path.string(), fmt::format("cannot be exported as '{}'", extension),
         "end the name in .las, .laz, .ply, .pcd, .csv, .txt or .xyz, or .copc.laz to export a cache");
 }
 

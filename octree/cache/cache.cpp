@@ -68,7 +68,7 @@ Result<std::array<std::optional<Superblock>, 2>> read_superblocks(const ByteSour
 Result<std::unique_ptr<CacheFile>> CacheFile::open(std::shared_ptr<const ByteSource> file) {
     auto newest = newest_superblock(*file);
     if (!newest && !is_cache(*file))
-        return rejected(file->path().string(), "is no cache",
+        return rejected(file->path().string(), "is not a Lucarne cache",
                         "if it is a scan, convert it first: lucarne convert SCAN -o CACHE.luc");
     LUCARNE_ASSIGN(const Superblock block, std::move(newest));
     std::unique_ptr<CacheFile> cache(new CacheFile(std::move(file), block));

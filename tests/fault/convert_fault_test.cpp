@@ -140,10 +140,10 @@ TEST(ConvertFaults, EndWithOneLineAndTheRightCode) {
         {"convert " + ok + " -o " + output + " --normals none --temp " + quoted(folder / "absent"), 1,
          "temporary file"},
         {"convert " + ok, 2, "output"},
-        {"verify " + ok, 3, "is no cache"},
+        {"verify " + ok, 3, "is not a Lucarne cache"},
         {"verify " + quoted(folder / "absent.luc"), 3, "No such file"},
         {"info " + quoted(folder / "absent.luc"), 3, "No such file"},
-        {"export " + ok + " -o " + quoted(folder / "b.las"), 3, "is no cache"},
+        {"export " + ok + " -o " + quoted(folder / "b.las"), 3, "is not a Lucarne cache"},
     };
     for (const auto& tested : cases) {
         const auto outcome = lucarne(tested.arguments);

@@ -140,14 +140,15 @@ TEST_F(Updates, EndWithOneLineAndTheRightCodeWhenTheyAreWrong) {
     for (const auto& [arguments, code, says] :
          {Case{"convert --append " + scan + " -o " + quoted(folder_ / "absent.luc"), 3, "No such file"},
           Case{"convert --append " + scan + " -o " + scan, 2, "the name of a scan"},
-          Case{"convert --append " + scan + " -o " + other, 3, "is no cache"},
+          Case{"convert --append " + scan + " -o " + other, 3, "is not a Lucarne cache"},
           Case{"convert --append --resume " + scan + " -o " + cache, 2, "--resume"},
           Case{"convert --append --memory 1M " + scan + " -o " + cache, 2, "too little"},
           Case{"delete " + cache, 2, "--box"},
           Case{"delete --scan 7 " + cache, 2, "none of the cache's 1 scans"},
           Case{"delete --scan 0 " + cache, 2, "no points left"},
           Case{"delete --box 1,1,1,0,0,0 " + cache, 2, "lower corner"},
-          Case{"delete --box 1,2,3 " + cache, 2, "--box"}, Case{"compact " + scan, 3, "is no cache"}}) {
+          Case{"delete --box 1,2,3 " + cache, 2, "--box"},
+          Case{"compact " + scan, 3, "is not a Lucarne cache"}}) {
         const auto outcome = lucarne(arguments);
         EXPECT_EQ(outcome.code, code) << arguments << '\n' << outcome.text;
         EXPECT_NE(outcome.text.find(says), std::string::npos) << arguments << '\n' << outcome.text;

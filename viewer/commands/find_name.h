@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "io/core/error.h"
+#include "io/core/options.h"
 
 namespace lucarne::viewer {
 
@@ -17,8 +17,7 @@ inline Result<size_t> find_name(std::string_view option, const std::string& name
                                 std::span<const std::string_view> names) {
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] == name) return i;
-    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name),
-                         fmt::format("choose one of: {}", fmt::join(names, ", ")));
+    return bad_arguments(std::string(option), fmt::format("'{}' is unknown", name), advice(name, names));
 }
 
 }  // namespace lucarne::viewer

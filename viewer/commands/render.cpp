@@ -47,7 +47,9 @@ Result<PictureKind> picture_kind(const std::string& path) {
                    [](unsigned char c) { return std::tolower(c); });
     if (extension == ".png") return PictureKind::png;
     if (extension == ".exr") return PictureKind::exr;
-    return bad_arguments("--output", fmt::format("'{}' is no kind of picture", path), "name it .png or .exr");
+    return bad_arguments("--output",
+                         fmt::format("'{}' is in no format for pictures that can be written", path),
+                         "use .png or .exr");
 }
 
 /// The result of all frames together.

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "io/core/options.h"
+
 namespace lucarne::viewer {
 
 void CutBudgets::cap(uint64_t points) {
@@ -46,12 +48,12 @@ gi::RenderSettings settings_over(const Preset& preset, const gi::EngineSettings&
 }
 
 Result<Preset> find_preset(std::string_view name) {
-    std::string known;
+    std::vector<std::string_view> names;
     for (const auto& preset : presets()) {
         if (preset.name == name) return preset;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", preset.name);
+        names.push_back(preset.name);
     }
-    return bad_arguments("--preset", fmt::format("there is no preset '{}'", name), "choose one of: " + known);
+    return bad_arguments("--preset", fmt::format("unknown preset '{}'", name), advice(name, names));
 }
 
 }  // namespace lucarne::viewer

@@ -54,7 +54,7 @@ void look_through(const std::string& folder, const io::ReadOptions& options, Sca
     std::ranges::sort(found);
     std::ranges::sort(others);
     if (!others.empty())
-        log::info("{}: {} other file{} passed over: {}", folder, others.size(),
+        log::info("{}: {} other file{} skipped: {}", folder, others.size(),
                   others.size() == 1 ? " is" : "s are", some_of(others));
     if (found.empty() && list.problems.size() == problems)
         list.problems.push_back({ErrorKind::input_rejected, folder, "is a folder without scans", ""});

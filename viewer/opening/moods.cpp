@@ -11,6 +11,7 @@
 
 #include "gi/registry.h"
 #include "gi/scene/photometry.h"
+#include "io/core/options.h"
 
 namespace lucarne::viewer {
 namespace {
@@ -179,12 +180,12 @@ std::span<const MoodInfo> moods() {
 }
 
 Result<Mood> find_mood(std::string_view name) {
-    std::string known;
+    std::vector<std::string_view> names;
     for (const MoodInfo& info : kMoods) {
         if (info.name == name) return info.mood;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", info.name);
+        names.push_back(info.name);
     }
-    return bad_arguments("--mood", fmt::format("unknown mood '{}'", name), "choose one of: " + known);
+    return bad_arguments("--mood", fmt::format("unknown mood '{}'", name), advice(name, names));
 }
 
 std::string_view mood_name(Mood mood) {

@@ -22,7 +22,7 @@ using namespace text;
 constexpr size_t kHeadBytes = size_t{64} << 10;
 constexpr size_t kMostColumns = 1000;
 constexpr std::string_view kNoRows =
-    "is in no format that can be read: it is text without rows of three numbers or more";
+    "has an unrecognised format: it is text without rows of three numbers or more";
 constexpr std::string_view kColumnsRemark = "lucarne columns ";
 
 /// The part of the file before the rows.

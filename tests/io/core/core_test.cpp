@@ -1,4 +1,5 @@
 // io/core: files appear whole or not at all, and user input is understood or refused.
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <map>
@@ -352,6 +353,18 @@ TEST(Random, IsUniformAndFollowsFromSeedAndStream) {
         sum += u;
     }
     EXPECT_NEAR(sum / 10000, 0.5, 5 * 0.2887 / 100);  // five standard errors
+}
+
+TEST(Advice, NamesTheNearestOnlyIfItIsNear) {
+    constexpr std::array<std::string_view, 4> kNames = {"vpl", "direct", "reference", "unlit"};
+    const std::string all = "vpl, direct, reference, unlit";
+    EXPECT_EQ(advice("vlp", kNames), "did you mean vpl? (all: " + all + ")");
+    EXPECT_EQ(advice("refrence", kNames), "did you mean reference? (all: " + all + ")");
+    EXPECT_EQ(advice("drect ", kNames), "did you mean direct? (all: " + all + ")");
+    for (const std::string_view far : {"", "v", "xyz", "directional-and-much-more", "magic"})
+        EXPECT_EQ(advice(far, kNames), "choose one of: " + all) << far;
+    EXPECT_EQ(advice(std::string(100'000, 'v'), kNames), "choose one of: " + all);
+    EXPECT_EQ(advice("a", {}), "choose one of: ");
 }
 
 }  // namespace

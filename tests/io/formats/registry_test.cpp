@@ -84,7 +84,7 @@ TEST_F(Registry, TheErrorIsThatOfTheFormatThatTheExtensionNames) {
                         HasSubstr("is named " + extension + " and has no such header"));
     EXPECT_THAT(open("a.pcd", zeros).error().line(), HasSubstr("PCD"));
     EXPECT_THAT(open("a.pcd", "# nothing\n").error().line(), HasSubstr("its PCD header ends without"));
-    EXPECT_THAT(open("a.dat", zeros).error().line(), HasSubstr("is in no format that can be read"));
+    EXPECT_THAT(open("a.dat", zeros).error().line(), HasSubstr("has an unrecognised format"));
     EXPECT_THAT(open("a.las", "\x89PNG" + zeros).error().line(), HasSubstr("is a picture"));
     EXPECT_THAT(open("a.obj", zeros).error().line(), HasSubstr("is no OBJ"));
     EXPECT_THAT(open("a.obj", "hello, this is no mesh\n").error().line(), HasSubstr("is no OBJ"));

@@ -90,7 +90,7 @@ TEST_F(ConvertInputs, AFolderHoldsTextAndMeshesAndSaysWhatElse) {
     for (size_t i = 0; i < 4; ++i)
         EXPECT_EQ(listed[i]["path"],
                   (folder / std::array{"a.csv", "b.txt", "c.xyz", "mesh.OBJ"}[i]).string());
-    EXPECT_NE(done.output.find("2 other files are passed over: LICENCE.txt, photo.jpg\n"), std::string::npos)
+    EXPECT_NE(done.output.find("2 other files are skipped: LICENCE.txt, photo.jpg\n"), std::string::npos)
         << done.output;
 }
 
@@ -157,11 +157,11 @@ TEST_F(ConvertInputs, WhatIsRefusedIsNamed) {
     EXPECT_NE(nameless.output.find("'': is not a file name"), std::string::npos) << nameless.output;
     const auto raw = test::lucarne(fmt::format("export {} -o {}", scan(0), folder_ / "x.las"));
     EXPECT_EQ(raw.code, 3);
-    EXPECT_NE(raw.output.find(scan(0) + ": is no cache; if it is a scan, convert it first"),
+    EXPECT_NE(raw.output.find(scan(0) + ": is not a Lucarne cache; if it is a scan, convert it first"),
               std::string::npos)
         << raw.output;
     std::ofstream(folder_ / "short.luc") << "x";
-    EXPECT_NE(test::lucarne("verify " + (folder_ / "short.luc")).output.find("is no cache"),
+    EXPECT_NE(test::lucarne("verify " + (folder_ / "short.luc")).output.find("is not a Lucarne cache"),
               std::string::npos);
     EXPECT_NE(
         test::lucarne(fmt::format("export {} -o {}", cached(), folder_ / "x.foo")).output.find(".copc.laz"),

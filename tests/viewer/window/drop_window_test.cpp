@@ -58,7 +58,7 @@ TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
         EXPECT_TRUE(eventually([&] { return std::filesystem::exists(scan + ".luc"); })) << scan << "\n"
                                                                                         << log();
     EXPECT_TRUE(title_comes("Gr\u00fc\u00dfe, 100%.las and 1 more"));
-    EXPECT_THAT(log(), HasSubstr(letter + ": is in no format that can be read"));
+    EXPECT_THAT(log(), HasSubstr(letter + ": has an unrecognised format"));
 
     // A second drop adds to the open scans, even if it is one file.
     ASSERT_EQ(drop(uri(cache_)).code, 0);
