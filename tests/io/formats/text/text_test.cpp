@@ -223,7 +223,7 @@ TEST_F(Text, RowsThatDoNotFitAreRejectedWithLineAndReason) {
     EXPECT_THAT(error_of("x y z a\n1 2 3 4\n1 2 3 4.5\n", {"x,y,z,a:i32", true}).line(),
                 HasSubstr("a (i32)"));
     for (const std::string text : {"one two three\n", "1 2\n3 4\n", "5\n", "\n\n", "# only\n", "1,5;2,5\n"})
-        EXPECT_THAT(error_of(text).line(), HasSubstr("no format")) << text;
+        EXPECT_THAT(error_of(text).line(), HasSubstr("unrecognised format")) << text;
     EXPECT_THAT(error_of("x y\n1 2 3\n").line(), HasSubstr("does not name the 3 columns"));
     EXPECT_THAT(error_of("1 2 3\n" + std::string(5 << 20, '7')).line(), HasSubstr("line of more than 1 MiB"));
     EXPECT_EQ(error_of("1 2 3\n1 2 x\n").kind, ErrorKind::input_rejected);
