@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 #include "gi/device/gl/device.h"
 #include "gi/engines/vpl/bindings.h"
