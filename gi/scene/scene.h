@@ -137,7 +137,8 @@ std::string write_scene(const Scene& scene, const std::filesystem::path& folder 
 /// Writes a scene file. Errors: the file cannot be written.
 Result<void> save_scene(const Scene& scene, const std::filesystem::path& path, bool overwrite);
 
-/// Returns the scene that is used without a scene file: a camera in whose picture (width over height:
+/// Returns the simplest scene for a box, of which scene files without cameras take the camera, and which
+/// `viewer/opening` replaces where nothing else is asked for: a camera in whose picture (width over height:
 /// `aspect`) the whole box (world units) just fits, and one spot beside it. The spot is bright enough for a
 /// mid-grey picture at exposure 0, and the exposure is fixed at that.
 Scene default_scene(const glm::dvec3& min, const glm::dvec3& max, double metres_per_unit = 1.0,
