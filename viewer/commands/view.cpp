@@ -39,7 +39,7 @@ Result<StartingView> starting_view(const ViewOptions& options, const octree::Nod
     start.scene = std::move(loaded.scene);
     if (options.drawing.scene.empty()) start.scene.look.axes = start.scene.look.scale_bar = true;
     start.mood = loaded.mood;
-    start.site = std::move(loaded.site);
+    start.site = loaded.site ? std::move(*loaded.site) : survey_site(source);
     start.box = start.site.box;
     start.metres_per_unit = source.header().metres_per_unit;
     return start;

@@ -8,6 +8,7 @@
 #include "gi/scene/render_settings_file.h"
 #include "gi/surfels/colouring.h"
 #include "io/core/log.h"
+#include "octree/tree/robust_bounds.h"
 #include "viewer/opening/first_view.h"
 
 namespace lucarne::viewer {
@@ -118,8 +119,11 @@ void add_drawing_options(Arguments& command, DrawingOptions& options) {
             "--mood", options.mood,
             "Light for what the scan shows, and a camera to see it, see below; without a scene: scan-colours")
         .type_name("NAME");
-    command.add("--engine", options.render.engine, "Method of lighting, see below")
-        .show_default(std::string(gi::default_engine().name))
+    command
+        .add("--engine", options.render.engine,
+             "Method of lighting, see below; without scene, mood and options of an engine: " +
+                 std::string(engine_of(Mood::scan_colours)) + ", else " +
+                 std::string(gi::default_engine().name))
         .type_name("NAME");
     command.add("--preset", options.render.preset, "Quality against speed, see below")
         .show_default(std::string(kDefaultPreset))
@@ -193,32 +197,33 @@ Result<Drawing> resolve(const DrawingOptions& options) {
 
 Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source) {
     SceneForScan loaded;
-    loaded.site = survey_site(source);
     gi::Scene& scene = loaded.scene;
     LUCARNE_ASSIGN(const ImageSize size, parse_size("--size", options.size));
     const double aspect = static_cast<double>(size.width) / size.height;
-    const auto [low, high] = loaded.site.box;
+    const auto [low, high] = octree::robust_bounds(source);
     scene = gi::default_scene(low, high, source.header().metres_per_unit, aspect);
+    bool own_cameras = false;
     if (!options.scene.empty()) {
         const auto overview = std::move(scene.cameras);
         LUCARNE_ASSIGN(scene, gi::load_scene(options.scene));
-        loaded.own_cameras = !scene.cameras.empty();
-        if (!loaded.own_cameras) scene.cameras = overview;
+        own_cameras = !scene.cameras.empty();
+        if (!own_cameras) scene.cameras = overview;
         if (scene.comparison && scene.comparison->engine.empty())
             scene.comparison->engine = gi::engine_with(&gi::EngineInfo::is_reference).name;
     }
-    if (!options.mood.empty()) {
-        LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
-    } else if (options.scene.empty()) {
-        loaded.mood = options.render.engine == engine_of(Mood::scan_colours) ? Mood::scan_colours
-                                                                             : usual_mood(loaded.site);
-    }
-    if (loaded.mood) {
-        loaded.first_view = !loaded.own_cameras;
-        if (loaded.first_view) scene.cameras = usual_cameras(loaded.site, aspect);
+    if (options.scene.empty() || !options.mood.empty()) {
+        const Site& site = loaded.site.emplace(survey_site(source));
+        if (!options.mood.empty()) {
+            LUCARNE_ASSIGN(loaded.mood, find_mood(options.mood));
+        } else {
+            const bool lit = options.render.engine != engine_of(Mood::scan_colours);
+            loaded.mood = lit ? usual_mood(site) : Mood::scan_colours;
+        }
+        loaded.first_view = !own_cameras;
+        if (loaded.first_view) scene.cameras = usual_cameras(site, aspect);
         // Scan colours leave the lights as they are; another engine may use them later.
-        if (options.scene.empty()) set_mood(scene, usual_mood(loaded.site), loaded.site, scene.cameras[0]);
-        set_mood(scene, *loaded.mood, loaded.site, scene.cameras[0]);
+        if (options.scene.empty()) set_mood(scene, usual_mood(site), site, scene.cameras[0]);
+        set_mood(scene, *loaded.mood, site, scene.cameras[0]);
     }
     if (options.exposure) scene.exposure_ev = options.exposure;
     LUCARNE_TRY(apply(options.look, scene.look));
@@ -228,24 +233,24 @@ Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree:
 }
 
 std::string chosen_text(const SceneForScan& loaded) {
+    if (!loaded.site) return {};
     std::string chosen;
     if (loaded.first_view) {
         const gi::SceneCamera& camera = loaded.scene.cameras[0];
         chosen = fmt::format("camera '{}' at {:.2f} {:.2f} {:.2f}", camera.name, camera.position.x,
                              camera.position.y, camera.position.z);
     }
-    if (loaded.mood) chosen += fmt::format("{}mood {}", chosen.empty() ? "" : ", ", mood_name(*loaded.mood));
-    return chosen.empty() ? chosen : fmt::format("{}: {}", site_name(loaded.site.kind), chosen);
+    return fmt::format("{}: {}{}mood {}", site_name(loaded.site->kind), chosen, chosen.empty() ? "" : ", ",
+                       mood_name(*loaded.mood));
 }
 
 Result<gi::SceneCamera> find_camera(const gi::Scene& scene, const std::string& name) {
-    std::string known;
+    std::vector<std::string_view> names;
     for (const auto& camera : scene.cameras) {
         if (name.empty() || camera.name == name) return camera;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", camera.name);
+        names.emplace_back(camera.name);
     }
-    return bad_arguments("--camera", fmt::format("the scene has no camera '{}'", name),
-                         "choose one of: " + known);
+    return bad_arguments("--camera", fmt::format("the scene has no camera '{}'", name), advice(name, names));
 }
 
 std::string memory_text(const PipelineOptions& caps, const MemoryUse& used) {

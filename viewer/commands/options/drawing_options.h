@@ -52,9 +52,8 @@ Result<Drawing> resolve(const DrawingOptions& options);
 /// A scene made for a scan.
 struct SceneForScan {
     gi::Scene scene;
-    Site site;                 ///< what the scan shows
-    std::optional<Mood> mood;  ///< the light is this mood's; none: the scene file's
-    bool own_cameras = false;  ///< the cameras are those of the scene file
+    std::optional<Site> site;  ///< what the scan shows; none if the scene file has said it all
+    std::optional<Mood> mood;  ///< the light is this mood's; set together with `site`
     bool first_view = false;   ///< the first camera is the first view of what the scan shows
 };
 
@@ -62,8 +61,9 @@ struct SceneForScan {
 /// the engine lights it. The scene has at least one camera. A mood in the options replaces the light of the
 /// file. With a mood, or without a file, the first camera is the first view of what the scan shows, unless
 /// the file has cameras, and an overview follows. `size` in the options is the picture's, `render.engine` is
-/// set (take_render_settings()). Loads a sample of the coarsest nodes. Errors: those of reading the file;
-/// ErrorKind::arguments if no point has the attribute that colours are requested from.
+/// set (take_render_settings()). With a mood, or without a file, loads a sample of the coarsest nodes.
+/// Errors: those of reading the file; ErrorKind::arguments if no point has the attribute that colours are
+/// requested from.
 Result<SceneForScan> load_scene_for(const DrawingOptions& options, const octree::NodeSource& source);
 
 /// Returns what was chosen for the scan: "interior: camera 'inside' at 1.20 3.40 1.60, mood evening". Empty
