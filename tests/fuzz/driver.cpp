@@ -16,8 +16,8 @@ namespace lucarne::fuzz {
 namespace {
 
 /// Readers must refuse a bad file within a second. AddressSanitizer with UndefinedBehaviorSanitizer makes
-/// them about five times slower, each input is read twice, and on a busy machine the same work takes up to
-/// three times as much processor time (README.md).
+/// them about five times slower, each input is read twice, and on a busy machine the same work takes more
+/// than twice as much processor time (README.md).
 constexpr double kMostSeconds = 30;
 
 double cpu_seconds() {
