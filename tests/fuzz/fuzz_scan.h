@@ -4,6 +4,7 @@
 
 #include "io/formats/scan.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/temporary_folder.h"
 
 // What every fuzzer of a scan format does: opens the scan, reads it to the end, writes what was read in every
 // format; and then reads it again with `salvage`.
@@ -15,7 +16,8 @@ inline constexpr size_t kMostPoints = 200'000;
 
 inline void write_unfinished(const io::PointSource& source, std::span<const std::byte> records,
                              const char* extension) {
-    const auto path = std::filesystem::temp_directory_path() / (std::string("lucarne-fuzz") + extension);
+    static const test::Folder folder;
+    const auto path = folder / (std::string("scan") + extension);
     const auto writer = io::create_scan(path, source.schema(), source.info(), {});
     if (writer) (void)(*writer)->write(records);
 }

@@ -60,6 +60,25 @@ TEST(Structure, NoEngineIncludesAnother) {
         }
 }
 
+/// Tests run beside each other, so a folder with a fixed name would be emptied by one while another uses it.
+TEST(Structure, TestsTakeTemporaryFoldersFromOnePlace) {
+    const auto tests = std::filesystem::path(LUCARNE_SOURCE_DIR) / "tests";
+    const std::set<std::filesystem::path> allowed = {
+        tests / "temporary_folder.h", tests / "structure/includes_test.cpp",
+        tests / "viewer/window/golden_window_test.cpp"};  // leaves its picture for people to look at
+    size_t files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(tests)) {
+        const auto extension = entry.path().extension();
+        if ((extension != ".cpp" && extension != ".h") || allowed.contains(entry.path())) continue;
+        ++files;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);)
+            EXPECT_EQ(line.find("temp_directory_path"), std::string::npos)
+                << entry.path() << ": use test::Folder of tests/temporary_folder.h";
+    }
+    EXPECT_GT(files, 100u);
+}
+
 /// For each folder or file of one folder: the others of that folder that it includes.
 using Graph = std::map<std::string, std::set<std::string>>;
 

@@ -10,6 +10,7 @@
 
 #include "gi/scene/scene.h"
 #include "io/image/image.h"
+#include "tests/temporary_folder.h"
 
 namespace lucarne::gi {
 namespace {
@@ -19,14 +20,8 @@ using testing::HasSubstr;
 
 class SceneLights : public ::testing::Test {
  protected:
-    void SetUp() override {
-        folder = std::filesystem::temp_directory_path() /
-                 fmt::format("lucarne-lights-{}", ::testing::UnitTest::GetInstance()->random_seed());
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-
-    std::filesystem::path folder;
+    test::Folder files;
+    const std::filesystem::path& folder = files.path();
 };
 
 TEST_F(SceneLights, EveryKindArrivesWithItsOwnKeys) {

@@ -9,6 +9,7 @@
 #include "gi/scene/scene.h"
 #include "io/files/json.h"
 #include "io/image/image.h"
+#include "tests/temporary_folder.h"
 
 namespace lucarne::gi {
 namespace {
@@ -178,7 +179,8 @@ TEST(SceneWriter, AnEmptySceneWritesNothing) {
 }
 
 TEST(SceneWriter, PicturesAreNamedAsSeenFromTheFile) {
-    const auto folder = std::filesystem::temp_directory_path() / "lucarne-scene-writer";
+    const test::Folder files;
+    const auto& folder = files.path();
     std::filesystem::create_directories(folder / "skies");
     std::filesystem::create_directories(folder / "scenes");
     ASSERT_TRUE(io::write_exr(folder / "skies/blue.exr", {2, 1, {{1, 2, 3, 1}, {4, 5, 6, 1}}}, true));
@@ -193,14 +195,13 @@ TEST(SceneWriter, PicturesAreNamedAsSeenFromTheFile) {
     ASSERT_TRUE(again) << again.error().line();
     EXPECT_EQ(again->environment->texels, scene->environment->texels);
     EXPECT_EQ(again->environment->rotation, scene->environment->rotation);
-    std::filesystem::remove_all(folder);
 }
 
 TEST(SceneWriter, AnExistingFileIsKeptUnlessItMayBeReplaced) {
-    const auto path = std::filesystem::temp_directory_path() / "lucarne-scene-writer.json";
+    const test::Folder folder;
+    const auto path = folder / "scene.json";
     ASSERT_TRUE(save_scene({}, path, true));
     EXPECT_FALSE(save_scene({}, path, false));
-    std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
+#include <filesystem>
 #include <mutex>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 #include "io/core/random.h"
 #include "tests/io/input/replayed_controller.h"
+#include "tests/temporary_folder.h"
 
 namespace lucarne::io {
 namespace {
@@ -86,10 +88,8 @@ TEST(SixDof, TheMappingIsStillAtRestAndFullAtFullTravel) {
 
 /// Runs one of this program's tests, which is skipped otherwise, under umockdev.
 int run_replayed(const std::string& name, const std::vector<test::Answer>& answers) {
-    const auto folder =
-        std::filesystem::temp_directory_path() / fmt::format("lucarne_controller_{}", getpid());
-    std::filesystem::create_directories(folder);
-    auto words = test::under_umockdev(folder, answers);
+    const lucarne::test::Folder folder;
+    auto words = test::under_umockdev(folder.path(), answers);
     words.push_back(std::filesystem::read_symlink("/proc/self/exe"));
     words.push_back("--gtest_also_run_disabled_tests");
     words.push_back("--gtest_filter=Replayed.DISABLED_" + name);
@@ -103,7 +103,6 @@ int run_replayed(const std::string& name, const std::vector<test::Answer>& answe
     }
     int status = 0;
     waitpid(child, &status, 0);
-    std::filesystem::remove_all(folder);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

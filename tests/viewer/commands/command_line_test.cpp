@@ -1,11 +1,10 @@
-#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include "tests/temporary_folder.h"
 #include "viewer/commands/options/arguments.h"
 
 namespace lucarne::viewer {
@@ -43,13 +42,13 @@ class CommandLineTest : public testing::Test {
 };
 
 TEST_F(CommandLineTest, AFileInThePlaceOfACommandIsViewed) {
-    const auto file = std::filesystem::temp_directory_path() / ("scan" + std::to_string(getpid()) + ".las");
+    const test::Folder folder;
+    const auto file = folder / "scan.las";
     std::ofstream(file) << "x";
     EXPECT_EQ(run({file.string(), "--engine", "direct"}), "");
     EXPECT_EQ(ran_, "view");
     EXPECT_EQ(inputs_, std::vector{file.string()});
     EXPECT_EQ(engine_, "direct");
-    std::filesystem::remove(file);
 }
 
 TEST_F(CommandLineTest, CommandsTakeTheirOwnArguments) {

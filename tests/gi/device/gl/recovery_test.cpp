@@ -6,6 +6,7 @@
 
 #include "gi/device/gl/context_watch.h"
 #include "tests/gi/on_device.h"
+#include "tests/temporary_folder.h"
 
 namespace lucarne::gi {
 namespace {
@@ -45,14 +46,7 @@ class ShaderFiles : public OnDevice {
  protected:
     void SetUp() override {
         OnDevice::SetUp();
-        std::string name = (std::filesystem::temp_directory_path() / "lucarne-test-XXXXXX").string();
-        ASSERT_TRUE(mkdtemp(name.data()));
-        folder_ = name;
         std::filesystem::create_directories(folder_ / "gi/post");
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
     }
     /// Writes a shader that runs `statement` in eight invocations, with a buffer of words at binding 0.
     void write(const std::string& statement) const {
@@ -73,7 +67,8 @@ class ShaderFiles : public OnDevice {
     }
 
     static constexpr const char* kPath = "gi/post/luminance.comp";
-    std::filesystem::path folder_;
+    test::Folder files_;
+    const std::filesystem::path& folder_ = files_.path();
 };
 
 TEST_F(ShaderFiles, AreUsedInPlaceOfTheProgramsOwnAndReadAgainOnDemand) {
