@@ -11,12 +11,17 @@ namespace lucarne::gi::post {
 // Storage buffers.
 const uint kBindRadiance = 0u;
 const uint kBindPicture = 1u;
-const uint kBindSums = 1u;   // of luminance
-const uint kBindMean = 1u;   // of the frames so far
-const uint kBindOther = 2u;  // the other engine's radiance, or its picture
+const uint kBindSums = 1u;    // of luminance
+const uint kBindCounts = 1u;  // of pixels by brightness
+const uint kBindMean = 1u;    // of the frames so far
+const uint kBindOther = 2u;   // the other engine's radiance, or its picture
 
 // Texture units.
 const uint kUnitGBuffer = 3u;
+
+// The bins of highlights.comp: 16 stops below and above the log-average.
+const int kBinsPerStop = 8;
+const int kBrightnessBins = 256;
 
 #ifdef __cplusplus
 }  // namespace lucarne::gi::post

@@ -31,8 +31,8 @@
 
 namespace lucarne::gi {
 using uint = uint32_t;
-using glm::abs, glm::clamp, glm::cross, glm::dot, glm::exp2, glm::inversesqrt, glm::max, glm::min, glm::mix,
-    glm::normalize;
+using glm::abs, glm::clamp, glm::cross, glm::dot, glm::exp2, glm::inversesqrt, glm::log, glm::max, glm::min,
+    glm::mix, glm::normalize;
 using glm::packSnorm2x16, glm::pow, glm::sqrt, glm::unpackSnorm2x16;
 using glm::vec2, glm::vec3, glm::vec4, glm::uvec2;
 }  // namespace lucarne::gi

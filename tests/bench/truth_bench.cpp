@@ -14,6 +14,7 @@
 
 #include "gi/compare/flip.h"
 #include "gi/compare/metrics.h"
+#include "gi/post/exposure.h"
 #include "gi/post/tone_map.h"
 #include "tests/bench/all_surfels.h"
 #include "tests/bench/bench_run.h"
@@ -127,10 +128,10 @@ Result<void> judge(const std::string& what, const Scan::Truth& picture, const Pi
     row(what, "relMSE, without noise", (all + trimmed) / pixels, "");
     row(what, "relMSE without the worst .1 %", trimmed / static_cast<double>(kept), "");
     // At half the size, because FLIP counts noise that an eye would see: four times fewer paths will do.
-    const double ev = gi::automatic_exposure(truth);
+    const double ev = gi::log_average_exposure(truth);
     const uint32_t side = bench::kTrueSide - 2 * bench::kMargin;
     const auto shown = [&](const Pixels& radiance) {
-        return gi::tone_map(bench::halved(radiance, side), gi::ToneMap::filmic, ev);
+        return gi::tone_map(bench::halved(radiance, side), gi::ToneMap::filmic, {ev});
     };
     const auto mean = [](const std::vector<float>& values) {
         double sum = 0;

@@ -12,6 +12,7 @@
 #include "gi/compare/error_picture.h"
 #include "gi/compare/flip.h"
 #include "gi/compare/metrics.h"
+#include "gi/post/exposure.h"
 #include "gi/post/tone_map.h"
 #include "io/core/terminal.h"
 #include "io/files/file.h"
@@ -149,9 +150,9 @@ Result<void> compare(const CompareOptions& options) {
 
     // Both pictures get the same exposure; otherwise FLIP could not tell a dark picture from a bright one.
     const double ev =
-        options.exposure ? *options.exposure : gi::automatic_exposure(pictures.reference.pixels);
+        options.exposure ? *options.exposure : gi::log_average_exposure(pictures.reference.pixels);
     const auto shown = [&](const io::Image& image) {
-        return gi::tone_map(image.pixels, gi::ToneMap::filmic, ev);
+        return gi::tone_map(image.pixels, gi::ToneMap::filmic, {ev});
     };
     const auto flip =
         gi::flip_errors(shown(pictures.picture), shown(pictures.reference), pictures.picture.width);

@@ -2,6 +2,7 @@
 
 #include "gi/post/accumulate.h"
 #include "gi/post/backdrop.h"
+#include "gi/post/exposure.h"
 #include "gi/post/false_colour.h"
 #include "gi/post/tone_map.h"
 
@@ -14,12 +15,12 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     averaged_ = averaging.on;
     points_apart_ = averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
     if (averaged_) LUCARNE_TRY(add_to_average(own_, gbuffer));
-    exposure_ev_ = 0;  // an unlit engine's colours are for the screen already
+    exposure_ = {};  // an unlit engine's colours are for the screen already
     if (!engine.info().unlit) {
         if (scene.exposure_ev) {
-            exposure_ev_ = *scene.exposure_ev;
+            exposure_.ev = *scene.exposure_ev;
         } else {
-            LUCARNE_ASSIGN(exposure_ev_, gi::automatic_exposure(device_, radiance(), pixels));
+            LUCARNE_ASSIGN(exposure_, gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map));
         }
     }
     LUCARNE_TRY(show(engine, scene, pixels, own_));
@@ -42,10 +43,10 @@ Result<void> Presentation::show(const gi::Engine& lit_by, const gi::Scene& scene
     const gi::Buffer& radiance = images.points_radiance(averaged_, points_apart_);
     const bool unlit = lit_by.info().unlit;
     if (scene.tone_map == gi::ToneMap::false_colour && !unlit)
-        return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_ev_),
+        return gi::false_colour(device_, radiance, pixels, gi::luminance_range(scene.luminance, exposure_.ev),
                                 images.picture);
     return gi::tone_map(device_, radiance, pixels, unlit ? gi::ToneMap::none : scene.tone_map,
-                        unlit ? 0 : exposure_ev_, images.picture);
+                        unlit ? gi::Exposure{} : exposure_, images.picture);
 }
 
 /// Combines the picture with the other engine's light.
@@ -57,7 +58,7 @@ Result<void> Presentation::compare(const gi::Engine& other, const gi::Scene& sce
     const gi::Comparison& how = *scene.comparison;
     if (how.show != Show::split)
         return gi::difference(device_, radiance(), other_.radiance(averaged_), pixels,
-                              how.show == Show::absolute_difference, exposure_ev_, how.range, own_.picture);
+                              how.show == Show::absolute_difference, exposure_.ev, how.range, own_.picture);
     LUCARNE_TRY(show(other, scene, pixels, other_));
     return gi::split(device_, other_.picture, gbuffer.width, gbuffer.height, how.border, own_.picture);
 }

@@ -4,6 +4,7 @@
 
 #include "gi/device/gl/device.h"
 #include "gi/engine.h"
+#include "gi/post/exposure.h"
 #include "gi/raster/gbuffer.h"
 #include "gi/scene/scene.h"
 
@@ -45,7 +46,7 @@ class Presentation {
     /// The last picture, RGBA8 a pixel.
     const gi::Buffer& picture() const { return own_.picture; }
     /// The exposure of the last picture in stops.
-    double exposure_ev() const { return exposure_ev_; }
+    double exposure_ev() const { return exposure_.ev; }
 
  private:
     struct Images {
@@ -65,7 +66,7 @@ class Presentation {
     Images own_, other_;  ///< of the picture's engine and of the compared engine
     uint32_t accumulated_ = 0;
     bool averaged_ = false, points_apart_ = false;
-    double exposure_ev_ = 0;
+    gi::Exposure exposure_;
 };
 
 }  // namespace lucarne::viewer

@@ -166,7 +166,7 @@ LUCARNE_FN vec4 clip_sample(vec4 a, vec4 b, vec4 c, vec4 d) {
 }
 LUCARNE_FN vec4 screen_sample(vec4 a) {
     vec3 x = rgb_of(a) * 4.0f - 0.5f;
-    return with(tone_curve(x, uint(a.w * 3.0f)), luminance(x));
+    return with(tone_curve(x, uint(a.w * 3.0f), a.w * 10.0f), luminance(x));
 }
 LUCARNE_FN vec4 environment_sample(vec4 a) {
     vec2 place = environment_place(unit_of(a), a.w);
