@@ -1,6 +1,7 @@
 #include "gi/post/exposure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -50,7 +51,8 @@ double mean_of(std::span<const glm::vec4> radiance, double floor) {
 
 /// Returns log2 of the brightness that kClippedShare of the pixels with points exceed, relative to the
 /// log-average; minus infinity if no pixel shows points.
-Result<double> highlights(Device& device, const Buffer& radiance, const GBuffer& gbuffer, double log_mean) {
+Result<double> highlights(Device& device, const Buffer& radiance, const GBuffer& gbuffer, double log_mean,
+                          const glm::vec3& balance) {
     LUCARNE_ASSIGN(const Program* program, device.program("gi/post/highlights.comp"));
     LUCARNE_ASSIGN(Buffer counted, device.buffer(post::kBrightnessBins * sizeof(uint32_t), "exposure"));
     counted.clear(0);
@@ -59,6 +61,7 @@ Result<double> highlights(Device& device, const Buffer& radiance, const GBuffer&
     counted.bind(post::kBindCounts);
     program->set("width", gbuffer.width);
     program->set("height", gbuffer.height);
+    program->set_block("balance", std::array<float, 4>{balance.x, balance.y, balance.z, 0.0f});
     program->set("log_mean", static_cast<float>(log_mean));
     program->dispatch((gbuffer.width + 3) / 4 * ((gbuffer.height + 3) / 4));
     const auto counts = counted.download_all<uint32_t>(post::kBrightnessBins);
@@ -102,19 +105,20 @@ float compression_to(double white, double brightness) {
 }  // namespace
 
 Result<Exposure> automatic_exposure(Device& device, const Buffer& radiance, const GBuffer& gbuffer,
-                                    ToneMap curve) {
+                                    ToneMap curve, const glm::vec3& balance) {
     const uint32_t pixels = gbuffer.width * gbuffer.height;
     LUCARNE_ASSIGN(const double mean, mean_of(device, radiance, pixels, 0.0f));
     const auto floor = static_cast<float>(mean * kDarkest);
-    if (!(floor > 0)) return Exposure{};
+    if (!(floor > 0)) return Exposure{0, 0, balance};
     LUCARNE_ASSIGN(const double log_mean, mean_of(device, radiance, pixels, floor));
-    LUCARNE_ASSIGN(const double bright, highlights(device, radiance, gbuffer, log_mean));
+    LUCARNE_ASSIGN(const double bright, highlights(device, radiance, gbuffer, log_mean, balance));
     const double by_mean = std::log2(kKey);
     const double white = nearly_white(curve);
     const double by_highlights = std::log2(white) - bright;
     const double above_mean = std::clamp(by_highlights, by_mean - kMostLowered, by_mean);
     const double excess = std::min(above_mean - by_highlights, kMostCompressed);
-    return Exposure{above_mean - log_mean, excess > 0 ? compression_to(white, white * std::exp2(excess)) : 0};
+    return Exposure{above_mean - log_mean, excess > 0 ? compression_to(white, white * std::exp2(excess)) : 0,
+                    balance};
 }
 
 double log_average_exposure(std::span<const glm::vec4> radiance) {

@@ -17,9 +17,10 @@ double log_average_exposure(std::span<const glm::vec4> radiance);
 /// The same on the device, for pictures in which at most kClippedShare of the pixels that show points come
 /// out nearly white: the exposure is lowered by up to kMostLowered stops, and what is brighter still is
 /// compressed, by up to kMostCompressed stops, so that shadows stay visible. Sky does not count as points.
-/// `radiance` is a vec4 a pixel of the G-buffer. Errors: the shader's, no device memory.
+/// `radiance` is a vec4 a pixel of the G-buffer; `balance` becomes the exposure's. Errors: the shader's, no
+/// device memory.
 Result<Exposure> automatic_exposure(Device& device, const Buffer& radiance, const GBuffer& gbuffer,
-                                    ToneMap curve);
+                                    ToneMap curve, const glm::vec3& balance = glm::vec3(1.0f));
 
 inline constexpr double kClippedShare = .02;
 inline constexpr double kMostLowered = .75, kMostCompressed = 5;  ///< stops

@@ -9,6 +9,7 @@ layout(std430, binding = kBindRadiance) readonly buffer Radiance { vec4 radiance
 layout(std430, binding = kBindCounts) buffer Counts { uint counts[]; };
 uniform uint width;
 uniform uint height;
+uniform vec4 balance;  // w is unused
 uniform float log_mean;  // of luminance, base 2: the middle of the bins
 
 shared uint group_counts[kBrightnessBins];
@@ -24,6 +25,7 @@ void count_block(uvec2 first) {
             sum += light;
             ++seen;
         }
+    sum *= balance.rgb;
     float brightest = max(sum.r, max(sum.g, sum.b)) / float(max(seen, 1u));
     if (seen == 0u) return;
     float stops = brightest > 0.0 ? log2(brightest) - log_mean : -1e3;

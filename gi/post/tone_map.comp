@@ -12,14 +12,14 @@ layout(std430, binding = kBindPicture) writeonly buffer Picture {
     uint picture[];
 };
 uniform uint pixels;
-uniform float scale;
+uniform vec4 scale;  // w is unused
 uniform uint curve;
 uniform float compression;  // of highlights
 
 void main() {
     uint at = thread_number();
     if (at >= pixels) return;
-    vec3 x = tone_curve(radiance[at].rgb * scale, curve, compression);
+    vec3 x = tone_curve(radiance[at].rgb * scale.rgb, curve, compression);
     uint word = 255u << 24;
     for (int i = 0; i < 3; ++i) word |= uint(linear_to_srgb(x[i]) * 255.0 + 0.5) << (8 * i);
     picture[at] = word;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "gi/device/gl/device.h"
@@ -13,9 +14,14 @@ namespace lucarne::gi {
 
 /// How radiance is exposed.
 struct Exposure {
-    double ev = 0;          ///< stops
-    float compression = 0;  ///< of highlights, see gi/shared/tone_curve.h; 0: none
+    double ev = 0;            ///< stops
+    float compression = 0;    ///< of highlights, see gi/shared/tone_curve.h; 0: none
+    glm::vec3 balance{1.0f};  ///< factors of red, green, blue: white balance, see white_balance()
 };
+
+/// Returns the factors that make radiance of the colour `white` neutral and keep its luminance (von Kries'
+/// rule, in linear Rec. 709).
+glm::vec3 white_balance(const glm::dvec3& white);
 
 /// Maps linear radiance times 2^ev through the curve to RGBA8 (sRGB-coded), one 32-bit word a pixel, red in
 /// the lowest byte. NaN becomes black. Errors: the shader's, no device memory.

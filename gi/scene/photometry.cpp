@@ -63,4 +63,14 @@ glm::dvec3 black_body_colour(double kelvin) {
     return shown / std::max({shown.x, shown.y, shown.z});
 }
 
+double black_body_temperature(const glm::dvec3& colour) {
+    double low = kCoolest, high = kHottest;
+    for (int step = 0; step < 40; ++step) {
+        const double middle = (low + high) / 2;
+        const glm::dvec3 body = black_body_colour(middle);
+        (body.z * colour.x < colour.z * body.x ? low : high) = middle;  // hotter bodies are bluer
+    }
+    return high;
+}
+
 }  // namespace lucarne::gi

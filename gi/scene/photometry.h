@@ -22,6 +22,9 @@ inline constexpr double kCoolest = 1667, kHottest = 25000;
 /// Returns the linear Rec. 709 colour of a black body, its largest channel 1. `kelvin` is clamped to
 /// kCoolest and kHottest. Source: Kim et al. 2002, US patent 7024034, cubic splines of the Planckian locus.
 /// The white of daylight, [1, 1, 1], lies beside the locus.
+inline constexpr double kDaylight = 6504;  ///< K, of the white of Rec. 709 (D65)
 glm::dvec3 black_body_colour(double kelvin);
+/// Returns the temperature of the black body that has this ratio of blue to red, in the same range.
+double black_body_temperature(const glm::dvec3& colour);
 
 }  // namespace lucarne::gi

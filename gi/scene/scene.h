@@ -104,6 +104,7 @@ struct Scene {
     std::vector<SceneCamera> cameras;
     std::optional<double> exposure_ev;  ///< stops; radiance is multiplied by 2^ev. Empty: automatic
     ToneMap tone_map = ToneMap::filmic;
+    glm::dvec3 white{1.0};                ///< radiance of this colour (linear) is shown as neutral
     std::optional<ValueRange> luminance;  ///< cd/m^2, range of false colours; empty: around mid-grey
     glm::dvec3 background{0.0};           ///< radiance where no surfel is; only the camera sees it
     std::shared_ptr<const Environment>

@@ -21,7 +21,7 @@ using glm::dvec3;
 // data/README.md states these limits.
 constexpr size_t kMostLights = 64, kMostMaterials = 255, kMostCameras = 1000;
 constexpr JsonRange kScale{0, 10}, kFovDegrees{1, 170}, kStops{-40, 40}, kShininess{0, 1e6},
-    kLuminance{1e-9, 1e15}, kDifference{1e-6, 1e6};
+    kLuminance{1e-9, 1e15}, kWhite{1e-3, 1e3}, kDifference{1e-6, 1e6};
 
 std::vector<std::string_view> list(std::span<const std::string_view> names) {
     return {names.begin(), names.end()};
@@ -98,13 +98,14 @@ Result<void> read_exposure(JsonObject& root, Scene& scene) {
     if (!std::isnan(ev)) scene.exposure_ev = ev;
     LUCARNE_ASSIGN(const size_t tone_map, exposure->choice("tone_map", list(tone_map_names()), 0));
     scene.tone_map = static_cast<ToneMap>(tone_map);
-    LUCARNE_ASSIGN(auto luminance, exposure->object("luminance"));
-    if (luminance) {
+    LUCARNE_ASSIGN(scene.white, exposure->vector("white", kWhite, dvec3(1)));
+    LUCARNE_ASSIGN(auto ends, exposure->object("luminance"));
+    if (ends) {
         ValueRange range;
-        LUCARNE_ASSIGN(range.low, luminance->number("low", kLuminance));
-        LUCARNE_ASSIGN(range.high, luminance->number("high", kLuminance));
-        if (!(range.low < range.high)) return luminance->wrong("is not above low", "high");
-        LUCARNE_TRY(luminance->finish());
+        LUCARNE_ASSIGN(range.low, ends->number("low", kLuminance));
+        LUCARNE_ASSIGN(range.high, ends->number("high", kLuminance));
+        if (!(range.low < range.high)) return ends->wrong("is not above low", "high");
+        LUCARNE_TRY(ends->finish());
         scene.luminance = range;
     }
     return exposure->finish();

@@ -124,6 +124,7 @@ Json write_exposure(const Scene& scene) {
     if (scene.exposure_ev) written["ev"] = *scene.exposure_ev;
     if (scene.tone_map != ToneMap::filmic)
         written["tone_map"] = tone_map_names()[static_cast<size_t>(scene.tone_map)];
+    if (scene.white != glm::dvec3(1.0)) written["white"] = {scene.white.x, scene.white.y, scene.white.z};
     if (scene.luminance)
         written["luminance"] = {{"low", scene.luminance->low}, {"high", scene.luminance->high}};
     return written;

@@ -17,10 +17,12 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     if (averaged_) LUCARNE_TRY(add_to_average(own_, gbuffer));
     exposure_ = {};  // an unlit engine's colours are for the screen already
     if (!engine.info().unlit) {
+        const glm::vec3 balance = gi::white_balance(scene.white);
         if (scene.exposure_ev) {
-            exposure_.ev = *scene.exposure_ev;
+            exposure_ = {*scene.exposure_ev, 0, balance};
         } else {
-            LUCARNE_ASSIGN(exposure_, gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map));
+            LUCARNE_ASSIGN(exposure_,
+                           gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map, balance));
         }
     }
     LUCARNE_TRY(show(engine, scene, pixels, own_));

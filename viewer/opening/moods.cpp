@@ -101,6 +101,13 @@ gi::SceneLight spot_on(const Site& site, const char* name, const glm::dvec3& tow
     return spot;
 }
 
+/// What is shown as white: half-way between daylight and the light (in mired), because eyes adapt to lamps
+/// in part; and all of the scan's own cast, which the light of its photographs left in its colours.
+glm::dvec3 white_for(double kelvin, const glm::dvec3& cast) {
+    const glm::dvec3 white = white_of(2 / (1 / kelvin + 1 / gi::kDaylight)) / white_of(gi::kDaylight) * cast;
+    return white / gi::luminance(white);
+}
+
 /// The lamps of a room: lights of one kind at the free places, which share `lumens`.
 std::vector<gi::SceneLight> lamps_in(const Site& site, gi::LightKind kind, double kelvin, double lumens) {
     std::vector<gi::SceneLight> lamps;
@@ -130,6 +137,7 @@ struct Light {
     std::vector<gi::SceneLight> lights;
     glm::dvec3 sky{0.0};
     gi::Backdrop backdrop;
+    double kelvin = gi::kDaylight;  ///< colour temperature of the main light
 };
 
 bool in_rooms(const Site& site) {
@@ -147,9 +155,10 @@ Light daylight(const Site& site, const gi::SceneCamera& camera) {
 }
 
 Light evening(const Site& site, const gi::SceneCamera& camera) {
-    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::point, kBulb, lumens_for(site)), {}, kDark};
+    if (in_rooms(site))
+        return {lamps_in(site, gi::LightKind::point, kBulb, lumens_for(site)), {}, kDark, kBulb};
     const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(9) : left_of_view(camera, 65, 9);
-    return {{sun_from(site, towards, white_of(kLowSun) * 220.0)}, {14, 18, 30}, kDusk};
+    return {{sun_from(site, towards, white_of(kLowSun) * 220.0)}, {14, 18, 30}, kDusk, kLowSun};
 }
 
 Light raking(const Site& site, const gi::SceneCamera& camera) {
@@ -158,19 +167,21 @@ Light raking(const Site& site, const gi::SceneCamera& camera) {
         const double height = .35 / site.metres_per_unit;
         for (auto& lamp : lamps) lamp.target.z += site.inside->floor + height - lamp.position.z;
         for (auto& lamp : lamps) lamp.position.z = site.inside->floor + height;
-        return {std::move(lamps), {}, kDark};
+        return {std::move(lamps), {}, kDark, kGallery};
     }
     const glm::dvec3 towards = site.kind == SiteKind::terrain ? north_west(12) : left_of_view(camera, 80, 10);
     return {{sun_from(site, towards, white_of(kNoonSun) * 850.0)}, glm::dvec3(6), kDark};
 }
 
 Light museum(const Site& site, const gi::SceneCamera& camera) {
-    if (in_rooms(site)) return {lamps_in(site, gi::LightKind::spot, kGallery, lumens_for(site)), {}, kDark};
+    if (in_rooms(site))
+        return {lamps_in(site, gi::LightKind::spot, kGallery, lumens_for(site)), {}, kDark, kGallery};
     return {{spot_on(site, "key", left_of_view(camera, 45, 45), white_of(kGallery), 1),
              spot_on(site, "fill", left_of_view(camera, -60, 25), white_of(kNoonSun), .2),
              spot_on(site, "rim", left_of_view(camera, 170, 50), white_of(kNoonSun), .6)},
             glm::dvec3(.004),
-            kDark};
+            kDark,
+            kGallery};
 }
 
 }  // namespace
@@ -225,6 +236,7 @@ void set_mood(gi::Scene& scene, Mood mood, const Site& site, const gi::SceneCame
     scene.environment_on = true;
     scene.look.backdrop = light.backdrop;
     scene.exposure_ev.reset();
+    scene.white = white_for(light.kelvin, site.cast);
 }
 
 }  // namespace lucarne::viewer

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "octree/tree/robust_bounds.h"
+#include "viewer/opening/colour_cast.h"
 #include "viewer/opening/occupancy.h"
 #include "viewer/opening/standing_place.h"
 
@@ -21,9 +22,15 @@ constexpr double kInterior = .5;
 constexpr double kFlat = .35, kThinColumns = .8;
 constexpr int kThin = 3;  ///< cells
 
-/// Returns positions in the coarsest nodes, level by level, world units.
-std::vector<glm::dvec3> coarse_points(const octree::NodeSource& source) {
-    std::vector<glm::dvec3> points;
+struct CoarsePoints {
+    std::vector<glm::dvec3> positions;  ///< world units
+    ColourCast cast;
+};
+
+/// Returns what the coarsest nodes contain, level by level.
+CoarsePoints coarse_points(const octree::NodeSource& source) {
+    CoarsePoints found;
+    auto& points = found.positions;
     std::vector<uint32_t> open = source.roots();
     const auto nodes = source.nodes();
     for (size_t next = 0; next < open.size() && next < kMostNodes && points.size() < kEnoughPoints; ++next) {
@@ -35,10 +42,15 @@ std::vector<glm::dvec3> coarse_points(const octree::NodeSource& source) {
         if (!data) continue;  // the picture lacks it as well
         const octree::SourcePart part = source.part_of(node);
         const io::Schema& schema = part.header.schema;
-        for (uint32_t i = 0; i < data->count; ++i)
-            points.push_back(io::position_of(schema, &data->records[size_t{i} * schema.stride]) * part.scale);
+        const auto& scans = part.header.scans;
+        const double white = io::color_white(scans.empty() ? 0 : scans.front().color_bits);
+        for (uint32_t i = 0; i < data->count; ++i) {
+            const std::byte* record = &data->records[size_t{i} * schema.stride];
+            points.push_back(io::position_of(schema, record) * part.scale);
+            found.cast.add(schema, record, white);
+        }
     }
-    return points;
+    return found;
 }
 
 /// Whether the grid contains one layer, much wider than high.
@@ -97,8 +109,10 @@ Site survey_site(std::span<const glm::dvec3> points, const std::array<glm::dvec3
 }
 
 Site survey_site(const octree::NodeSource& source) {
-    const auto points = coarse_points(source);
+    const CoarsePoints found = coarse_points(source);
+    const auto& points = found.positions;
     Site site = survey_site(points, octree::robust_bounds(source), source.header().metres_per_unit);
+    site.cast = found.cast.result();
     // A source of many nodes is no sketch, even if the coarsest ones have few points.
     site.sure = points.size() >= kEnoughPoints || source.nodes().size() > kMostNodes;
     return site;

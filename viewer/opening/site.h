@@ -35,8 +35,9 @@ struct Site {
     SiteKind kind = SiteKind::object;
     std::array<glm::dvec3, 2> box{};  ///< robust bounds
     double metres_per_unit = 1;
-    bool sure = true;                 ///< false: seen in few points, more of which may show something else
-    std::vector<glm::dvec3> outline;  ///< points that a view of all has to contain; at least one
+    glm::dvec3 cast{1.0};  ///< colour of the light in which the scan was photographed, linear, luminance 1
+    bool sure = true;      ///< false: seen in few points, more of which may show something else
+    std::vector<glm::dvec3> outline;      ///< points that a view of all has to contain; at least one
     std::optional<StandingPlace> inside;  ///< if there is a room
 };
 

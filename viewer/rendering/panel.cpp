@@ -6,6 +6,7 @@
 
 #include "gi/post/false_colour.h"
 #include "gi/registry.h"
+#include "gi/scene/photometry.h"
 #include "viewer/rendering/rendering.h"
 #include "viewer/ui/widgets.h"
 
@@ -53,6 +54,18 @@ void luminance_range(const Rendering& model) {
     }
 }
 
+/// Edits which light is shown as white, by the temperature of the nearest black body.
+void white_balance(View& view) {
+    const glm::dvec3 daylight = gi::black_body_colour(gi::kDaylight);
+    float kelvin = static_cast<float>(gi::black_body_temperature(view.scene.white * daylight));
+    if (ImGui::SliderFloat("white balance", &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp)) {
+        view.scene.white = gi::black_body_colour(kelvin) / daylight;
+        view.shown_changed();
+    }
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("Light of this colour is shown as white. 6500 K: colours are shown as they are.");
+}
+
 void exposure(const Rendering& model) {
     bool automatic = !model.view.scene.exposure_ev;
     const float measured = model.view.picture ? static_cast<float>(model.view.picture->exposure_ev) : 0.0f;
@@ -65,6 +78,7 @@ void exposure(const Rendering& model) {
         model.view.scene.exposure_ev = stops;
         model.view.shown_changed();
     }
+    white_balance(model.view);
     const char* const curves[] = {"filmic", "Reinhard", "none", "false colours"};
     int curve = static_cast<int>(model.view.scene.tone_map);
     if (ImGui::Combo("tone map", &curve, curves, 4)) {

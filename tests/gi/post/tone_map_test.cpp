@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 #include <gtest/gtest.h>
 
+#include "gi/shared/luminance.h"
 #include "gi/shared/tone_curve.h"
 #include "tests/gi/on_device.h"
 
@@ -79,6 +80,16 @@ TEST_F(ToneMapTest, CompressedHighlightsRiseSlowlyAndKeepTheirHue) {
         EXPECT_LE(now - before, 0.0101f) << "no step at the knee";
         before = now;
     }
+}
+
+TEST_F(ToneMapTest, WhiteBalanceMakesTheWhiteNeutralAndKeepsItsLuminance) {
+    const glm::dvec3 white(1.6, .9, .3);
+    const glm::vec3 light = 0.2f * glm::vec3(white);
+    const auto picture = map({glm::vec4(light, 0)}, ToneMap::none, {0, 0, white_balance(white)});
+    const uint32_t grey = srgb8(luminance(glm::dvec3(light)));
+    EXPECT_EQ(picture[0], grey | grey << 8 | grey << 16 | 255u << 24);
+    EXPECT_EQ(white_balance(glm::dvec3(1)), glm::vec3(1));
+    EXPECT_EQ(white_balance(3.0 * white), white_balance(white));
 }
 
 TEST_F(ToneMapTest, WhatIsNoNumberBecomesBlackAndInfinityWhite) {

@@ -49,6 +49,13 @@ TEST(Photometry, LumensThatAreSetAreRead) {
     }
 }
 
+TEST(Photometry, TheTemperatureOfABlackBodyIsFound) {
+    for (const double kelvin : {1800.0, 2700.0, 4000.0, 6504.0, 11000.0})
+        EXPECT_NEAR(black_body_temperature(3.0 * black_body_colour(kelvin)), kelvin, kelvin * 1e-6);
+    EXPECT_NEAR(black_body_temperature({1, 0, 0}), kCoolest, 1);
+    EXPECT_NEAR(black_body_temperature({0, 0, 1}), kHottest, 1);
+}
+
 TEST(Photometry, ABlackBodyIsReddishWhenCoolAndBluishWhenHot) {
     const auto candle = black_body_colour(1900), day = black_body_colour(6504),
                sky = black_body_colour(20000);

@@ -119,6 +119,7 @@ TEST(SceneFile, EveryMistakeIsReportedWithItsPlace) {
         {many_materials.c_str(), "/materials", "255"},
         {R"({"exposure": {"ev": "bright"}})", "/exposure/ev", "number"},
         {R"({"exposure": {"tone_map": "aces"}})", "/exposure/tone_map", "filmic"},
+        {R"({"exposure": {"white": [1, 0, 1]}})", "/exposure/white", "0.001"},
         {R"({"exposure": {"eV": 1}})", "/exposure/eV", "not a known key"},
         {R"({"background": [0, 0, 1e13]})", "/background", ""},
         {R"({"materials": [{"specular": 1.5}]})", "/materials/0/specular", "from 0 to 1"},

@@ -20,6 +20,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.cameras, b.cameras);
     EXPECT_EQ(a.exposure_ev, b.exposure_ev);
     EXPECT_EQ(a.tone_map, b.tone_map);
+    EXPECT_EQ(a.white, b.white);
     EXPECT_EQ(a.luminance, b.luminance);
     EXPECT_EQ(a.background, b.background);
     EXPECT_EQ(a.environment_on, b.environment_on);
@@ -127,6 +128,7 @@ class Chance {
                                         {"fov", number(1, 170)}});
         if (coin()) scene["exposure"] = {{"ev", number(-40, 40)}};
         if (coin()) scene["exposure"]["tone_map"] = tone_map_names()[below(4)];
+        if (coin()) scene["exposure"]["white"] = {number(.001, 1000), number(.1, 10), 1};
         if (coin()) scene["exposure"]["luminance"] = {{"low", number(1e-9, 1)}, {"high", number(2, 1e15)}};
         if (coin())
             scene["background"] = list(vector(0, 9));

@@ -1,0 +1,61 @@
+#include "viewer/opening/colour_cast.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "gi/shared/luminance.h"
+
+namespace lucarne::viewer {
+namespace {
+
+io::Schema colours() {
+    io::Schema schema;
+    schema.add(std::string(io::names::color), io::ScalarType::f32, 3);
+    return schema;
+}
+
+/// The cast of points with these sRGB-coded colours, of 255.
+glm::dvec3 cast_of(std::initializer_list<glm::vec3> points) {
+    const io::Schema schema = colours();
+    ColourCast cast;
+    for (const glm::vec3& colour : points) {
+        const std::array<float, 3> record = {colour.x, colour.y, colour.z};
+        cast.add(schema, reinterpret_cast<const std::byte*>(record.data()), 255);
+    }
+    return cast.result();
+}
+
+TEST(ColourCast, GreyPointsHaveNone) {
+    const glm::dvec3 cast = cast_of({{20, 20, 20}, {200, 200, 200}});
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(cast[c], 1, 1e-6);
+}
+
+TEST(ColourCast, WarmLightIsFoundInPart) {
+    const glm::dvec3 cast = cast_of({{200, 150, 90}, {80, 60, 35}});
+    EXPECT_GT(cast.x, 1.1 * cast.y);
+    EXPECT_GT(cast.y, 1.1 * cast.z);
+    EXPECT_NEAR(gi::luminance(cast), 1, 1e-9);
+    const double linear_ratio =
+        std::pow((200 + 14.025) / (90 + 14.025), 2.4);  // IEC 61966-2-1, 14.025 of 255
+    EXPECT_LT(cast.x / cast.z, linear_ratio);
+}
+
+TEST(ColourCast, IsBoundedAndWhiteWithoutColours) {
+    const glm::dvec3 red = cast_of({{255, 0, 0}});
+    EXPECT_LE(red.x / red.z, 4.0);
+    EXPECT_EQ(cast_of({}), glm::dvec3(1));
+    EXPECT_EQ(cast_of({{0, 0, 0}}), glm::dvec3(1)) << "never photographed";
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(cast_of({{kNone, 0, 0}, {-1, 0, 5}, {256, 9, 9}}), glm::dvec3(1));
+    const io::Schema without;
+    ColourCast cast;
+    cast.add(without, nullptr, 255);
+    EXPECT_EQ(cast.result(), glm::dvec3(1));
+}
+
+}  // namespace
+}  // namespace lucarne::viewer

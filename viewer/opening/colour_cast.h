@@ -1,0 +1,26 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "io/points.h"
+
+namespace lucarne::viewer {
+
+/// Estimates the colour of the light in which points were photographed: the root mean square of each
+/// component of their linear colours ("shades of grey", Finlayson & Trezzi 2004, with p = 2). A part of what
+/// this finds is paint, so only a share of it (as a power) counts as cast.
+class ColourCast {
+ public:
+    /// Adds the colour of a point, if it has one. `white` is the largest value of its components
+    /// (io::color_white()). Values outside 0 to `white` do not count.
+    void add(const io::Schema& schema, const std::byte* record, double white);
+
+    /// Returns a linear colour of luminance 1, the components at most 4 times apart; white if no point has a
+    /// colour.
+    glm::dvec3 result() const;
+
+ private:
+    glm::dvec3 sum_{0.0};
+};
+
+}  // namespace lucarne::viewer
