@@ -1,9 +1,10 @@
 #include "viewer/opening/colour_cast.h"
 
-#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,8 +24,9 @@ glm::dvec3 cast_of(std::initializer_list<glm::vec3> points) {
     const io::Schema schema = colours();
     ColourCast cast;
     for (const glm::vec3& colour : points) {
-        const std::array<float, 3> record = {colour.x, colour.y, colour.z};
-        cast.add(schema, reinterpret_cast<const std::byte*>(record.data()), 255);
+        std::vector<std::byte> record(schema.stride);
+        std::memcpy(&record[schema.find(io::names::color)->offset], &colour, sizeof colour);
+        cast.add(schema, record.data(), 255);
     }
     return cast.result();
 }
