@@ -121,6 +121,12 @@ Result<Exposure> automatic_exposure(Device& device, const Buffer& radiance, cons
                     balance};
 }
 
+Exposure between(const Exposure& a, const Exposure& b, double share) {
+    if (share >= 1) return b;
+    return {a.ev + (b.ev - a.ev) * share, glm::mix(a.compression, b.compression, static_cast<float>(share)),
+            b.balance};
+}
+
 double log_average_exposure(std::span<const glm::vec4> radiance) {
     const double floor = mean_of(radiance, 0) * kDarkest;
     return floor > 0 ? std::log2(kKey) - mean_of(radiance, floor) : 0;

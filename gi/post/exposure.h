@@ -22,6 +22,9 @@ double log_average_exposure(std::span<const glm::vec4> radiance);
 Result<Exposure> automatic_exposure(Device& device, const Buffer& radiance, const GBuffer& gbuffer,
                                     ToneMap curve, const glm::vec3& balance = glm::vec3(1.0f));
 
+/// Returns the exposure `share` of the way from `a` to `b`; 1 is `b`.
+Exposure between(const Exposure& a, const Exposure& b, double share);
+
 inline constexpr double kClippedShare = .02;
 inline constexpr double kMostLowered = .75, kMostCompressed = 5;  ///< stops
 inline constexpr double kNearlyWhite = 244.0 / 255;               ///< sRGB-coded

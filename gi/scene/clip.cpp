@@ -53,7 +53,29 @@ Kept before(const ClipPlane& plane, const octree::Cube& cube) {
     return at > reach ? Kept::all : at < -reach ? Kept::none : Kept::some;
 }
 
+bool in_box(const ClipBox& box, const dvec3& point) {
+    const BoxFrame frame = frame_of(box);
+    return std::ranges::all_of(frame.axes, [&](const dvec3& axis) {
+        constexpr double kRounding = 1e-14;
+        return std::abs(glm::dot(axis, point - frame.centre)) <= 1 + kRounding;
+    });
+}
+
 }  // namespace
+
+bool keeps(const Clip& clip, const dvec3& point) {
+    bool any = false, inside = false;
+    for (const ClipBox& box : clip.boxes) {
+        const bool in = in_box(box, point);
+        if (box.inverted && in) return false;
+        if (box.inverted) continue;
+        any = true;
+        inside |= in;
+    }
+    return (inside || !any) && std::ranges::all_of(clip.planes, [&](const ClipPlane& plane) {
+               return glm::dot(kept_side(plane), point - plane.position) >= 0;
+           });
+}
 
 DeviceClip device_clip(const Clip& clip, const dvec3& local_origin, double metres_per_unit) {
     DeviceClip device;

@@ -37,6 +37,9 @@ struct Clip {
 };
 inline constexpr size_t kMostClips = 64;  ///< boxes and planes together
 
+/// Returns whether a point (world units) is kept.
+bool keeps(const Clip& clip, const glm::dvec3& point);
+
 /// A clip in the form in which devices test points: metres, relative to a local origin.
 struct DeviceClip {
     std::vector<ClipShape> shapes;

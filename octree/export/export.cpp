@@ -30,10 +30,14 @@ std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
 }  // namespace
 
 Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
-    : source_(source), normals_(source.header().schema) {
+    : source_(source), options_(options), normals_(source.header().schema) {
     const auto& header = source.header();
-    const bool estimated =
-        header.schema.find(io::names::normal_oct) && (options.normals || replaces_normals(header.schema));
+    const auto chosen = [&](std::string_view name) {
+        return options.attributes.empty() ||
+               std::ranges::find(options.attributes, name) != options.attributes.end();
+    };
+    const bool estimated = header.schema.find(io::names::normal_oct) && chosen(io::names::normal) &&
+                           (options.normals || replaces_normals(header.schema));
     // Where another attribute is written under a name, the input's attribute keeps its stored name, and so do
     // longer names made from it.
     const auto taken = [&](std::string_view name) {
@@ -50,8 +54,9 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     for (const auto& attribute : header.schema.attributes) {
         if (attribute.name == io::names::normal_oct || attribute.name == io::names::area) continue;
         const bool keeps = taken(reserved_name(attribute.name));
-        schema_.add(keeps ? attribute.name : name_in_file(attribute.name), attribute.type,
-                    attribute.components);
+        const std::string name = keeps ? attribute.name : name_in_file(attribute.name);
+        if (!chosen(name)) continue;
+        schema_.add(name, attribute.type, attribute.components);
         copies_.push_back(
             {attribute.offset, schema_.attributes.back().offset, static_cast<uint32_t>(attribute.bytes())});
     }
@@ -78,14 +83,27 @@ void Exporter::find_narrow_colours() {
     info_.color_bits = 16;
 }
 
-void Exporter::append(const NodeData& data, size_t first, size_t count,
+uint32_t Exporter::wanted(uint32_t node) const {
+    const NodeInfo& info = source_.nodes()[node];
+    if (options_.meets && !options_.meets(source_.header().root.of(info.key))) return 0;
+    const double least = options_.spacing * options_.spacing;
+    for (size_t step = 0; step < kPrefixSteps; ++step)
+        if (info.area_floor[step] >= least) return info.count >> step;
+    if (info.parent != kNoNode) return 0;  // coarser nodes are dense enough
+    const double share = info.area_floor.back() / least / (1 << (kPrefixSteps - 1));
+    return static_cast<uint32_t>(std::ceil(info.count * share));
+}
+
+void Exporter::append(const NodeData& data, size_t first, size_t count, uint64_t& passed,
                       std::vector<std::byte>& records) const {
-    const uint32_t from = source_.header().schema.stride;
-    const size_t begin = records.size();
-    records.resize(begin + count * schema_.stride);
+    const io::Schema& schema = source_.header().schema;
+    records.reserve(records.size() + count * schema_.stride);
     for (size_t i = 0; i < count; ++i) {
-        const std::byte* in = &data.records[(first + i) * from];
-        std::byte* out = &records[begin + i * schema_.stride];
+        const std::byte* in = &data.records[(first + i) * schema.stride];
+        if (options_.keeps && !options_.keeps(io::position_of(schema, in), in)) continue;
+        if (passed++ % options_.every != 0) continue;
+        records.resize(records.size() + schema_.stride);
+        std::byte* out = &records[records.size() - schema_.stride];
         for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
         if (!spread_.narrow.empty()) spread_colour(in, out);
         if (!normal_) continue;
@@ -113,8 +131,8 @@ io::WriteOptions Exporter::write_options(bool overwrite) const {
     options.lattice = lattice_of(header);
     options.preview = [this](const auto& visit) -> Result<void> {
         Progress progress("looking at all values", source_.header().points, "points");
-        return visit_batches([&](std::span<const std::byte> records) -> Result<bool> {
-            progress.add(records.size() / schema_.stride);
+        return visit_batches([&](std::span<const std::byte> records, uint64_t points) -> Result<bool> {
+            progress.add(points);
             return visit(records);
         });
     };
@@ -122,42 +140,60 @@ io::WriteOptions Exporter::write_options(bool overwrite) const {
 }
 
 Result<void> Exporter::visit_batches(
-    const std::function<Result<bool>(std::span<const std::byte>)>& visit) const {
+    const std::function<Result<bool>(std::span<const std::byte>, uint64_t)>& visit) const {
     std::vector<std::byte> records;
+    uint64_t passed = 0;
     for (uint32_t node = 0; node < source_.nodes().size(); ++node) {
+        const uint32_t count = wanted(node);
+        uint64_t left = source_.nodes()[node].count;  // points of the node that are not yet done
+        if (count == 0) {
+            LUCARNE_ASSIGN(const bool more, visit({}, left));
+            if (!more) return {};
+            continue;
+        }
         LUCARNE_ASSIGN(const NodeData data, source_.load(node));
-        for (size_t first = 0; first < data.count; first += kBatchPoints) {
+        for (size_t first = 0; first < count; first += kBatchPoints) {
+            const size_t batch = std::min(kBatchPoints, count - first);
             records.clear();
-            append(data, first, std::min(kBatchPoints, data.count - first), records);
-            LUCARNE_ASSIGN(const bool more, visit(records));
+            append(data, first, batch, passed, records);
+            const uint64_t done = first + batch < count ? batch : left;
+            left -= done;
+            LUCARNE_ASSIGN(const bool more, visit(records, done));
             if (!more) return {};
         }
     }
     return {};
 }
 
-Result<void> Exporter::write(io::PointWriter& writer, const std::function<void(uint64_t)>& progress) const {
-    const auto write_batch = [&](std::span<const std::byte> records) -> Result<bool> {
+Result<uint64_t> Exporter::write(io::PointWriter& writer,
+                                 const std::function<void(uint64_t)>& progress) const {
+    uint64_t written = 0;
+    const auto write_batch = [&](std::span<const std::byte> records, uint64_t points) -> Result<bool> {
         LUCARNE_TRY(writer.write(records));
-        progress(records.size() / schema_.stride);
+        written += records.size() / schema_.stride;
+        progress(points);
         return true;
     };
     LUCARNE_TRY(visit_batches(write_batch));
-    return writer.finish();
+    LUCARNE_TRY(writer.finish());
+    return written;
 }
 
-Result<void> Exporter::append_node(uint32_t node, bool below, std::vector<std::byte>& records) const {
-    LUCARNE_ASSIGN(const NodeData data, source_.load(node));
-    append(data, 0, data.count, records);
+Result<void> Exporter::append_node(uint32_t node, bool below, uint64_t& passed,
+                                   std::vector<std::byte>& records) const {
+    if (const uint32_t count = wanted(node); count > 0) {
+        LUCARNE_ASSIGN(const NodeData data, source_.load(node));
+        append(data, 0, count, passed, records);
+    }
     const NodeInfo& info = source_.nodes()[node];
     for (uint32_t octant = 0; below && octant < 8; ++octant)
         if (const uint32_t child = info.child(octant); child != kNoNode)
-            LUCARNE_TRY(append_node(child, true, records));
+            LUCARNE_TRY(append_node(child, true, passed, records));
     return {};
 }
 
-Result<void> Exporter::write_copc(const std::filesystem::path& path, bool overwrite,
-                                  const std::function<void(uint64_t)>& progress) const {
+Result<uint64_t> Exporter::write_copc(const std::filesystem::path& path, bool overwrite,
+                                      const std::function<void(uint64_t)>& progress) const {
     const SourceHeader& header = source_.header();
     io::copc::Info cube;
     cube.half_size = header.root.size / 2;
@@ -167,15 +203,18 @@ Result<void> Exporter::write_copc(const std::filesystem::path& path, bool overwr
                    io::copc::NodeWriter::create(path, schema_, info_, write_options(overwrite), cube));
     const auto nodes = source_.nodes();
     std::vector<std::byte> records;
+    uint64_t passed = 0, written = 0;
     for (uint32_t node = 0; node < nodes.size(); ++node) {
         const NodeKey& key = nodes[node].key;
         if (key.level > kMaxLevel) continue;
         records.clear();
-        LUCARNE_TRY(append_node(node, key.level == kMaxLevel, records));
+        LUCARNE_TRY(append_node(node, key.level == kMaxLevel, passed, records));
         LUCARNE_TRY(writer->write({key.level, key.x, key.y, key.z}, records));
-        progress(records.size() / schema_.stride);
+        written += records.size() / schema_.stride;
+        progress(key.level == kMaxLevel ? nodes[node].subtree_count : nodes[node].count);
     }
-    return writer->finish();
+    LUCARNE_TRY(writer->finish());
+    return written;
 }
 
 }  // namespace lucarne::octree

@@ -1,42 +1,99 @@
 #include "octree/export/export.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "gi/scene/scene.h"
 #include "io/core/counted.h"
 #include "io/core/log.h"
+#include "io/core/options.h"
 #include "io/core/progress.h"
 #include "io/formats/copc/copc.h"
 #include "io/formats/scan.h"
 #include "octree/open.h"
 #include "viewer/commands/commands.h"
+#include "viewer/commands/options/clip_options.h"
 #include "viewer/commands/options/outputs.h"
+#include "viewer/publish/seen_points.h"
 
 namespace lucarne::viewer {
 namespace {
 
 struct Options {
     std::filesystem::path cache, output;
+    std::string scene;
+    ClipOptions clip;
+    std::vector<int> hidden_classes, kept_classes;
     octree::ExportOptions content;
+    double spacing = 0;  ///< metres
     bool overwrite = false;
 };
 
-Result<void> export_cache(const Options& options) {
-    LUCARNE_TRY(check_outputs({options.output.string()}, options.overwrite, {options.cache.string()}));
-    LUCARNE_ASSIGN(const auto source, octree::open_octree(options.cache));
-    const octree::Exporter exporter(*source, options.content);
-    const uint64_t points = source->header().points;
-    Progress progress("exporting", points, "points");
-    const auto advance = [&](uint64_t done) { progress.add(done); };
+Result<void> check_attributes(const std::vector<std::string>& wanted, const io::Schema& schema) {
+    std::vector<std::string_view> names;
+    for (const io::Attribute& attribute : schema.attributes) names.push_back(attribute.name);
+    for (const std::string& name : wanted)
+        if (std::ranges::find(names, name) == names.end())
+            return bad_arguments("--attributes", fmt::format("the points have no attribute '{}'", name),
+                                 names.empty() ? "they have only positions" : advice(name, names));
+    return {};
+}
+
+/// Returns the clip and the classes of the scene, with those of the options.
+Result<gi::Look> seen(const Options& options) {
+    gi::Look look;
+    if (!options.scene.empty()) {
+        LUCARNE_ASSIGN(const gi::Scene scene, gi::load_scene(options.scene));
+        look = scene.look;
+    }
+    LUCARNE_TRY(apply(options.clip, look.clip));
+    if (!options.kept_classes.empty()) {
+        look.hidden_classes.set();
+        for (const int number : options.kept_classes) look.hidden_classes.reset(static_cast<size_t>(number));
+    }
+    for (const int number : options.hidden_classes) look.hidden_classes.set(static_cast<size_t>(number));
+    return look;
+}
+
+Result<uint64_t> write(const octree::Exporter& exporter, const Options& options, uint64_t points) {
     if (io::copc::is_name(options.output)) {
-        LUCARNE_TRY(exporter.write_copc(options.output, options.overwrite, advance));
-        log::info("{}: {}", options.output.string(), counted(points, "points"));
-        return {};
+        Progress progress("exporting", points, "points");
+        return exporter.write_copc(options.output, options.overwrite,
+                                   [&](uint64_t done) { progress.add(done); });
     }
     LUCARNE_ASSIGN(const auto writer, io::create_scan(options.output, exporter.schema(), exporter.info(),
                                                       exporter.write_options(options.overwrite)));
-    LUCARNE_TRY(exporter.write(*writer, advance));
-    log::info("{}: {}", options.output.string(), counted(points, "points"));
+    Progress progress("exporting", points, "points");
+    return exporter.write(*writer, [&](uint64_t done) { progress.add(done); });
+}
+
+Result<void> export_cache(const Options& options) {
+    LUCARNE_TRY(
+        check_outputs({options.output.string()}, options.overwrite, {options.cache.string(), options.scene}));
+    LUCARNE_ASSIGN(const gi::Look look, seen(options));
+    LUCARNE_ASSIGN(const auto source, octree::open_octree(options.cache));
+    const octree::SourceHeader& header = source->header();
+    octree::ExportOptions content = options.content;
+    if (!content.attributes.empty()) {
+        content.attributes.clear();
+        const octree::Exporter all(*source, content);
+        content.attributes = options.content.attributes;
+        LUCARNE_TRY(check_attributes(content.attributes, all.schema()));
+    }
+    content.spacing = options.spacing / header.metres_per_unit;
+    export_what_is_seen(look, header.schema, content);
+    const octree::Exporter exporter(*source, content);
+    LUCARNE_ASSIGN(const uint64_t written, write(exporter, options, header.points));
+    if (content.all_points())
+        log::info("{}: {}", options.output.string(), counted(written, "points"));
+    else
+        log::info("{}: {} of {}", options.output.string(), written, counted(header.points, "points"));
+    if (written == 0 && header.points > 0)
+        log::warn("{}: no point was left by the clips, classes and spacing", options.output.string());
     return {};
 }
 
@@ -45,13 +102,37 @@ Result<void> export_cache(const Options& options) {
 void add_export(CommandLine& line) {
     auto options = std::make_shared<Options>();
     Arguments command =
-        line.add("export", "Write a cache back to a scan file, with every point and attribute");
+        line.add("export", "Write a cache, or a part of it, back to a scan file, with every attribute");
     command.add("cache", options->cache, "The cache (or COPC file) to read").required().type_name("CACHE");
     command
         .add("-o,--output", options->output,
              "The scan to write: .las, .laz, .copc.laz, .ply, .pcd, .csv, .txt or .xyz")
         .required()
         .type_name("FILE");
+    command.add("--scene", options->scene, "Write only what this scene's clips and hidden classes leave")
+        .type_name("FILE");
+    add_clip_options(command, options->clip);
+    command.add("--hide-class", options->hidden_classes, "Leave out these classes")
+        .range(0, 255)
+        .separator(',')
+        .type_name("N,...");
+    command.add("--keep-class", options->kept_classes, "Write only these classes")
+        .range(0, 255)
+        .separator(',')
+        .type_name("N,...");
+    command
+        .add("--spacing", options->spacing,
+             "Write points about so far apart, metres; which ones, the octree has chosen")
+        .range(0.0, 1e6)
+        .type_name("M");
+    command.add("--every", options->content.every, "Write every N-th point of those that are left")
+        .range(uint64_t{1}, uint64_t{1'000'000'000})
+        .type_name("N");
+    command
+        .add("--attributes", options->content.attributes,
+             "Write only these attributes beside positions, by name as in `lucarne info`")
+        .separator(',')
+        .type_name("NAME,...");
     command.flag(
         "--normals", options->content.normals,
         "Also write estimated normals, as normal (always done if convert ran with --normals estimate)");

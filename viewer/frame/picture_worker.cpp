@@ -61,6 +61,8 @@ struct PictureWorker::State {
 
 namespace {
 
+constexpr double kExposureSeconds = .3;
+
 Result<void> tell(gi::Device& device, Pipeline& pipeline, const PictureRequest& request, uint64_t number,
                   Told& told) {
     if (told.request == number) return {};
@@ -83,6 +85,8 @@ Result<std::shared_ptr<Picture>> make_picture(gi::Device& device, Pipeline& pipe
     auto picture = std::make_shared<Picture>();
     FrameRequest frame = request.frame;
     frame.stop = &give_up;
+    // At rest the exposure is exact at once, because the last picture of a view stays.
+    if (request.moving) frame.exposure_seconds = kExposureSeconds;
     LUCARNE_ASSIGN(picture->stats, pipeline.render(frame));
     if (picture->stats.given_up) return nullptr;
     const gi::GBuffer& gbuffer = pipeline.gbuffer();

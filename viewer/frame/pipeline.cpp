@@ -393,6 +393,7 @@ Result<void> Pipeline::State::make_picture(const FrameRequest& request) {
     LUCARNE_TRY(draw(*drawing, request));
     if (stopped(request)) return {};
     times.begin("tone map");
+    presentation.follow_exposure(request.exposure_seconds);
     LUCARNE_TRY(presentation.finish(*drawing, other.get(), scene, gbuffer,
                                     {request.accumulate, request.transparent}));
     times.end();

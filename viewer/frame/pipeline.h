@@ -49,7 +49,8 @@ struct FrameRequest {
     /// For motion in real time: the time that may be spent on light that outlasts a frame, s
     /// (gi::Frame::light_seconds).
     double light_seconds = std::numeric_limits<double>::infinity();
-    bool stand_in = false;  ///< lets the default engine draw in the place of one that takes long
+    double exposure_seconds = 0;  ///< time in which automatic exposure follows by 63 %; 0: at once
+    bool stand_in = false;        ///< lets the default engine draw in the place of one that takes long
     const std::atomic<bool>* stop = nullptr;  ///< gives the frame up once it is true (or null)
     Progress* progress = nullptr;             ///< counts pixels, for slow engines (EngineInfo)
 };

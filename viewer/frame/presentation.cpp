@@ -1,5 +1,8 @@
 #include "viewer/frame/presentation.h"
 
+#include <cmath>
+#include <utility>
+
 #include "gi/post/accumulate.h"
 #include "gi/post/backdrop.h"
 #include "gi/post/exposure.h"
@@ -15,19 +18,32 @@ Result<void> Presentation::finish(const gi::Engine& engine, const gi::Engine* ot
     averaged_ = averaging.on;
     points_apart_ = averaging.points_apart || scene.look.backdrop.kind != gi::Backdrop::Kind::scene;
     if (averaged_) LUCARNE_TRY(add_to_average(own_, gbuffer));
-    exposure_ = {};  // an unlit engine's colours are for the screen already
-    if (!engine.info().unlit) {
-        const glm::vec3 balance = gi::white_balance(scene.white);
-        if (scene.exposure_ev) {
-            exposure_ = {*scene.exposure_ev, 0, balance};
-        } else {
-            LUCARNE_ASSIGN(exposure_,
-                           gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map, balance));
-        }
-    }
+    LUCARNE_TRY(expose(engine, scene, gbuffer));
     LUCARNE_TRY(show(engine, scene, pixels, own_));
     if (other) LUCARNE_TRY(compare(*other, scene, gbuffer));
     return gi::draw_backdrop(device_, gbuffer, radiance(), averaged_, scene.look.backdrop, own_.picture);
+}
+
+Result<void> Presentation::expose(const gi::Engine& engine, const gi::Scene& scene,
+                                  const gi::GBuffer& gbuffer) {
+    const auto before = std::exchange(exposed_, std::nullopt);
+    if (engine.info().unlit) {  // its colours are for the screen already
+        exposure_ = {};
+        return {};
+    }
+    const glm::vec3 balance = gi::white_balance(scene.white);
+    if (scene.exposure_ev) {
+        exposure_ = {*scene.exposure_ev, 0, balance};
+        return {};
+    }
+    LUCARNE_ASSIGN(const gi::Exposure measured,
+                   gi::automatic_exposure(device_, radiance(), gbuffer, scene.tone_map, balance));
+    exposed_ = std::chrono::steady_clock::now();
+    const double passed = before ? std::chrono::duration<double>(*exposed_ - *before).count() : 0;
+    const bool at_once = !before || !(exposure_seconds_ > 0);
+    const double share = at_once ? 1 : 1 - std::exp(-passed / exposure_seconds_);
+    exposure_ = gi::between(exposure_, measured, share);
+    return {};
 }
 
 Result<void> Presentation::add_to_average(Images& images, const gi::GBuffer& gbuffer) {

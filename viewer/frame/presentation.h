@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "gi/device/gl/device.h"
 #include "gi/engine.h"
@@ -30,6 +32,8 @@ class Presentation {
         bool on = false;            ///< show the mean of this frame and the frames since restart()
         bool points_apart = false;  ///< average the points' light apart from the background
     };
+    /// Time in which automatic exposure follows the pictures by 63 %; 0: at once.
+    void follow_exposure(double seconds) { exposure_seconds_ = seconds; }
     /// Finishes one frame, whose radiance is in sample(). `other`: the engine to compare with, or null.
     /// Errors: no device memory.
     Result<void> finish(const gi::Engine& engine, const gi::Engine* other, const gi::Scene& scene,
@@ -59,6 +63,7 @@ class Presentation {
     };
 
     Result<void> add_to_average(Images& images, const gi::GBuffer& gbuffer);
+    Result<void> expose(const gi::Engine& engine, const gi::Scene& scene, const gi::GBuffer& gbuffer);
     Result<void> show(const gi::Engine& lit_by, const gi::Scene& scene, uint32_t pixels, Images& images);
     Result<void> compare(const gi::Engine& other, const gi::Scene& scene, const gi::GBuffer& gbuffer);
 
@@ -67,6 +72,8 @@ class Presentation {
     uint32_t accumulated_ = 0;
     bool averaged_ = false, points_apart_ = false;
     gi::Exposure exposure_;
+    double exposure_seconds_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> exposed_;  ///< when exposure was last automatic
 };
 
 }  // namespace lucarne::viewer

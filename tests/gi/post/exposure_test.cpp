@@ -104,6 +104,15 @@ TEST_F(ExposureTest, PictureOfOneBrightnessIsNotLowered) {
     EXPECT_EQ(found.compression, 0);
 }
 
+TEST_F(ExposureTest, StepsLeadFromOneToTheOther) {
+    const Exposure a{-2, 0, glm::vec3(1)}, b{4, 3, glm::vec3(1, 1, 2)};
+    EXPECT_EQ(between(a, b, 1).ev, b.ev);
+    EXPECT_EQ(between(a, b, 0).ev, a.ev);
+    EXPECT_EQ(between(a, b, .5).ev, 1);
+    EXPECT_EQ(between(a, b, .5).compression, 1.5f);
+    EXPECT_EQ(between(a, b, 0).balance, b.balance) << "a white balance is chosen, not measured";
+}
+
 TEST_F(ExposureTest, NoisyPixelsAreNoHighlights) {
     std::vector<glm::vec4> picture(1600, glm::vec4(1));
     for (size_t i = 0; i < picture.size(); i += 16)

@@ -23,7 +23,7 @@ Result<void> convert(std::vector<const io::PointSource*> inputs, const std::file
     return {};
 }
 
-Result<void> export_to(const std::filesystem::path& cache, const std::filesystem::path& output) {
+Result<uint64_t> export_to(const std::filesystem::path& cache, const std::filesystem::path& output) {
     LUCARNE_ASSIGN(const auto source, open_cache(cache));
     const Exporter exporter(*source, {});
     LUCARNE_ASSIGN(const auto writer, io::create_scan(output, exporter.schema(), exporter.info(), {}));

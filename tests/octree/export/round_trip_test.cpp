@@ -69,7 +69,7 @@ Rows rows_of(const io::PointSource& scan, const io::Schema& like) {
     return rows;
 }
 
-Result<void> export_as(const fs::path& cache, const fs::path& to) {
+Result<uint64_t> export_as(const fs::path& cache, const fs::path& to) {
     LUCARNE_ASSIGN(const auto source, open_cache(cache));
     const Exporter exporter(*source, {});
     if (io::copc::is_name(to)) return exporter.write_copc(to, false, [](uint64_t) {});

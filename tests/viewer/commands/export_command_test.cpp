@@ -95,5 +95,41 @@ TEST_F(ExportCommand, WhatIntegersCannotHoldIsRoundedAndSaid) {
     EXPECT_NE(said.find("coordinates are rounded, by at most 2.1e-07"), said.npos) << said;
 }
 
+TEST_F(ExportCommand, WritesWhatClipsAndClassesLeave) {
+    std::string lines = "x y z classification\n";
+    for (int x = 0; x < 10; ++x)
+        for (int y = 0; y < 10; ++y) lines += fmt::format("{} {} 0 {}\n", x, y, x < 5 ? 2 : 6);
+    convert(text("grid.xyz", lines), "grid.luc");
+    const auto count = [&](const std::string& options) {
+        succeed(fmt::format("export {} -o {} --overwrite {}", folder_ / "grid.luc", folder_ / "part.csv",
+                            options));
+        return this->lines(folder_ / "part.csv", ',').size();
+    };
+    EXPECT_EQ(count(""), 100u);
+    EXPECT_EQ(count("--clip-box 2,2,-1,4,6,1"), 15u) << "faces included";
+    EXPECT_EQ(count("--clip-outside 2,2,-1,4,6,1"), 85u);
+    EXPECT_EQ(count("--clip-plane 6,0,0,1,0,0"), 40u);
+    EXPECT_EQ(count("--clip-box 0,0,0,0,9,0 --clip-box 9,0,0,9,9,0"), 20u);
+    EXPECT_EQ(count("--hide-class 6"), 50u);
+    EXPECT_EQ(count("--keep-class 6 --clip-plane 6,0,0,1,0,0"), 40u);
+    EXPECT_EQ(count("--keep-class 6 --hide-class 6"), 0u);
+    EXPECT_EQ(count("--every 10"), 10u);
+    // A saved scene hides the same points.
+    std::ofstream(folder_ / "scene.json")
+        << R"({"look": {"hidden_classes": [2], "clip": {"boxes": [{"min": [0, 0, -1], "max": [5, 9, 1]}]}}})";
+    EXPECT_EQ(count("--scene " + folder_ / "scene.json"), 10u);
+
+    const auto refused = test::lucarne(
+        fmt::format("export {} -o {} --attributes clasification", folder_ / "grid.luc", folder_ / "no.csv"));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.output.find("did you mean classification"), std::string::npos) << refused.output;
+    EXPECT_EQ(refused.output.find("exporting"), std::string::npos) << "no progress before an error";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "no.csv"));
+    const auto unknown =
+        test::lucarne(fmt::format("export {} -o {}", folder_ / "grid.luc", folder_ / "no.foo"));
+    EXPECT_NE(unknown.code, 0);
+    EXPECT_EQ(unknown.output.find("exporting"), std::string::npos) << unknown.output;
+}
+
 }  // namespace
 }  // namespace lucarne::viewer

@@ -10,42 +10,10 @@
 #include <glm/trigonometric.hpp>
 
 #include "viewer/commands/find_name.h"
+#include "viewer/commands/options/numbers.h"
 
 namespace lucarne::viewer {
 namespace {
-
-/// Parses `count` finite numbers separated by `between`, for example "1,2.5,-3".
-Result<std::vector<double>> parse_numbers(std::string_view option, std::string_view text, char between,
-                                          size_t count) {
-    std::vector<double> numbers;
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (bool more = true; more;) {
-        double number = 0;
-        const auto [next, error] = std::from_chars(at, end, number);
-        if (error != std::errc() || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        more = next != end && *next == between;
-        at = more ? next + 1 : next;
-    }
-    if (at == end && numbers.size() == count) return numbers;
-    return bad_arguments(std::string(option),
-                         fmt::format("'{}' is not {} numbers separated by '{}'", text, count, between));
-}
-
-Result<gi::ClipBox> parse_box(std::string_view option, const std::string& text, bool inverted) {
-    const bool turned = std::ranges::count(text, ',') == 6;
-    LUCARNE_ASSIGN(const auto n, parse_numbers(option, text, ',', turned ? 7 : 6));
-    gi::ClipBox box{{n[0], n[1], n[2]},
-                    {n[3], n[4], n[5]},
-                    turned ? glm::radians(std::remainder(n[6], 360.0)) : 0,
-                    inverted};
-    if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
-        return bad_arguments(std::string(option),
-                             fmt::format("'{}' has its second corner below its first", text),
-                             "give x0,y0,z0,x1,y1,z1 with the smaller ones first");
-    return box;
-}
 
 /// Parses "scene", "r,g,b" or "r,g,b:r,g,b".
 Result<gi::Backdrop> parse_background(const std::string& text) {
@@ -86,28 +54,6 @@ Result<void> apply_colours(const LookOptions& options, gi::Look& look) {
         look.range = gi::ValueRange{n[0], n[1]};
     }
     for (const int number : options.hidden_classes) look.hidden_classes.set(static_cast<size_t>(number));
-    return {};
-}
-
-Result<void> apply_clip(const LookOptions& options, gi::Clip& clip) {
-    for (const auto& text : options.clip_boxes) {
-        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-box", text, false));
-        clip.boxes.push_back(box);
-    }
-    for (const auto& text : options.clip_outside) {
-        LUCARNE_ASSIGN(const gi::ClipBox box, parse_box("--clip-outside", text, true));
-        clip.boxes.push_back(box);
-    }
-    for (const auto& text : options.clip_planes) {
-        LUCARNE_ASSIGN(const auto n, parse_numbers("--clip-plane", text, ',', 6));
-        const gi::ClipPlane plane{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-        if (!(glm::length(plane.normal) > 0))
-            return bad_arguments("--clip-plane", "the normal points nowhere");
-        clip.planes.push_back(plane);
-    }
-    clip.casts |= options.clip_casts;
-    if (clip.boxes.size() + clip.planes.size() > gi::kMostClips)
-        return bad_arguments("--clip-box", fmt::format("more than {} boxes and planes", gi::kMostClips));
     return {};
 }
 
@@ -155,18 +101,7 @@ void add_look_options(Arguments& command, LookOptions& options) {
         .range(0, 255)
         .separator(',')
         .type_name("N,...");
-    command
-        .add(
-            "--clip-box", options.clip_boxes,
-            "Keep only points inside the box (or inside any of several); DEGREES turns it about the vertical")
-        .repeatable()
-        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command.add("--clip-outside", options.clip_outside, "Keep only points outside the box")
-        .repeatable()
-        .type_name("X0,Y0,Z0,X1,Y1,Z1[,DEGREES]");
-    command.add("--clip-plane", options.clip_planes, "Keep only points on the side that the normal points to")
-        .repeatable()
-        .type_name("PX,PY,PZ,NX,NY,NZ");
+    add_clip_options(command, options.clip);
     command.flag("--clip-casts", options.clip_casts,
                  "Clipped points are invisible, but still block and bounce light");
     command.flag("--legend", options.legend, "Draw a legend of the colours over the picture (.png)");
@@ -177,7 +112,8 @@ void add_look_options(Arguments& command, LookOptions& options) {
 
 Result<void> apply(const LookOptions& options, gi::Look& look) {
     LUCARNE_TRY(apply_colours(options, look));
-    LUCARNE_TRY(apply_clip(options, look.clip));
+    LUCARNE_TRY(apply(options.clip, look.clip));
+    look.clip.casts |= options.clip_casts;
     if (!options.shading.empty()) {
         LUCARNE_ASSIGN(const size_t shading, find_name("--shading", options.shading, gi::shading_names()));
         look.unlit.shading = static_cast<gi::Shading>(shading);

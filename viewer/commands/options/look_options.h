@@ -7,6 +7,7 @@
 #include "gi/scene/look.h"
 #include "io/core/error.h"
 #include "viewer/commands/options/arguments.h"
+#include "viewer/commands/options/clip_options.h"
 
 namespace lucarne::viewer {
 
@@ -14,7 +15,7 @@ namespace lucarne::viewer {
 struct LookOptions {
     std::string colour, map, range, shading, background;
     std::optional<double> point_size, point_pixels, shading_strength;
-    std::vector<std::string> clip_boxes, clip_planes, clip_outside;
+    ClipOptions clip;
     std::vector<int> hidden_classes;
     std::optional<uint32_t> outliers;
     bool reversed = false, clip_casts = false, single_discs = false, open_holes = false, legend = false,

@@ -189,7 +189,7 @@ Clip random_clip(std::mt19937& random) {
 }
 
 /// The rule of data/README.md, computed in doubles.
-bool keeps(const Clip& clip, const glm::dvec3& p) {
+bool rule_keeps(const Clip& clip, const glm::dvec3& p) {
     bool asked = false, inside_one = false;
     for (const ClipBox& box : clip.boxes) {
         const glm::dvec3 middle = (box.min + box.max) / 2.0, d = p - middle, half = (box.max - box.min) / 2.0;
@@ -207,10 +207,10 @@ bool keeps(const Clip& clip, const glm::dvec3& p) {
 
 /// Returns whether the rule keeps any point within `slack` of a point.
 bool keeps_near(const Clip& clip, const glm::dvec3& p, double slack) {
-    bool close = keeps(clip, p);
+    bool close = rule_keeps(clip, p);
     for (int corner = 0; corner < 8 && !close; ++corner)
-        close = keeps(clip,
-                      p + slack * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+        close = rule_keeps(
+            clip, p + slack * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
     return close;
 }
 
@@ -237,7 +237,7 @@ TEST_F(UnlitTest, NoPixelShowsAClippedPointAndEveryKeptPointStays) {
         ASSERT_TRUE((*loaded)->pool.make_cut(*device, cloud, cloud.whole(), origin, cut, clip));
         const auto kept = (*loaded)->pool.download(cut);
         size_t expected = 0;
-        for (const Surfel& s : all) expected += keeps(clip, glm::dvec3(s.position));
+        for (const Surfel& s : all) expected += rule_keeps(clip, glm::dvec3(s.position));
         EXPECT_NEAR(static_cast<double>(kept.size()), static_cast<double>(expected), 2) << "but for rounding";
         for (const Surfel& s : kept) {
             const glm::dvec3 p = glm::dvec3(s.position) + origin;
@@ -263,6 +263,24 @@ TEST_F(UnlitTest, NoPixelShowsAClippedPointAndEveryKeptPointStays) {
     EXPECT_GT(shown, 20000u) << "something was to be seen";
 }
 
+TEST_F(UnlitTest, TheHostsTestOfAPointFollowsTheRule) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(-4, 4);
+    size_t kept = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        const Clip clip = random_clip(random);
+        for (int i = 0; i < 50; ++i) {
+            const glm::dvec3 p(place(random), place(random), place(random));
+            ASSERT_EQ(keeps(clip, p), rule_keeps(clip, p));
+            kept += keeps(clip, p);
+        }
+    }
+    EXPECT_GT(kept, 5000u);
+    EXPECT_LT(kept, 45000u);
+    const Clip face{{{{0.1, 0.1, 0.1}, {0.7, 0.7, 0.7}}}, {}, false};
+    EXPECT_TRUE(keeps(face, {0.1, 0.7, 0.3})) << "faces are kept";
+}
+
 TEST_F(UnlitTest, CubesAreNeverSaidToBeWhollyKeptOrGoneWhenTheyAreNot) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> place(-4, 4), share(0, 1);
@@ -271,8 +289,8 @@ TEST_F(UnlitTest, CubesAreNeverSaidToBeWhollyKeptOrGoneWhenTheyAreNot) {
         const octree::Cube cube{{place(random), place(random), place(random)}, 0.1 + 2 * share(random)};
         const Kept said = kept(clip, cube);
         for (int i = 0; i < 50; ++i) {
-            const bool keeps_it =
-                keeps(clip, cube.min + cube.size * glm::dvec3(share(random), share(random), share(random)));
+            const bool keeps_it = rule_keeps(
+                clip, cube.min + cube.size * glm::dvec3(share(random), share(random), share(random)));
             if (said != Kept::some) {
                 EXPECT_EQ(keeps_it, said == Kept::all);
             }
