@@ -29,9 +29,9 @@ void choose_format(Header& header, const Schema& schema, bool from_las, Containe
     else if (!has(names::scan_angle_rank))  // not from an older LAS file: make room for all classes
         extended = extended || has(names::classification) || has(names::return_number) ||
                    has(names::number_of_returns);
-    const bool gps = has(names::gps_time) || (from_las && has_gps_time(header.point_format));
-    const bool color = has(names::color) || (from_las && has_color(header.point_format));
-    const bool nir = has(names::nir) || (from_las && header.point_format == 8);
+    const bool gps = has(names::gps_time);
+    const bool color = has(names::color);
+    const bool nir = has(names::nir);
     if (extended) {
         header.minor = 4;
         header.point_format = nir ? 8 : color ? 7 : 6;

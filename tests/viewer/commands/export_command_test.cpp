@@ -131,5 +131,13 @@ TEST_F(ExportCommand, WritesWhatClipsAndClassesLeave) {
     EXPECT_EQ(unknown.output.find("exporting"), std::string::npos) << unknown.output;
 }
 
+TEST_F(ExportCommand, AttributesThatAreLeftOutTakeNoSpaceInLasEither) {
+    const std::string cache = test::make_cornell(folder_, "2k"), output = folder_ / "part.las";
+    succeed(fmt::format("export {} -o {} --attributes intensity", cache, output));
+    const auto info = test::lucarne("info " + output);
+    EXPECT_NE(info.output.find("intensity"), std::string::npos);
+    EXPECT_EQ(info.output.find("\"color\""), std::string::npos) << info.output;
+}
+
 }  // namespace
 }  // namespace lucarne::viewer
