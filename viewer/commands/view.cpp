@@ -28,6 +28,7 @@ struct ViewOptions {
     double frame_time_ms = 100;
     bool overwrite = false;
     bool size_given = false;  ///< false: the window is as large as last time
+    bool says_what = false;   ///< the command line says what to show: the project stays out of it
 };
 
 /// Returns the starting view of what is open. Called on a thread, because it reads nodes.
@@ -115,7 +116,7 @@ Result<void> view(ViewOptions options) {
     model.scans = &scans;
     model.view.message = std::move(kept.problem);
     take_settings(std::move(kept.settings), model);
-    auto done = ViewSession(*window, *worker, model, shot, scans, interrupt).run();
+    auto done = ViewSession(*window, *worker, model, shot, scans, interrupt, !options.says_what).run();
     awake = false;
     return done;
 }
@@ -153,6 +154,9 @@ void add_view(CommandLine& line) {
     command.flag("--overwrite", options->overwrite, "Replace the screenshot's file");
     command.run([options, command] {
         options->size_given = command.given("--size");
+        options->says_what = !command.given_only(
+            {"INPUT", "--size", "--points", "--memory", "--device-memory", "--no-prefetch", "--no-cache",
+             "--frame-time", "--columns", "--unit", "--spacing", "--mesh-points", "--vertices", "--salvage"});
         return view(*options);
     });
 }

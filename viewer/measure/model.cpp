@@ -88,6 +88,14 @@ Result<void> MeasureModel::load(const std::filesystem::path& path) {
     return {};
 }
 
+void MeasureModel::restore(std::vector<Measurement> kept, double its_metres_per_unit) {
+    set_unit(its_metres_per_unit);
+    list = {};
+    list.replace(std::move(kept));
+    list.mark_saved();
+    selected.reset();
+}
+
 void MeasureModel::set_unit(double its_metres_per_unit) {
     if (its_metres_per_unit == metres_per_unit) return;
     const double factor = metres_per_unit / its_metres_per_unit;

@@ -58,6 +58,9 @@ struct MeasureModel {
     /// load_measurements(); on failure nothing changes.
     Result<void> load(const std::filesystem::path& path);
 
+    /// Shows measurements that were kept: no change to undo, and none to save.
+    void restore(std::vector<Measurement> kept, double its_metres_per_unit);
+
     /// Call when the unit of the whole source has changed because a scan was opened or closed.
     void set_unit(double its_metres_per_unit);
 

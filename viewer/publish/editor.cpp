@@ -112,6 +112,14 @@ void PathEditor::undo() {
     select(selected_);
 }
 
+Result<void> PathEditor::restore(CameraPath path) {
+    LUCARNE_TRY(take(std::move(path)));
+    before_.clear();
+    saved_ = revision_;
+    selected_ = 0;
+    return {};
+}
+
 Result<void> PathEditor::load(const std::filesystem::path& file) {
     LUCARNE_ASSIGN(CameraPath loaded, load_path(file));
     put(std::move(loaded));

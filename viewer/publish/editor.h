@@ -32,6 +32,8 @@ class PathEditor {
     bool can_undo() const { return !before_.empty(); }
     void undo();
 
+    /// Replaces the path by one that was kept: no change to undo, and none to save. Errors: it is no path.
+    Result<void> restore(CameraPath path);
     /// Replaces the path by a file's. Errors: those of reading the file; on failure nothing changes.
     Result<void> load(const std::filesystem::path& file);
     /// Saves the path. Errors: there is no key frame; the file cannot be written; it exists and `overwrite`

@@ -11,12 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool looks_like_a_scan(const std::string& name) {
+bool can_be_opened(const std::string& name) {
     std::string lower = name;
     std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-    return lower.ends_with(".luc") || std::ranges::any_of(scan_extensions(), [&](const auto extension) {
-               return lower.ends_with(extension);
-           });
+    return lower.ends_with(".luc") || lower.ends_with(".json") ||
+           std::ranges::any_of(scan_extensions(),
+                               [&](const auto extension) { return lower.ends_with(extension); });
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ FolderListing list_folder(const fs::path& folder, bool all) {
         const std::string name = entry->path().filename().string();
         const bool is_folder = entry->is_directory(unknown);
         if (name.empty() || name[0] == '.' || (!is_folder && !entry->is_regular_file(unknown))) continue;
-        if (!is_folder && !all && !looks_like_a_scan(name)) continue;
+        if (!is_folder && !all && !can_be_opened(name)) continue;
         const uint64_t bytes = is_folder ? 0 : entry->file_size(unknown);
         listing.entries.push_back({name, is_folder, unknown ? 0 : bytes});
     }

@@ -21,7 +21,7 @@ namespace {
 constexpr size_t kMostOutput = size_t{1} << 20;  ///< bytes
 
 std::string patterns() {
-    std::string all = "*.luc";
+    std::string all = "*.luc *.json";
     for (const auto extension : scan_extensions()) {
         std::string upper(extension);
         std::ranges::transform(upper, upper.begin(),
@@ -44,14 +44,14 @@ std::vector<std::string> NativeDialog::programs() {
 std::vector<std::string> NativeDialog::command(const std::string& program, const std::string& folder) {
     if (program == "kdialog")
         return {"kdialog",           "--title",           "Open scans", "--multiple",
-                "--separate-output", "--getopenfilename", folder,       patterns() + " | Scans"};
+                "--separate-output", "--getopenfilename", folder,       patterns() + " | Scans and scenes"};
     return {"zenity",
             "--file-selection",
             "--multiple",
             "--separator=\n",
             "--title=Open scans",
             "--filename=" + folder + "/",
-            "--file-filter=Scans | " + patterns(),
+            "--file-filter=Scans and scenes | " + patterns(),
             "--file-filter=All files | *"};
 }
 

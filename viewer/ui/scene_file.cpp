@@ -1,8 +1,21 @@
 #include "viewer/ui/scene_file.h"
 
+#include "gi/registry.h"
 #include "io/files/free_name.h"
 
 namespace lucarne::viewer {
+
+void show_scene(View& view, gi::Scene scene) {
+    const gi::RenderSettings& settings = scene.render;
+    if (find_preset(settings.preset)) (void)view.choose_preset(settings.preset);
+    if (gi::find_engine(settings.engine)) view.method.engine = settings.engine;
+    apply(settings, view.method.settings);
+    view.resolution_scale = settings.scale.value_or(1);
+    if (!scene.cameras.empty()) view.go_to(scene.cameras.front());
+    std::erase_if(scene.cameras, [](const gi::SceneCamera& camera) { return camera.name == "view"; });
+    view.scene = std::move(scene);
+    view.scene_changed();
+}
 
 gi::Scene scene_to_save(const View& view) {
     gi::Scene scene = view.scene;
@@ -16,6 +29,14 @@ gi::Scene scene_to_save(const View& view) {
     if (view.resolution_scale != 1) scene.render.scale = view.resolution_scale;
     scene.cameras.insert(scene.cameras.begin(), camera);
     return scene;
+}
+
+Result<void> SceneFile::open(View& view, const std::filesystem::path& path) {
+    LUCARNE_ASSIGN(gi::Scene scene, gi::load_scene(path));
+    show_scene(view, std::move(scene));
+    path_ = path;
+    mark(view);
+    return {};
 }
 
 void SceneFile::mark(const View& view) {

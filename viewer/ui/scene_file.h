@@ -20,6 +20,10 @@ class SceneFile {
     /// Whether the scene has unsaved changes. False if all changes were undone.
     bool differs(const View& view) const;
 
+    /// Shows the scene of a file, which becomes path(). Errors: those of gi::load_scene(); then nothing
+    /// changes.
+    Result<void> open(View& view, const std::filesystem::path& path);
+
     /// Returns the file for saving the scene: path(), or a free name in the folder of pictures.
     std::filesystem::path place(const View& view) const;
     /// Saves the scene to `path`, which becomes path(). Overwrites no other file than path().
@@ -32,6 +36,11 @@ class SceneFile {
     std::string saved_;
     uint64_t version_ = 1;
 };
+
+/// Shows a scene in the window: its light and look, the view of its first camera, and pictures made as it
+/// says, as far as this program knows how. A camera named "view" is the window's own and is taken out of the
+/// scene.
+void show_scene(View& view, gi::Scene scene);
 
 /// Returns the scene as the window shows it. The window's view is its first camera, named "view".
 gi::Scene scene_to_save(const View& view);

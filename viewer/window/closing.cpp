@@ -12,9 +12,10 @@
 namespace lucarne::viewer {
 
 /// Returns why the user must be asked before closing; empty if nothing would be lost.
-std::string Closing::reason_to_ask() const {
+std::string Closing::reason_to_ask() {
     std::string all;
-    for (const Unsaved& one : unsaved(model_)) all += (all.empty() ? "not saved: " : ", ") + one.what;
+    model_.closing.kept = keep_();
+    for (const Unsaved& one : work_to_lose(model_)) all += (all.empty() ? "not saved: " : ", ") + one.what;
     const auto add = [&](std::string_view reason) { all += (all.empty() ? "" : "; ") + std::string(reason); };
     if (model_.publish.rendering.running) add("a picture or flight is being rendered");
     if (model_.scans->converting()) add("a scan is being converted");
@@ -48,7 +49,7 @@ void Closing::answer(std::span<const KeyChord> keys) {
     for (const KeyChord& chord : keys) {
         if (!question.shown) return;
         const bool enter = chord.key == GLFW_KEY_ENTER || chord.key == GLFW_KEY_KP_ENTER;
-        const bool save = enter && !unsaved(model_).empty();
+        const bool save = enter && !work_to_lose(model_).empty();
         const bool discard = chord.key == GLFW_KEY_D && chord.modifiers == GLFW_MOD_CONTROL;
         if (chord.key == GLFW_KEY_ESCAPE) question.shown = false;
         if (save) question.answers.push(SaveAndClose{});

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "io/core/log.h"
 #include "viewer/scans/scan_set.h"
 
 namespace lucarne::viewer {
@@ -23,6 +24,22 @@ void FileOpener::choose_files() {
     browser_.open(folder());
 }
 
+/// Shows the scenes among the files, and takes them out of the list.
+void FileOpener::open_scenes(std::vector<std::string>& files) {
+    const auto is_scene = [](const std::string& file) {
+        return std::filesystem::path(file).extension() == ".json";
+    };
+    for (const std::string& file : files) {
+        if (!is_scene(file)) continue;
+        const auto done = model_.scans->source() ? model_.scene_file.open(model_.view, file)
+                                                 : failed(file, "is a scene", "open a scan first");
+        if (done) model_.lights.mood.reset();
+        model_.view.message = done ? "opened " + file : done.error().line();
+        log::info("{}", model_.view.message);
+    }
+    std::erase_if(files, is_scene);
+}
+
 void FileOpener::take_files() {
     std::vector<std::string> files = window_.take_dropped_files();
     const auto add = [&](std::vector<std::string> more) {
@@ -34,6 +51,7 @@ void FileOpener::take_files() {
     };
     for (const auto& command : model_.scan_commands.take()) std::visit(run, command);
     if (auto chosen = dialog_.poll()) add(std::move(*chosen));
+    open_scenes(files);
     if (files.empty()) return;
     for (const std::string& file : files) model_.settings.opened(absolute_path(file));
     settings_.save();

@@ -16,12 +16,13 @@ class FileOpener {
     FileOpener(Window& window, ViewModel& model, KeptSettings& settings)
         : window_(window), model_(model), settings_(settings) {}
 
-    /// Opens files that were dropped on the window or chosen in a dialog.
+    /// Opens scans and scenes (.json) that were dropped on the window or chosen in a dialog.
     void take_files();
     void draw() { draw_file_browser(browser_, model_.scan_commands); }
 
  private:
     void choose_files();
+    void open_scenes(std::vector<std::string>& files);
     std::filesystem::path folder() const;
 
     Window& window_;

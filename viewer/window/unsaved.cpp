@@ -51,6 +51,10 @@ std::vector<Unsaved> unsaved(const ViewModel& model, SaveTo to) {
     return all;
 }
 
+std::vector<Unsaved> work_to_lose(const ViewModel& model) {
+    return model.closing.kept ? std::vector<Unsaved>() : unsaved(model);
+}
+
 Result<void> save_unsaved(ViewModel& model, SaveTo to) {
     Result<void> first;
     for (const Unsaved& one : unsaved(model, to)) {

@@ -26,6 +26,8 @@ enum class SaveTo {
 /// Returns all unsaved work: measurements, key frames of the flythrough, the scene. A changed view does not
 /// count.
 std::vector<Unsaved> unsaved(const ViewModel& model, SaveTo to = SaveTo::own_files);
+/// Returns what closing the window would lose: nothing if the project keeps it all.
+std::vector<Unsaved> work_to_lose(const ViewModel& model);
 /// Saves all unsaved work, and continues after failures. Returns the first error.
 Result<void> save_unsaved(ViewModel& model, SaveTo to = SaveTo::own_files);
 

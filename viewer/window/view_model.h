@@ -36,6 +36,7 @@ struct DiscardAndClose {};
 
 struct ClosingQuestion {
     bool shown = false;
+    bool kept = false;    ///< the project keeps the work: nothing would be lost
     std::string problem;  ///< why saving failed
     CommandQueue<SaveAndClose, DiscardAndClose> answers;
 };

@@ -168,6 +168,25 @@ void ViewSession::take_extent() {
     model_.view.scene_changed();
     own_scene_ = model_.view.scene_version;
     model_.scene_file.mark(model_.view);
+    if (first) open_project();
+}
+
+/// Shows the work that was kept on the scans that have been opened first.
+void ViewSession::open_project() {
+    own_engine_ = model_.view.method.engine;
+    std::vector<std::string> paths;
+    for (const ScanRow& row : scans_.rows())
+        for (const std::string& path : row.paths) paths.push_back(absolute_path(path));
+    if (project_.open(std::move(paths), *scans_.source())) own_scene_ = 0;  // more points change nothing
+}
+
+/// Whether the window shows anything but the start of what is open.
+bool ViewSession::changed_by_user() const {
+    if (!placed_ || model_.view.glide.under_way()) return false;
+    const auto camera = model_.view.rig.camera(), home = CameraRig(model_.view.home).camera();
+    return model_.view.scene_version != own_scene_ || model_.view.method.engine != own_engine_ ||
+           camera.position != home.position || camera.target != home.target ||
+           !model_.measure.list.all().empty() || !model_.publish.editor.empty();
 }
 
 /// Applies changes of the open scans. Starts conversions, one after another, once there is something to see.
@@ -182,6 +201,7 @@ void ViewSession::follow_scans() {
     if (seen && !std::exchange(first_told_, true))
         log::info("first picture after {:.2f} s: {} points", seconds_since_start(),
                   model_.view.picture->stats.view_points);
+    if (placed_ && scans_.rows().empty()) project_.close();
     if (seen || (!scans_.source() && scans_.settled())) scans_.convert_next();
     window_.set_title("Lucarne - " + scans_title(scans_.rows()));
 }
@@ -359,6 +379,7 @@ Result<void> ViewSession::save_shot() {
 Result<void> ViewSession::run() {
     auto done = guarded("window", [&] { return show_until_closed(); });
     if (!done) {
+        if (project_.keep()) return done;
         if (const auto saved = save_unsaved(model_, SaveTo::free_names); !saved)
             log::warn("{}", saved.error().line());
         return done;
@@ -376,7 +397,8 @@ Result<void> ViewSession::run() {
 Result<void> ViewSession::show_until_closed() {
     Clock::time_point awake = Clock::now();
     while (!closing_.agreed(shot_.has_value())) {
-        if (interrupt_.requested()) return save_unsaved(model_, SaveTo::free_names);
+        if (interrupt_.requested())
+            return project_.keep() ? Result<void>() : save_unsaved(model_, SaveTo::free_names);
         const bool lively = seconds_at_rest() < 2 * kRest || ImGui::IsAnyMouseDown();
         // The interval counts from one frame's start to the next one's, so that a frame's own time is not
         // added.
@@ -401,6 +423,7 @@ Result<void> ViewSession::show_until_closed() {
         LUCARNE_TRY(carry_out());
         if (drawn) window_.swap();
         send_request();
+        if (seconds_at_rest() > kRest) project_.follow(changed_by_user());
         if (drawn) model_.health.frames.add(std::chrono::duration<double>(Clock::now() - awake).count());
         if (!shot_) continue;
         if (given_up_) return tl::make_unexpected(*worker_.lost_device());

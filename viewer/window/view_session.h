@@ -20,6 +20,7 @@
 #include "viewer/window/closing.h"
 #include "viewer/window/controller_input.h"
 #include "viewer/window/file_opener.h"
+#include "viewer/window/kept_project.h"
 #include "viewer/window/kept_settings.h"
 #include "viewer/window/view_model.h"
 #include "viewer/window/window.h"
@@ -40,7 +41,7 @@ struct ScriptedShot {
 class ViewSession {
  public:
     ViewSession(Window& window, PictureWorker& worker, ViewModel& model, std::optional<ScriptedShot> shot,
-                ScanSet& scans, InterruptRequest& interrupt)
+                ScanSet& scans, InterruptRequest& interrupt, bool keeps_project)
         : window_(window),
           worker_(worker),
           model_(model),
@@ -50,14 +51,16 @@ class ViewSession {
           interrupt_(interrupt),
           settings_(window, model),
           files_(window, model, settings_),
-          closing_(window, model),
+          project_(model, keeps_project && !shot_),
+          closing_(window, model, [this] { return project_.keep(); }),
           bookmarks_([&window](const io::Image8& image) { return window.make_texture(image); },
                      [&window](unsigned texture) { window.free_texture(texture); }),
           quality_(model.view.frame_time, worker.device().software ? kFirstScale : 1),
           publish_([&window] { return window.renew_worker_device(Window::Hidden::rendering); },
                    &Window::wake) {}
 
-    /// Runs until the window is closed. If it ends without asking the user (SIGTERM, an error), saves unsaved
+    /// Runs until the window is closed. `keeps_project`: shows and keeps the user's work on the scan
+    /// (viewer/project). If it ends without asking the user (SIGTERM, an error), saves unsaved
     /// work in files with free names. Errors: the scripted shot cannot be made or written, or does not show
     /// all scans; the window is lost; unsaved work cannot be written.
     Result<void> run();
@@ -74,6 +77,8 @@ class ViewSession {
     void follow_device();
     void follow_scans();
     void take_extent();
+    void open_project();
+    bool changed_by_user() const;
     void take_input();
     bool take_navigation();
     std::optional<double> floor();
@@ -95,6 +100,7 @@ class ViewSession {
     InterruptRequest& interrupt_;
     KeptSettings settings_;
     FileOpener files_;
+    KeptProject project_;
     Closing closing_;
     BookmarkSession bookmarks_;
     FloorFinder floor_;
@@ -114,6 +120,7 @@ class ViewSession {
     PictureRequest sent_;
     uint64_t sent_number_ = 0;
     uint64_t own_scene_ = 1;  ///< the scene version before any change by the user
+    std::string own_engine_;  ///< with which the window has opened
     uint64_t scene_seen_ = 0;
     uint32_t whole_pictures_ = 0;    ///< complete pictures in the displayed average
     uint32_t idle_frames_ = 0;       ///< frames of the window with nothing open

@@ -43,6 +43,26 @@ class DroppedFiles : public ManagedWindow {
     }
 };
 
+TEST_F(DroppedFiles, ThatAreScenesAreShown) {
+    const std::string scene = folder_ / "above.json", broken = folder_ / "broken.json";
+    std::ofstream(scene)
+        << R"({"cameras": [{"name": "view", "position": [2.7, 2.8, 16], "target": [2.7, 2.8, 0],
+                                             "up": [0, 1, 0]}],
+                               "lights": [{"type": "point", "position": [2.7, 2.8, 5], "intensity": [40, 40, 40]}]})";
+    std::ofstream(broken) << "{";
+    start_with("");
+    ASSERT_TRUE(title_comes("nothing is open"));
+    ASSERT_EQ(drop(uri(scene)).code, 0);
+    EXPECT_TRUE(eventually([&] { return log().find("open a scan first") != std::string::npos; })) << log();
+    ASSERT_EQ(drop(uri(cache_)).code, 0);
+    const auto before = picture(lit);
+    ASSERT_TRUE(before) << log();
+    ASSERT_EQ(drop(uri(broken) + uri(scene)).code, 0);
+    EXPECT_TRUE(picture([&](const io::Image8& now) { return difference(now, *before) > 2; })) << log();
+    EXPECT_THAT(log(), HasSubstr("opened " + scene));
+    EXPECT_THAT(log(), HasSubstr("broken.json"));
+}
+
 TEST_F(DroppedFiles, OpenAsScansAndTheOneThatIsNoneIsNamed) {
     const std::string greeting = folder_ / "Gr\u00fc\u00dfe, 100%.las", second = folder_ / "second.las",
                       letter = folder_ / "letter.pdf";

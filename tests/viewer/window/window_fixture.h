@@ -27,10 +27,11 @@ class ViewerWindow : public testing::Test {
     }
 
     void start(const std::string& more = "") { start_with(cache_ + more); }
+    std::string engine_ = " --engine direct";
     /// Starts `lucarne view` with `arguments` and environment `variables`.
     void start_with(const std::string& arguments, const std::string& variables = "") {
         viewer_.emplace(screen_->environment() + variables + " " LUCARNE_BINARY " view " + arguments +
-                        " --engine direct --size " + std::to_string(kWidth) + "x" + std::to_string(kHeight) +
+                        engine_ + " --size " + std::to_string(kWidth) + "x" + std::to_string(kHeight) +
                         " 2>>" + (folder_ / "log"));
         ASSERT_TRUE(
             eventually([&] { return !viewer_->running() || xdo("search --name 'Lucarne - '").code == 0; }));

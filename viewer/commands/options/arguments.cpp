@@ -178,6 +178,13 @@ bool Arguments::given(const std::string& name) const {
     return app_->count(name) > 0;
 }
 
+bool Arguments::given_only(std::initializer_list<const char*> names) const {
+    return std::ranges::all_of(app_->get_options(), [&](const CLI::Option* option) {
+        return option->count() == 0 ||
+               std::ranges::any_of(names, [&](const char* name) { return option->check_name(name); });
+    });
+}
+
 void Arguments::footer(const std::string& text) {
     app_->footer(text);
 }

@@ -74,8 +74,10 @@ class Arguments {
         return add_choice(
             names, words, [&value, choices](size_t index) { value = choices[index].second; }, help);
     }
-    Argument find(const std::string& name);          ///< returns an argument that was declared
-    bool given(const std::string& name) const;       ///< whether the parsed command line has it
+    Argument find(const std::string& name);     ///< returns an argument that was declared
+    bool given(const std::string& name) const;  ///< whether the parsed command line has it
+    /// Whether the parsed command line has no others than these.
+    bool given_only(std::initializer_list<const char*> names) const;
     void footer(const std::string& text);            ///< text below the help
     void run(std::function<Result<void>()> action);  ///< sets what the command does after parsing
 

@@ -52,7 +52,7 @@ void draw_closing_question(ViewModel& model) {
     const ImGuiWindowFlags flags =
         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove;
     if (!ImGui::BeginPopupModal(kName, nullptr, flags)) return;
-    const std::vector<Unsaved> all = unsaved(model);
+    const std::vector<Unsaved> all = work_to_lose(model);
     ImGui::PushTextWrapPos(std::min(40 * ImGui::GetFontSize(), size.x - 4 * ImGui::GetFontSize()));
     if (!all.empty()) list_unsaved(all);
     list_running(model);
