@@ -20,6 +20,7 @@ namespace lucarne::gi {
 /// engine's folder.
 struct EngineInfo {
     std::string_view name;         ///< as --engine takes it
+    std::string_view label;        ///< what people see in the window: "Path tracer"
     std::string_view description;  ///< one line
     std::span<const OptionInfo* const> options = {};
     /// Pictures that it keeps beside the radiance (Engine::layers); their names become parts of file names.

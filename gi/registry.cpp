@@ -33,6 +33,12 @@ bool engine_is(std::string_view name, bool EngineInfo::*property) {
         engines(), [&](const EngineEntry& entry) { return entry.info.name == name && entry.info.*property; });
 }
 
+std::string label_of(std::string_view name) {
+    const auto found =
+        std::ranges::find(engines(), name, [](const EngineEntry& entry) { return entry.info.name; });
+    return std::string(found == engines().end() || found->info.label.empty() ? name : found->info.label);
+}
+
 std::span<const OptionInfo* const> engine_options() {
     static const std::vector<const OptionInfo*> all = [] {
         std::vector<const OptionInfo*> options;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "gi/engine.h"
@@ -21,5 +22,7 @@ Result<std::unique_ptr<Engine>> make_engine(std::string_view name);
 const EngineInfo& engine_with(bool EngineInfo::*property);
 /// Returns whether an engine of this name exists and has the property.
 bool engine_is(std::string_view name, bool EngineInfo::*property);
+/// Returns what people see in place of an engine's name; the name if no engine has it.
+std::string label_of(std::string_view name);
 
 }  // namespace lucarne::gi

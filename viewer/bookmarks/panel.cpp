@@ -23,11 +23,11 @@ void draw_bookmarks_panel(const Bookmarking& model) {
                 ImGui::ImageButton(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(bookmark.texture)),
                                    ImVec2(width, height));
         else
-            chosen = ImGui::Button("go there", ImVec2(8 * font, height));
+            chosen = ImGui::Button("Go there", ImVec2(8 * font, height));
         ImGui::SameLine();
         ImGui::BeginGroup();
         ImGui::TextUnformatted(bookmark.camera.name.c_str());
-        if (ImGui::SmallButton("remove")) gone = i;
+        if (ImGui::SmallButton("Remove")) gone = i;
         ImGui::EndGroup();
         if (chosen) {
             bookmarks.visited = i;

@@ -47,8 +47,7 @@ Result<PictureKind> picture_kind(const std::string& path) {
                    [](unsigned char c) { return std::tolower(c); });
     if (extension == ".png") return PictureKind::png;
     if (extension == ".exr") return PictureKind::exr;
-    return bad_arguments("--output",
-                         fmt::format("'{}' is in no format for pictures that can be written", path),
+    return bad_arguments("--output", fmt::format("'{}' has an unsupported picture format", path),
                          "use .png or .exr");
 }
 

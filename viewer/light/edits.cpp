@@ -52,7 +52,7 @@ void undo_lights(const Lighting& model) {
     undo.pop_back();
     model.lights.selected = std::min(model.lights.selected, model.view.scene.lights.size());
     model.view.scene_changed();
-    model.view.message = "the lights are as they were";
+    model.view.message = "Undone";
 }
 
 void add_light(const Lighting& model, gi::LightKind kind) {

@@ -48,7 +48,7 @@ bool edit_colour(const Lighting& model, gi::SceneLight& light) {
     for (int i = 0; i < 3; ++i)
         shown[i] = gi::linear_to_srgb(most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f);
     bool changed = false;
-    if (ImGui::ColorEdit3("colour", shown, ImGuiColorEditFlags_Float)) {
+    if (ImGui::ColorEdit3("Colour", shown, ImGuiColorEditFlags_Float)) {
         const glm::dvec3 linear(gi::srgb_to_linear(shown[0]), gi::srgb_to_linear(shown[1]),
                                 gi::srgb_to_linear(shown[2]));
         dye(light, linear);
@@ -56,12 +56,12 @@ bool edit_colour(const Lighting& model, gi::SceneLight& light) {
     }
     float linear[3];
     for (int i = 0; i < 3; ++i) linear[i] = most > 0 ? static_cast<float>(light.strength[i] / most) : 1.0f;
-    if (ImGui::DragFloat3("linear", linear, 0.005f, 0, 1, "%.3f", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::DragFloat3("Linear", linear, 0.005f, 0, 1, "%.3f", ImGuiSliderFlags_AlwaysClamp)) {
         dye(light, {linear[0], linear[1], linear[2]});
         changed = true;
     }
     float kelvin = static_cast<float>(model.lights.kelvin);
-    if (ImGui::SliderFloat("temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
+    if (ImGui::SliderFloat("Temperature", &kelvin, gi::kCoolest, 12000, "%.0f K",
                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
         model.lights.kelvin = kelvin;
         dye(light, gi::black_body_colour(kelvin));
@@ -99,23 +99,23 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
     bool changed = false;
     switch (light.kind) {
         case LightKind::spot: {
-            changed |= edit_angle("cone", light.angle, 1, 170);
+            changed |= edit_angle("Cone angle", light.angle, 1, 170);
             float softness = static_cast<float>(light.softness);
-            if (ImGui::SliderFloat("soft edge", &softness, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+            if (ImGui::SliderFloat("Edge softness", &softness, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
                 light.softness = softness;
                 changed = true;
             }
             break;
         }
         case LightKind::directional:
-            changed |= edit_angle("angular radius", light.angular_radius, 0, 90);
+            changed |= edit_angle("Angular radius", light.angular_radius, 0, 90);
             break;
         case LightKind::rectangle:
-            changed |= edit_length("width", light.width, scene_size);
-            changed |= edit_length("height", light.height, scene_size);
+            changed |= edit_length("Width", light.width, scene_size);
+            changed |= edit_length("Height", light.height, scene_size);
             break;
         case LightKind::disc:
-            changed |= edit_length("radius", light.radius, scene_size);
+            changed |= edit_length("Radius", light.radius, scene_size);
             break;
         case LightKind::point:
             break;
@@ -124,14 +124,14 @@ bool edit_shape(gi::SceneLight& light, double scene_size) {
 }
 
 bool edit_light(const Lighting& model, gi::SceneLight& light) {
-    if (ImGui::InputText("name", &light.name)) model.view.shown_changed();
+    if (ImGui::InputText("Name", &light.name)) model.view.shown_changed();
     bool changed = false;
     if (light.kind == gi::LightKind::directional) {
         draw_sun(model);
     } else {
-        changed |= drag_point("position", light.position, model.view.scene_size);
+        changed |= drag_point("Position", light.position, model.view.scene_size);
         if (light.kind != gi::LightKind::point)
-            changed |= drag_point("aims at", light.target, model.view.scene_size);
+            changed |= drag_point("Target", light.target, model.view.scene_size);
     }
     changed |= edit_shape(light, model.view.scene_size);
     return edit_strength(model, light) || changed;
@@ -151,7 +151,7 @@ void draw_list(const Lighting& model) {
 }
 
 void draw_buttons(const Lighting& model) {
-    static constexpr const char* kKinds[] = {"spot", "point", "sun", "rectangle", "disc"};
+    static constexpr const char* kKinds[] = {"Spot", "Point", "Sun", "Rectangle", "Disc"};
     if (ImGui::Button("Add")) ImGui::OpenPopup("kinds");
     if (ImGui::BeginPopup("kinds")) {
         for (size_t kind = 0; kind < std::size(kKinds); ++kind)
@@ -167,7 +167,7 @@ void draw_buttons(const Lighting& model) {
     if (ImGui::Button("Undo")) undo_lights(model);
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::Checkbox("handles", &model.lights.show_handles);
+    ImGui::Checkbox("Handles", &model.lights.show_handles);
 }
 
 }  // namespace

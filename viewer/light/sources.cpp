@@ -26,16 +26,16 @@ bool edit_degrees(const char* label, double& value, double least, double most) {
 bool edit_moment(gi::Moment& moment) {
     gi::LocalTime time = gi::local_time(moment);
     int date[3] = {time.year, time.month, time.day};
-    bool changed = ImGui::DragInt3("date", date, 0.1f);
+    bool changed = ImGui::DragInt3("Date", date, 0.1f);
     float hours = static_cast<float>(time.seconds) / 3600;
     char clock[32];
     std::snprintf(clock, sizeof clock, "%02d:%02d", time.seconds / 3600, time.seconds / 60 % 60);
-    if (ImGui::SliderFloat("time", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat("Time", &hours, 0, 23.99f, clock, ImGuiSliderFlags_AlwaysClamp)) {
         time.seconds = static_cast<int>(std::lround(hours * 60)) * 60;
         changed = true;
     }
     float ahead = static_cast<float>(moment.ahead) / 60;
-    if (ImGui::SliderFloat("clock", &ahead, -12, 14, "UTC %+.1f h", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat("Clock", &ahead, -12, 14, "UTC %+.1f h", ImGuiSliderFlags_AlwaysClamp)) {
         moment.ahead = static_cast<int>(std::lround(ahead * 4)) * 15;
         changed = true;
     }
@@ -55,7 +55,7 @@ bool edit_radiance(const char* label, glm::dvec3& radiance) {
     float most = 0;
     glm::vec3 colour = scaled_to_one(radiance, most);
     ImGui::PushID(label);
-    bool changed = ImGui::ColorEdit3("linear colour", &colour.x, ImGuiColorEditFlags_Float);
+    bool changed = ImGui::ColorEdit3("Linear colour", &colour.x, ImGuiColorEditFlags_Float);
     changed |= ImGui::DragFloat("W/(sr m2)", &most, std::max(most, 0.01f) / 100, 0, 1e9f, "%.4g",
                                 ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopID();
@@ -74,7 +74,7 @@ void change_sky(const Lighting& model, const Edit& edit) {
 
 void edit_even_sky(const Lighting& model) {
     glm::dvec3 radiance = model.view.scene.environment->scale;
-    if (!edit_radiance("sky", radiance)) return;
+    if (!edit_radiance("Sky", radiance)) return;
     change_sky(model, [&](gi::Environment& sky) {
         sky.scale = radiance;
         sky.texels = {glm::vec3(radiance)};
@@ -102,7 +102,7 @@ void choose_class(gi::SceneMaterial& material, const Lighting& model) {
     const auto name_of = [](int number) {
         return std::to_string(number) + " " + std::string(gi::class_name(static_cast<uint8_t>(number)));
     };
-    if (!ImGui::BeginCombo("class", name_of(*material.classification).c_str())) return;
+    if (!ImGui::BeginCombo("Class", name_of(*material.classification).c_str())) return;
     for (int number = 0; number < 256; ++number)
         if (ImGui::Selectable(name_of(number).c_str(), number == *material.classification)) {
             material.classification = number;
@@ -117,13 +117,13 @@ void choose_class(gi::SceneMaterial& material, const Lighting& model) {
 void draw_sun(const Lighting& model) {
     gi::SceneLight& light = *model.selected_light();
     bool by_time = light.sun.has_value();
-    if (ImGui::Checkbox("by place and time", &by_time))
+    if (ImGui::Checkbox("By place and time", &by_time))
         set_sun(model, by_time ? std::optional(gi::SunMoment{}) : std::nullopt);
     if (light.sun) {
-        bool changed = edit_degrees("latitude", light.sun->latitude, -90, 90);
-        changed |= edit_degrees("longitude", light.sun->longitude, -180, 180);
+        bool changed = edit_degrees("Latitude", light.sun->latitude, -90, 90);
+        changed |= edit_degrees("Longitude", light.sun->longitude, -180, 180);
         changed |= edit_moment(light.sun->time);
-        changed |= edit_degrees("true north", light.sun->north, -360, 360);
+        changed |= edit_degrees("True north", light.sun->north, -360, 360);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("degrees from the scan's +y, clockwise");
         if (changed) set_sun(model, light.sun);
         const gi::SolarPosition at = gi::solar_position(*light.sun);
@@ -134,8 +134,8 @@ void draw_sun(const Lighting& model) {
     const glm::dvec3 to = light.position - light.target;
     double azimuth = std::atan2(to.x, to.y) / kDegree,
            elevation = std::atan2(to.z, std::hypot(to.x, to.y)) / kDegree;
-    bool changed = edit_degrees("azimuth", azimuth, -180, 180);
-    changed |= edit_degrees("elevation", elevation, -90, 90);
+    bool changed = edit_degrees("Azimuth", azimuth, -180, 180);
+    changed |= edit_degrees("Elevation", elevation, -90, 90);
     if (!changed) return;
     light.target = light.position - gi::towards({azimuth, elevation}, 0);
     model.view.scene_changed();
@@ -153,7 +153,7 @@ void draw_sky(const Lighting& model) {
             model.view.scene_changed();
         }
     } else {
-        if (ImGui::Checkbox("on", &model.view.scene.environment_on)) model.view.scene_changed();
+        if (ImGui::Checkbox("On", &model.view.scene.environment_on)) model.view.scene_changed();
         ImGui::SameLine();
         if (ImGui::Button("Remove")) {
             model.view.scene.environment.reset();
@@ -166,7 +166,7 @@ void draw_sky(const Lighting& model) {
         else
             ImGui::TextWrapped("%s", model.view.scene.environment->image.c_str());
         float degrees = static_cast<float>(model.view.scene.environment->rotation / kDegree);
-        if (ImGui::SliderFloat("rotation", &degrees, -180, 180, "%.1f degrees"))
+        if (ImGui::SliderFloat("Rotation", &degrees, -180, 180, "%.1f degrees"))
             change_sky(model,
                        [&](gi::Environment& sky) { sky.rotation = static_cast<float>(degrees * kDegree); });
     }
@@ -175,7 +175,7 @@ void draw_sky(const Lighting& model) {
 }
 
 void draw_emitters(const Lighting& model) {
-    if (!fold("Classes that shine")) return;
+    if (!fold("Emissive classes")) return;
     ImGui::PushID("emitters");
     for (size_t i = 0; i < model.view.scene.materials.size(); ++i) {
         gi::SceneMaterial& material = model.view.scene.materials[i];
@@ -184,7 +184,7 @@ void draw_emitters(const Lighting& model) {
         if (ImGui::Checkbox("##on", &material.emits)) model.view.scene_changed();
         ImGui::SameLine();
         choose_class(material, model);
-        if (edit_radiance("emission", material.emission)) model.view.scene_changed();
+        if (edit_radiance("Emission", material.emission)) model.view.scene_changed();
         const bool gone = ImGui::Button("Remove");
         ImGui::PopID();
         if (!gone) continue;

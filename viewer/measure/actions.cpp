@@ -44,7 +44,7 @@ bool can_redo(const Measuring& model) {
     return model.measure.list.can_redo();
 }
 void finish(const Measuring& model) {
-    if (!model.measure.finish()) model.measure.message = "more points are needed";
+    if (!model.measure.finish()) model.measure.message = "click one more point";
 }
 void copy(const Measuring& model) {
     model.measure.copy_selected();
@@ -69,12 +69,12 @@ std::span<const Action<const Measuring>> measure_actions() {
         Entry{{GLFW_KEY_ENTER}, "Measure", "Finish the path or area", finish, measuring},
         Entry{{GLFW_KEY_BACKSPACE},
               "Measure",
-              "Take the last point back",
+              "Remove last point",
               [](const Measuring& m) { m.measure.drop_last(); },
               has_pending},
         Entry{{GLFW_KEY_ESCAPE},
               "Measure",
-              "Lay the tool away",
+              "Put tool away",
               [](const Measuring& m) { m.measure.stop(); },
               measuring},
         Entry{{GLFW_KEY_DELETE},

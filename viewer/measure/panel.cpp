@@ -75,7 +75,7 @@ void details(MeasureModel& measure, const UnitChoice& units) {
     const Measurement* one = measure.selected_one();
     if (!one) return;
     std::string name = one->name;
-    if (ImGui::InputText("name", &name, ImGuiInputTextFlags_EnterReturnsTrue) ||
+    if (ImGui::InputText("Name", &name, ImGuiInputTextFlags_EnterReturnsTrue) ||
         ImGui::IsItemDeactivatedAfterEdit())
         measure.list.rename(*measure.selected, name);
     one = measure.selected_one();
@@ -107,12 +107,12 @@ void edit_buttons(MeasureModel& measure, const UnitChoice& units) {
     ImGui::SameLine();
     if (button("Redo", measure.list.can_redo())) measure.redo();
     ImGui::SameLine();
-    ImGui::Checkbox("labels", &measure.labels);
-    if (ImGui::RadioButton("metres", measure.metres)) measure.metres = true;
+    ImGui::Checkbox("Labels", &measure.labels);
+    if (ImGui::RadioButton("Metres", measure.metres)) measure.metres = true;
     ImGui::SameLine();
     if (ImGui::RadioButton(("file's unit: " + unit_name(units.metres_per_unit)).c_str(), !measure.metres))
         measure.metres = false;
-    ImGui::InputText("file", &measure.file);
+    ImGui::InputText("File", &measure.file);
     if (button("Save", !measure.list.all().empty())) measure.commands.push(SaveMeasurements{});
     ImGui::SameLine();
     if (button("Load", true)) measure.commands.push(LoadMeasurements{});

@@ -59,7 +59,7 @@ std::span<const Action<const Publishing>> publish_actions() {
     static constexpr const char* kMenu = "Flythrough";
     static constexpr int kShift = GLFW_MOD_SHIFT, kCtrl = GLFW_MOD_CONTROL, kAlt = GLFW_MOD_ALT;
     static constexpr std::array kActions = {
-        Entry{{GLFW_KEY_F12, kCtrl}, "Picture", "Save it in any size", push<RenderPicture>, has_picture},
+        Entry{{GLFW_KEY_F12, kCtrl}, "Picture", "Render picture", push<RenderPicture>, has_picture},
         Entry{{GLFW_KEY_T, kShift},
               "Picture",
               "Transparent where no point is",

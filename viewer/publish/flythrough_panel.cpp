@@ -56,7 +56,7 @@ void key_buttons(const Publishing& model) {
     ImGui::SameLine();
     if (button("Later", one)) publish.take(publish.editor.move(1));
     ImGui::SameLine();
-    ImGui::Checkbox("draw the path", &publish.draw_path);
+    ImGui::Checkbox("Draw the path", &publish.draw_path);
 }
 
 /// A number field whose value is passed to `take` once the user leaves the field, so that a half-typed number
@@ -78,9 +78,9 @@ void key_fields(PublishModel& publish) {
     if (!selected) return;
     const KeyFrame key = publish.editor.path().keys[*selected];
     ImGui::PushID(static_cast<int>(*selected));
-    number_field(publish, "time, s", key.time,
+    number_field(publish, "Time, s", key.time,
                  [&](double time) { publish.take(publish.editor.set_time(time)); });
-    number_field(publish, "degrees of view", key.camera.vertical_fov * kDegrees,
+    number_field(publish, "Field of view", key.camera.vertical_fov * kDegrees,
                  [&](double fov) { publish.take(publish.editor.set_fov(fov / kDegrees)); });
     ImGui::PopID();
 }
@@ -102,16 +102,16 @@ void preview(PublishModel& publish) {
 
 void files(PublishModel& publish) {
     const bool any = !publish.editor.empty();
-    ImGui::InputText("path's file", &publish.path_file);
+    ImGui::InputText("Path's file", &publish.path_file);
     if (button("Save", any)) publish.commands.push(SavePath{});
     ImGui::SameLine();
     if (button("Load", true)) publish.commands.push(LoadPath{});
     ImGui::Separator();
-    number_field(publish, "frames a second", publish.editor.path().frames_per_second,
+    number_field(publish, "Frames a second", publish.editor.path().frames_per_second,
                  [&](double rate) { publish.take(publish.editor.set_frames_per_second(rate)); });
-    size_fields("size of frames", publish.flight_width, publish.flight_height);
+    size_fields("Size of frames", publish.flight_width, publish.flight_height);
     ImGui::InputText("PNG folder", &publish.frames_folder);
-    ImGui::InputText("video's file", &publish.video_file);
+    ImGui::InputText("Video's file", &publish.video_file);
     if (!render_progress(publish)) return;
     if (button("Render frames", any)) publish.commands.push(RenderFrames{});
     ImGui::SameLine();

@@ -11,17 +11,17 @@ namespace lucarne::viewer {
 
 void draw_picture_panel(const Publishing& model) {
     PublishModel& publish = model.publish;
-    size_fields("size", publish.width, publish.height);
+    size_fields("Size", publish.width, publish.height);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (ImGui::Button("the window's size")) {
         publish.width = static_cast<int>(display.x);
         publish.height = static_cast<int>(display.y);
     }
-    ImGui::InputInt("averaged", &publish.frames);
+    ImGui::InputInt("Frames", &publish.frames);
     publish.frames = std::clamp(publish.frames, 1, kMostAveraged);
-    ImGui::Checkbox("transparent where no point is", &publish.finish.transparent);
-    ImGui::Checkbox("legend, axes and scale bar", &publish.finish.overlays);
-    ImGui::InputText("file", &publish.picture_file);
+    ImGui::Checkbox("Transparent background", &publish.finish.transparent);
+    ImGui::Checkbox("Legend, axes and scale bar", &publish.finish.overlays);
+    ImGui::InputText("File", &publish.picture_file);
     if (render_progress(publish) && ImGui::Button("Save")) publish.commands.push(RenderPicture{});
 }
 

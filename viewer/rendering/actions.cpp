@@ -24,7 +24,7 @@ void next_engine(const Rendering& model) {
                                        [](const auto& entry) { return entry.info.name; });
     const auto next = now == engines.end() || now + 1 == engines.end() ? engines.begin() : now + 1;
     model.view.method.engine = next->info.name;
-    model.view.message = fmt::format("engine {}: {}", next->info.name, next->info.description);
+    model.view.message = fmt::format("{}: {}", next->info.label, next->info.description);
 }
 
 void next_preset(const Rendering& model) {

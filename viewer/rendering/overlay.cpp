@@ -31,7 +31,7 @@ bool take_comparison_border(const Rendering& model) {
     list.AddLine({x, 0}, {x, io.DisplaySize.y}, hovered || model.holds_border ? kGrasped : IM_COL32_WHITE,
                  scaled(2));
     const float font = ImGui::GetFontSize(), y = io.DisplaySize.y - 3.5f * font;
-    const std::string left = model.view.method.engine, right = comparison->engine;
+    const std::string left = gi::label_of(model.view.method.engine), right = gi::label_of(comparison->engine);
     const ImVec2 size = ImGui::CalcTextSize(left.c_str());
     const float right_width = ImGui::CalcTextSize(right.c_str()).x;
     const float gap = scaled(8), edge = scaled(14), above = scaled(3);

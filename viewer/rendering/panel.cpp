@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include "gi/post/false_colour.h"
@@ -14,10 +15,11 @@ namespace lucarne::viewer {
 namespace {
 
 void engine_choice(const Rendering& model) {
-    if (!ImGui::BeginCombo("engine", model.view.method.engine.c_str())) return;
+    if (!ImGui::BeginCombo("Engine", gi::label_of(model.view.method.engine).c_str())) return;
     for (const auto& entry : gi::engines()) {
-        const std::string name(entry.info.name), description(entry.info.description);
-        if (ImGui::Selectable(name.c_str(), name == model.view.method.engine))
+        const std::string name(entry.info.name), label(entry.info.label),
+            description(fmt::format("{}: {}", name, entry.info.description));
+        if (ImGui::Selectable(label.c_str(), name == model.view.method.engine))
             model.view.method.engine = name;
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", description.c_str());
     }
@@ -25,7 +27,7 @@ void engine_choice(const Rendering& model) {
 }
 
 void preset_choice(const Rendering& model) {
-    if (!ImGui::BeginCombo("preset", model.view.preset.c_str())) return;
+    if (!ImGui::BeginCombo("Preset", model.view.preset.c_str())) return;
     for (const Preset& preset : presets()) {
         const std::string name(preset.name), description(preset.description);
         if (ImGui::Selectable(name.c_str(), name == model.view.preset))
@@ -41,7 +43,7 @@ void luminance_range(const Rendering& model) {
     const double ev = model.view.picture ? model.view.picture->exposure_ev : 0;
     const gi::ValueRange shown = gi::luminance_range(model.view.scene.luminance, ev);
     bool automatic = !model.view.scene.luminance;
-    if (ImGui::Checkbox("automatic range", &automatic)) {
+    if (ImGui::Checkbox("Automatic range", &automatic)) {
         model.view.scene.luminance = automatic ? std::nullopt : std::optional(shown);
         model.view.shown_changed();
     }
@@ -58,7 +60,7 @@ void luminance_range(const Rendering& model) {
 void white_balance(View& view) {
     const glm::dvec3 daylight = gi::black_body_colour(gi::kDaylight);
     float kelvin = static_cast<float>(gi::black_body_temperature(view.scene.white * daylight));
-    if (ImGui::SliderFloat("white balance", &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat("White balance", &kelvin, 2000, 12000, "%.0f K", ImGuiSliderFlags_AlwaysClamp)) {
         view.scene.white = gi::black_body_colour(kelvin) / daylight;
         view.shown_changed();
     }
@@ -69,19 +71,19 @@ void white_balance(View& view) {
 void exposure(const Rendering& model) {
     bool automatic = !model.view.scene.exposure_ev;
     const float measured = model.view.picture ? static_cast<float>(model.view.picture->exposure_ev) : 0.0f;
-    if (ImGui::Checkbox("automatic exposure", &automatic)) {
+    if (ImGui::Checkbox("Automatic exposure", &automatic)) {
         model.view.scene.exposure_ev = automatic ? std::nullopt : std::optional<double>(measured);
         model.view.shown_changed();
     }
     float stops = static_cast<float>(model.view.scene.exposure_ev.value_or(measured));
-    if (ImGui::SliderFloat("exposure", &stops, -12.0f, 12.0f, "%+.1f stops")) {
+    if (ImGui::SliderFloat("Exposure", &stops, -12.0f, 12.0f, "%+.1f stops")) {
         model.view.scene.exposure_ev = stops;
         model.view.shown_changed();
     }
     white_balance(model.view);
-    const char* const curves[] = {"filmic", "Reinhard", "none", "false colours"};
+    const char* const curves[] = {"Filmic", "Reinhard", "None", "False colours"};
     int curve = static_cast<int>(model.view.scene.tone_map);
-    if (ImGui::Combo("tone map", &curve, curves, 4)) {
+    if (ImGui::Combo("Tone map", &curve, curves, 4)) {
         model.view.scene.tone_map = static_cast<gi::ToneMap>(curve);
         model.view.shown_changed();
     }
@@ -182,7 +184,7 @@ void effort(const Rendering& model) {
             if (!option->cost.empty()) tell_cost(std::string(option->cost).c_str());
         }
     float scale = static_cast<float>(100 * model.view.resolution_scale);
-    if (ImGui::SliderFloat("resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
+    if (ImGui::SliderFloat("Resolution", &scale, 100 * gi::kLeastPictureScale, 100, "%.0f %%",
                            ImGuiSliderFlags_AlwaysClamp))
         model.view.resolution_scale =
             std::clamp(static_cast<double>(scale) / 100, gi::kLeastPictureScale, 1.0);
@@ -197,12 +199,12 @@ void albedo(const Rendering& model) {
     if (!fold("Albedo")) return;
     gi::Albedo& albedo = model.view.scene.albedo;
     float scale = static_cast<float>(albedo.scale), flatten = static_cast<float>(albedo.flatten);
-    if (ImGui::SliderFloat("scale", &scale, 0, 3, "%.2f")) {
+    if (ImGui::SliderFloat("Scale", &scale, 0, 3, "%.2f")) {
         albedo.scale = std::clamp(static_cast<double>(scale), 0.0, 10.0);
         model.view.scene_changed();
     }
     tell_cost("of what the points' colours reflect, which stays within 0 to .95; costs nothing");
-    ImGui::SliderFloat("flatten", &flatten, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat("Flatten", &flatten, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
     if (flatten != static_cast<float>(albedo.flatten)) {
         albedo.flatten = flatten;
         model.view.scene_changed();
@@ -210,7 +212,7 @@ void albedo(const Rendering& model) {
     tell_cost(
         "share of the light that the scan was taken in to be divided out: luminance is evened out over\n"
         "a 48th of the scan's length. All points are sent to the device again");
-    if (ImGui::Checkbox("balance stations", &albedo.balance)) model.view.scene_changed();
+    if (ImGui::Checkbox("Balance stations", &albedo.balance)) model.view.scene_changed();
     tell_cost(
         "gains that the conversion found make stations of different exposure agree, and points that were\n"
         "never photographed get the colour around them. All points are sent to the device again");
@@ -219,25 +221,25 @@ void albedo(const Rendering& model) {
 void comparison(const Rendering& model) {
     if (!fold("Compare")) return;
     auto& comparison = model.view.scene.comparison;
-    if (ImGui::BeginCombo("with", comparison ? comparison->engine.c_str() : "nothing")) {
-        if (ImGui::Selectable("nothing", !comparison)) compare_with(model.view, "");
+    if (ImGui::BeginCombo("With", comparison ? gi::label_of(comparison->engine).c_str() : "Nothing")) {
+        if (ImGui::Selectable("Nothing", !comparison)) compare_with(model.view, "");
         for (const auto& entry : gi::engines()) {
-            const std::string name(entry.info.name);
-            if (ImGui::Selectable(name.c_str(), comparison && comparison->engine == name))
+            const std::string name(entry.info.name), label(entry.info.label);
+            if (ImGui::Selectable(label.c_str(), comparison && comparison->engine == name))
                 compare_with(model.view, name);
         }
         ImGui::EndCombo();
     }
     tell_cost("both engines light every picture: the times add up");
     if (!comparison) return;
-    const char* const shows[] = {"side by side", "signed difference", "absolute difference"};
+    const char* const shows[] = {"Side by side", "Signed difference", "Absolute difference"};
     int show = static_cast<int>(comparison->show);
-    if (ImGui::Combo("as", &show, shows, 3)) {
+    if (ImGui::Combo("As", &show, shows, 3)) {
         comparison->show = static_cast<gi::Comparison::Show>(show);
         model.view.shown_changed();
     }
     float range = static_cast<float>(comparison->range);
-    if (show != 0 && ImGui::SliderFloat("range", &range, 0.01f, 10, "%.3g", ImGuiSliderFlags_Logarithmic)) {
+    if (show != 0 && ImGui::SliderFloat("Range", &range, 0.01f, 10, "%.3g", ImGuiSliderFlags_Logarithmic)) {
         comparison->range = std::max(range, 1e-6f);
         model.view.shown_changed();
     }

@@ -51,7 +51,7 @@ void draw_file_browser(FileBrowser& browser, ScanCommands& commands) {
             entries(browser, commands);
         ImGui::EndChild();
         bool all = browser.shows_all();
-        if (ImGui::Checkbox("all files", &all)) browser.show_all(all);
+        if (ImGui::Checkbox("All files", &all)) browser.show_all(all);
         ImGui::SameLine();
         const std::vector<std::string> chosen = browser.chosen();
         const bool here = chosen.empty();

@@ -26,15 +26,14 @@ void progress(ScanSet& scans, const ScanRow& row) {
     const float button = ImGui::GetFontSize() * 4.5f;
     if (row.busy()) {
         const bool waits = row.state == ScanState::sample;
-        const std::string text =
-            waits ? "waits to be converted" : fmt::format("{} {:.0f} %", row.stage, 100 * row.share);
+        const std::string text = waits ? "Queued" : fmt::format("{} {:.0f} %", row.stage, 100 * row.share);
         ImGui::ProgressBar(waits ? 0.0f : static_cast<float>(row.share), ImVec2(-button, 0), text.c_str());
         ImGui::SameLine();
         if (ImGui::SmallButton("Cancel")) scans.stop(row.id);
     } else if (row.state == ScanState::stopped) {
-        ImGui::TextUnformatted("not converted to its end");
+        ImGui::TextUnformatted("Conversion incomplete");
         ImGui::SameLine();
-        if (ImGui::SmallButton("Go on")) scans.go_on(row.id);
+        if (ImGui::SmallButton("Resume")) scans.go_on(row.id);
     }
     if (row.error) {
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.5f, 0.4f, 1));

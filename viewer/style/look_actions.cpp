@@ -92,19 +92,25 @@ void clear_clip(const Styling& model) {
 
 std::span<const Action<const Styling>> look_actions() {
     static constexpr std::array kActions = {
-        Entry{{GLFW_KEY_C}, "Look", "Colour by the next attribute", next_colour},
-        Entry{{GLFW_KEY_C, GLFW_MOD_SHIFT}, "Look", "The points' own colours", own_colours},
-        Entry{{GLFW_KEY_C, GLFW_MOD_ALT}, "Look", "Next colour map", next_colour_map},
-        Entry{{GLFW_KEY_U}, "Look", "Light", switch_light, nullptr, is_lit},
-        Entry{{GLFW_KEY_U, GLFW_MOD_SHIFT}, "Look", "Next shading without light", next_shading, is_unlit},
-        Entry{{GLFW_KEY_PERIOD}, "Look", "Larger points", larger_points},
-        Entry{{GLFW_KEY_COMMA}, "Look", "Smaller points", smaller_points},
-        Entry{{GLFW_KEY_K}, "Look", "Legend", toggle_legend, nullptr, shows_legend},
-        Entry{{GLFW_KEY_K, GLFW_MOD_SHIFT}, "Look", "Axes", toggle_axes, nullptr, shows_axes},
-        Entry{{GLFW_KEY_K, GLFW_MOD_ALT}, "Look", "Scale bar", toggle_scale_bar, nullptr, shows_scale_bar},
-        Entry{{GLFW_KEY_I}, "Look/Clip", "Add a box", add_clip_box},
-        Entry{{GLFW_KEY_I, GLFW_MOD_SHIFT}, "Look/Clip", "Add a plane", add_clip_plane},
-        Entry{{GLFW_KEY_I, GLFW_MOD_ALT}, "Look/Clip", "Clip nothing", clear_clip, is_clipped},
+        Entry{{GLFW_KEY_C}, "Appearance", "Colour by the next attribute", next_colour},
+        Entry{{GLFW_KEY_C, GLFW_MOD_SHIFT}, "Appearance", "The points' own colours", own_colours},
+        Entry{{GLFW_KEY_C, GLFW_MOD_ALT}, "Appearance", "Next colour map", next_colour_map},
+        Entry{{GLFW_KEY_U}, "Appearance", "Light", switch_light, nullptr, is_lit},
+        Entry{
+            {GLFW_KEY_U, GLFW_MOD_SHIFT}, "Appearance", "Next shading without light", next_shading, is_unlit},
+        Entry{{GLFW_KEY_PERIOD}, "Appearance", "Larger points", larger_points},
+        Entry{{GLFW_KEY_COMMA}, "Appearance", "Smaller points", smaller_points},
+        Entry{{GLFW_KEY_K}, "Appearance", "Legend", toggle_legend, nullptr, shows_legend},
+        Entry{{GLFW_KEY_K, GLFW_MOD_SHIFT}, "Appearance", "Axes", toggle_axes, nullptr, shows_axes},
+        Entry{{GLFW_KEY_K, GLFW_MOD_ALT},
+              "Appearance",
+              "Scale bar",
+              toggle_scale_bar,
+              nullptr,
+              shows_scale_bar},
+        Entry{{GLFW_KEY_I}, "Appearance/Clip", "Add a box", add_clip_box},
+        Entry{{GLFW_KEY_I, GLFW_MOD_SHIFT}, "Appearance/Clip", "Add a plane", add_clip_plane},
+        Entry{{GLFW_KEY_I, GLFW_MOD_ALT}, "Appearance/Clip", "Clip nothing", clear_clip, is_clipped},
     };
     return kActions;
 }

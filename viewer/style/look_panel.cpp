@@ -37,7 +37,7 @@ bool slider(const char* label, double& value, float least, float most, const cha
 
 bool attribute_choice(const Styling& model, gi::Look& look) {
     if (!model.view.picture || !model.view.picture->source ||
-        !ImGui::BeginCombo("attribute", look.attribute.c_str()))
+        !ImGui::BeginCombo("Attribute", look.attribute.c_str()))
         return false;
     bool changed = false;
     for (const std::string& name : attribute_names(*model.view.picture->source)) {
@@ -53,7 +53,7 @@ bool attribute_choice(const Styling& model, gi::Look& look) {
 bool edit_range(const Styling& model, gi::Look& look) {
     const auto& measured = model.view.picture ? model.view.picture->values.range : std::nullopt;
     bool automatic = !look.range;
-    bool changed = ImGui::Checkbox("range where most values lie", &automatic);
+    bool changed = ImGui::Checkbox("Range where most values lie", &automatic);
     if (changed) look.range = automatic ? std::nullopt : std::optional(measured.value_or(gi::ValueRange{}));
     if (!measured) {
         ImGui::TextDisabled("no point has this attribute");
@@ -63,27 +63,27 @@ bool edit_range(const Styling& model, gi::Look& look) {
     gi::ValueRange range = look.range.value_or(*measured);
     const auto speed = static_cast<float>(std::max(std::abs(range.high - range.low) / 200, 1e-9));
     bool dragged =
-        ImGui::DragScalar("low", ImGuiDataType_Double, &range.low, speed, nullptr, nullptr, "%.6g");
-    dragged |= ImGui::DragScalar("high", ImGuiDataType_Double, &range.high, speed, nullptr, nullptr, "%.6g");
+        ImGui::DragScalar("Low", ImGuiDataType_Double, &range.low, speed, nullptr, nullptr, "%.6g");
+    dragged |= ImGui::DragScalar("High", ImGuiDataType_Double, &range.high, speed, nullptr, nullptr, "%.6g");
     if (dragged) look.range = range;
     return changed || dragged;
 }
 
 bool edit_colours(const Styling& model, gi::Look& look) {
-    bool changed = choice("colour", look.colour, gi::colour_names());
+    bool changed = choice("Colour", look.colour, gi::colour_names());
     if (changed) look.range.reset();
     if (look.colour == gi::ColourBy::attribute) changed |= attribute_choice(model, look);
     if (!gi::has_range(look.colour)) return changed;
-    changed |= choice("colour map", look.map, gi::colour_map_names());
-    changed |= ImGui::Checkbox("reversed", &look.reversed);
+    changed |= choice("Colour map", look.map, gi::colour_map_names());
+    changed |= ImGui::Checkbox("Reversed", &look.reversed);
     return edit_range(model, look) || changed;
 }
 
 /// How strictly outliers are left out.
 bool edit_outliers(gi::Look& look) {
-    constexpr const char* kNames[] = {"all drawn", "without those found", "strict", "very strict"};
+    constexpr const char* kNames[] = {"All drawn", "Without those found", "Strict", "Very strict"};
     int strictness = static_cast<int>(std::min<uint32_t>(look.outliers, 3));
-    if (!ImGui::SliderInt("outliers", &strictness, 0, 3, kNames[strictness], ImGuiSliderFlags_AlwaysClamp))
+    if (!ImGui::SliderInt("Outliers", &strictness, 0, 3, kNames[strictness], ImGuiSliderFlags_AlwaysClamp))
         return false;
     look.outliers = static_cast<uint32_t>(strictness);
     return true;
@@ -92,40 +92,38 @@ bool edit_outliers(gi::Look& look) {
 bool edit_points(gi::Look& look) {
     bool changed = edit_outliers(look);
     bool fixed = look.point_pixels > 0;
-    const bool switched = ImGui::Checkbox("points of a fixed size", &fixed);
+    const bool switched = ImGui::Checkbox("Fixed point size", &fixed);
     changed |= switched;
     if (switched) look.point_pixels = fixed ? 3 : 0;
-    if (fixed) return slider("size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
+    if (fixed) return slider("Size", look.point_pixels, 1, 20, "%.1f pixels") || changed;
     bool blended = !look.single_discs;
-    if (ImGui::Checkbox("blended surfaces", &blended)) {
+    if (ImGui::Checkbox("Blended surfaces", &blended)) {
         look.single_discs = !blended;
         changed = true;
     }
     bool filled = !look.open_holes;
-    if (ImGui::Checkbox("filled holes", &filled)) {
+    if (ImGui::Checkbox("Filled holes", &filled)) {
         look.open_holes = !filled;
         changed = true;
     }
-    return slider("size", look.point_size, 0.1f, 5, "%.2f of the points' own",
-                  ImGuiSliderFlags_Logarithmic) ||
-           changed;
+    return slider("Size", look.point_size, 0.1f, 5, "x %.2f", ImGuiSliderFlags_Logarithmic) || changed;
 }
 
 bool edit_shading(const Styling& model, gi::Look& look) {
     bool lit = is_lit(model);
-    if (ImGui::Checkbox("light", &lit)) switch_light(model);
+    if (ImGui::Checkbox("Lighting", &lit)) switch_light(model);
     if (lit) return false;
-    bool changed = choice("shading", look.unlit.shading, gi::shading_names());
+    bool changed = choice("Shading", look.unlit.shading, gi::shading_names());
     if (look.unlit.shading != gi::Shading::flat)
-        changed |= slider("strength", look.unlit.strength, 0, 5, "%.2f");
+        changed |= slider("Strength", look.unlit.strength, 0, 5, "%.2f");
     return changed;
 }
 
 bool edit_backdrop(gi::Look& look) {
-    static constexpr std::array<std::string_view, 3> kKinds = {"the scene's", "one colour",
-                                                               "from top to bottom"};
+    static constexpr std::array<std::string_view, 3> kKinds = {"From scene", "One colour",
+                                                               "From top to bottom"};
     gi::Backdrop& backdrop = look.backdrop;
-    bool changed = choice("background", backdrop.kind, kKinds);
+    bool changed = choice("Background", backdrop.kind, kKinds);
     const auto colour = [&](const char* label, glm::dvec3& value) {
         float shown[3] = {static_cast<float>(value.x), static_cast<float>(value.y),
                           static_cast<float>(value.z)};
@@ -133,8 +131,8 @@ bool edit_backdrop(gi::Look& look) {
         value = glm::clamp(glm::dvec3(shown[0], shown[1], shown[2]), 0.0, 1.0);
         changed = true;
     };
-    if (backdrop.kind != gi::Backdrop::Kind::scene) colour("top", backdrop.top);
-    if (backdrop.kind == gi::Backdrop::Kind::gradient) colour("bottom", backdrop.bottom);
+    if (backdrop.kind != gi::Backdrop::Kind::scene) colour("Top", backdrop.top);
+    if (backdrop.kind == gi::Backdrop::Kind::gradient) colour("Bottom", backdrop.bottom);
     return changed;
 }
 
@@ -170,30 +168,30 @@ bool drag_place(const char* label, glm::dvec3& place, double speed) {
 
 /// Draws the fields of a clip box. Returns true if the box was changed. Sets `gone` if it is to be removed.
 bool edit_box(gi::ClipBox& box, double speed, bool& gone) {
-    bool changed = drag_place("from", box.min, speed);
-    changed |= drag_place("to", box.max, speed);
+    bool changed = drag_place("From", box.min, speed);
+    changed |= drag_place("To", box.max, speed);
     box.max = glm::max(box.min, box.max);
     double degrees = box.rotation * 180 / std::numbers::pi;
-    if (slider("turned", degrees, -180, 180, "%.1f degrees")) {
+    if (slider("Rotation", degrees, -180, 180, "%.1f degrees")) {
         box.rotation = degrees * std::numbers::pi / 180;
         changed = true;
     }
-    changed |= ImGui::Checkbox("keeps what is outside", &box.inverted);
+    changed |= ImGui::Checkbox("Invert", &box.inverted);
     ImGui::SameLine();
-    gone = ImGui::SmallButton("remove");
+    gone = ImGui::SmallButton("Remove");
     return changed || gone;
 }
 
 bool edit_plane(gi::ClipPlane& plane, double speed, bool& gone) {
-    bool changed = drag_place("at", plane.position, speed);
+    bool changed = drag_place("At", plane.position, speed);
     glm::dvec3 normal = plane.normal;
-    if (drag_place("normal", normal, 0.01) && glm::dot(normal, normal) > 1e-6) {
+    if (drag_place("Normal", normal, 0.01) && glm::dot(normal, normal) > 1e-6) {
         plane.normal = normal;
         changed = true;
     }
-    changed |= ImGui::Checkbox("keeps the other side", &plane.inverted);
+    changed |= ImGui::Checkbox("Keeps the other side", &plane.inverted);
     ImGui::SameLine();
-    gone = ImGui::SmallButton("remove");
+    gone = ImGui::SmallButton("Remove");
     return changed || gone;
 }
 
@@ -222,13 +220,13 @@ bool edit_clip(const Styling& model, gi::Clip& clip) {
     ImGui::SameLine();
     if (ImGui::Button("Add plane")) add_clip_plane(model);
     ImGui::SameLine();
-    ImGui::Checkbox("handles", &model.look.show_handles);
+    ImGui::Checkbox("Handles", &model.look.show_handles);
     const double speed = model.view.scene_size / 1000;
     bool changed =
         edit_shapes("box", clip.boxes, [&](auto& box, bool& gone) { return edit_box(box, speed, gone); });
     changed |= edit_shapes("plane", clip.planes,
                            [&](auto& plane, bool& gone) { return edit_plane(plane, speed, gone); });
-    if (clip.active()) changed |= ImGui::Checkbox("what is clipped still casts shadows", &clip.casts);
+    if (clip.active()) changed |= ImGui::Checkbox("What is clipped still casts shadows", &clip.casts);
     ImGui::TreePop();
     return changed;
 }
@@ -244,11 +242,11 @@ void draw_look_panel(const Styling& model) {
     changed |= edit_classes(model, look);
     changed |= edit_clip(model, look.clip);
     // These are drawn over the picture; the picture need not be made again.
-    ImGui::Checkbox("legend", &look.legend);
+    ImGui::Checkbox("Legend", &look.legend);
     ImGui::SameLine();
-    ImGui::Checkbox("axes", &look.axes);
+    ImGui::Checkbox("Axes", &look.axes);
     ImGui::SameLine();
-    ImGui::Checkbox("scale bar", &look.scale_bar);
+    ImGui::Checkbox("Scale bar", &look.scale_bar);
     if (changed) model.view.scene_changed();
 }
 

@@ -340,7 +340,7 @@ void ViewSession::send_request() {
 
 /// Returns a text about an unfinished picture; empty once the picture does not improve further.
 std::string ViewSession::unfinished() const {
-    if (whole_pictures_ == 0) return ", a first sketch";
+    if (whole_pictures_ == 0) return ", preview quality";
     const uint32_t averaged = model_.view.picture->stats.accumulated;
     return averaged < kMostAccumulated ? fmt::format(", {} of {} averaged", averaged, kMostAccumulated) : "";
 }

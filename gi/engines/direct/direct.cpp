@@ -15,6 +15,7 @@ namespace {
 constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &kLightResolution.info,
                                           &kLightSamples.info, &kSeed.info};
 constexpr EngineInfo kInfo{.name = "direct",
+                           .label = "Direct light",
                            .description = "direct light with shadow maps",
                            .options = kOptions,
                            .direct_only = true};

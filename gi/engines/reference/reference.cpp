@@ -60,6 +60,7 @@ constexpr const OptionInfo* kOptions[] = {&kBounces.info, &kOnlyBounce.info, &re
                                           &kSeed.info};
 constexpr std::string_view kLayers[] = {"stderr", "a", "b"};
 constexpr EngineInfo kInfo{.name = "reference",
+                           .label = "Path tracer",
                            .description = "path tracing over the same surfels: slow, and the truth",
                            .options = kOptions,
                            .layers = kLayers,

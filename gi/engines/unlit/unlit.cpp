@@ -12,6 +12,7 @@ namespace {
 
 constexpr EngineInfo kInfo{
     .name = "unlit",
+    .label = "Scan colours",
     .description = "the points' colours without light: flat, eye-dome lighting or ambient occlusion",
     .unlit = true};
 

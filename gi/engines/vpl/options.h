@@ -62,7 +62,7 @@ inline constexpr Option<bool> kViewVpls{{
     .kind = OptionKind::flag,
     .key = "view_vpls",
     .label = "VPLs for the view",
-    .help = "Choose VPLs whose light reaches the picture; --no-view-vpls shares them out by light alone",
+    .help = "Favour VPLs that light the view; --no-view-vpls: do not",
     .cost =
         "chooses VPLs whose light reaches the picture: far less noise by daylight and in large buildings,\n"
         "for 128 more shadow maps whenever VPLs are made",

@@ -24,8 +24,10 @@ constexpr const OptionInfo* kOptions[] = {&kBounces.info,      &kOnlyBounce.info
                                           &kInterleave.info,   &kAtlas.info,         &kLightResolution.info,
                                           &kLightSamples.info, &kBestCandidate.info, &kViewVpls.info,
                                           &kReuse.info,        &kSeed.info};
-constexpr EngineInfo kInfo{
-    .name = "vpl", .description = "virtual point lights with imperfect shadow maps", .options = kOptions};
+constexpr EngineInfo kInfo{.name = "vpl",
+                           .label = "Global illumination",
+                           .description = "virtual point lights with imperfect shadow maps",
+                           .options = kOptions};
 
 class VplEngine : public Engine {
  public:

@@ -7,7 +7,7 @@
 namespace lucarne::gi {
 namespace {
 
-constexpr EngineInfo kInfo{.name = "opencl", .description = "one colour, by OpenCL"};
+constexpr EngineInfo kInfo{.name = "opencl", .label = "OpenCL", .description = "one colour, by OpenCL"};
 
 constexpr const char* kFill =
     "kernel void fill(global float4* radiance, uint pixels) {\n"

@@ -48,7 +48,8 @@ constexpr Option<bool> kPaintSky{{.kind = OptionKind::flag,
 
 constexpr const OptionInfo* kOptions[] = {&kTint.info, &kGain.info, &kWidth.info, &kPattern.info,
                                           &kPaintSky.info};
-constexpr EngineInfo kInfo{.name = "paint", .description = "one colour", .options = kOptions};
+constexpr EngineInfo kInfo{
+    .name = "paint", .label = "Paint", .description = "one colour", .options = kOptions};
 
 class PaintEngine final : public Engine {
  public:

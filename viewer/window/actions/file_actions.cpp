@@ -58,7 +58,7 @@ std::span<const Action<ViewModel>> file_actions() {
         Entry{{GLFW_KEY_O, GLFW_MOD_CONTROL}, "File", "Open scans...", open_file},
         Entry{{GLFW_KEY_W, GLFW_MOD_CONTROL}, "File", "Close all scans", close_scans, has_scans},
         Entry{{GLFW_KEY_PERIOD, GLFW_MOD_CONTROL}, "File", "Cancel loads and conversions", cancel, is_busy},
-        Entry{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Go on with conversions", go_on, is_stopped},
+        Entry{{GLFW_KEY_COMMA, GLFW_MOD_CONTROL}, "File", "Resume conversions", go_on, is_stopped},
         Entry{{GLFW_KEY_S, GLFW_MOD_CONTROL}, "File", "Save scene", save_scene},
         Entry{{GLFW_KEY_F12}, "File", "Save the picture as PNG", save_picture, can_save_picture},
         Entry{{GLFW_KEY_Q, GLFW_MOD_CONTROL}, "File", "Quit", close},

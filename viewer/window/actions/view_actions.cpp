@@ -59,10 +59,10 @@ void navigate(ViewModel& model) {
         model.view.rig.set_orthographic(false);  // flying and walking need perspective
     switch (kMode) {
         case NavigationMode::orbit:
-            model.view.message = "drags turn around the point under the cursor";
+            model.view.message = "Orbit: drag to rotate around the point under the cursor";
             break;
         case NavigationMode::turntable:
-            model.view.message = "drags turn around the point of the last double-click";
+            model.view.message = "Turntable: drag to rotate around the pivot (double-click)";
             break;
         case NavigationMode::fly:
             model.view.message = "flying: W A S D, E and Q for up and down";
@@ -87,7 +87,7 @@ bool gravity(const ViewModel& model) {
 
 std::span<const Action<ViewModel>> view_actions() {
     using enum NavigationMode;
-    static constexpr const char *kMenu = "View", *kSides = "View/From a side", *kModes = "View/Navigation";
+    static constexpr const char *kMenu = "View", *kSides = "View/Standard views", *kModes = "View/Navigation";
     static constexpr std::array kActions = {
         Entry{{GLFW_KEY_HOME}, kMenu, "Back to the first view", go_home, has_picture},
         Entry{{GLFW_KEY_0}, kMenu, "Fit all", fit, has_picture},

@@ -59,7 +59,7 @@ std::span<const Action<ViewModel>> window_actions() {
         Entry{{GLFW_KEY_TAB}, "Window", "Side bar", toggle_side_bar, nullptr, shows_side_bar},
         section<BarSection::scans>({GLFW_KEY_TAB, GLFW_MOD_SHIFT}, "Scans"),
         section<BarSection::rendering>({GLFW_KEY_F7}, "Rendering"),
-        section<BarSection::look>({GLFW_KEY_Y}, "Look"),
+        section<BarSection::look>({GLFW_KEY_Y}, "Appearance"),
         section<BarSection::light>({GLFW_KEY_L, GLFW_MOD_ALT}, "Light"),
         section<BarSection::measure>({GLFW_KEY_M}, "Measure"),
         section<BarSection::bookmarks>({GLFW_KEY_B, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT}, "Bookmarks"),

@@ -45,20 +45,20 @@ void draw_controller_panel(ViewModel& model) {
     draw_status(controller);
     ImGui::Separator();
     int hold = controller.holds_object ? 1 : 0;
-    ImGui::RadioButton("the cap is the camera", &hold, 0);
+    ImGui::RadioButton("The cap is the camera", &hold, 0);
     ImGui::SameLine();
-    ImGui::RadioButton("the scan", &hold, 1);
+    ImGui::RadioButton("The scan", &hold, 1);
     controller.holds_object = hold == 1;
     auto sensitivity = static_cast<float>(mapping.sensitivity),
          dead = static_cast<float>(100 * mapping.dead_zone);
-    if (ImGui::SliderFloat("sensitivity", &sensitivity, 0.05f, 10, "%.2f",
+    if (ImGui::SliderFloat("Sensitivity", &sensitivity, 0.05f, 10, "%.2f",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         mapping.sensitivity = sensitivity;
-    if (ImGui::SliderFloat("dead zone", &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderFloat("Dead zone", &dead, 0, 50, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
         mapping.dead_zone = dead / 100;
     ImGui::TextUnformatted("What moves the view, by which axis of the device:");
     for (size_t axis = 0; axis < kAxes.size(); ++axis) draw_axis(mapping, axis);
-    if (ImGui::Button("as it came")) mapping = {};
+    if (ImGui::Button("As it came")) mapping = {};
 }
 
 }  // namespace lucarne::viewer

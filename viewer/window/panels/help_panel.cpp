@@ -59,8 +59,7 @@ void draw_message(const ViewModel& model, bool busy) {
         for (const std::string* problem : problems)
             if (!problem->empty()) warning(*problem, size.x - left);
         if (!model.view.message.empty() || busy)
-            ImGui::TextUnformatted(model.view.message.empty() ? "making the picture"
-                                                              : model.view.message.c_str());
+            ImGui::TextUnformatted(model.view.message.empty() ? "Rendering" : model.view.message.c_str());
     }
     ImGui::End();
 }

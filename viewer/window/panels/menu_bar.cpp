@@ -31,7 +31,7 @@ void draw_menu_bar(ViewModel& model, std::span<const BoundAction> actions) {
         });
     in_menu("File", [&] {
         const auto& recent = model.settings.recent;
-        if (!ImGui::BeginMenu("Opened before", !recent.empty())) return;
+        if (!ImGui::BeginMenu("Recent", !recent.empty())) return;
         for (const std::string& path : recent)
             if (ImGui::MenuItem(path.c_str())) model.scan_commands.push(OpenFiles{{path}});
         ImGui::EndMenu();

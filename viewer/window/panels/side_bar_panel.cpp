@@ -20,7 +20,7 @@ struct SectionEntry {
 constexpr std::array<SectionEntry, kSections> kEntries = {{
     {"Scans", [](ViewModel& model) { draw_scans_panel(*model.scans); }, false},
     {"Rendering", [](ViewModel& model) { draw_rendering_panel(model.rendering()); }, true},
-    {"Look", [](ViewModel& model) { draw_look_panel(model.styling()); }, true},
+    {"Appearance", [](ViewModel& model) { draw_look_panel(model.styling()); }, true},
     {"Light", [](ViewModel& model) { draw_light_panel(model.lighting()); }, true},
     {"Measure", [](ViewModel& model) { draw_measure_panel(model.measuring()); }, true},
     {"Bookmarks", [](ViewModel& model) { draw_bookmarks_panel(model.bookmarking()); }, true},

@@ -10,7 +10,7 @@ constexpr size_t kMostShown = 8;  ///< recent files
 void recent_files(ViewModel& model) {
     if (model.settings.recent.empty()) return;
     ImGui::Spacing();
-    ImGui::TextDisabled("Opened before");
+    ImGui::TextDisabled("Recent");
     for (size_t i = 0; i < std::min(model.settings.recent.size(), kMostShown); ++i) {
         ImGui::PushID(static_cast<int>(i));
         if (ImGui::Selectable(model.settings.recent[i].c_str()))

@@ -59,7 +59,7 @@ void draw_statistics_panel(const ViewModel& model) {
                     bytes_text(model.view.caps.memory).c_str());
         ImGui::Text("device %s of %s", bytes_text(stats.memory.device).c_str(),
                     bytes_text(model.view.caps.device_memory).c_str());
-        ImGui::Text("the program holds %s", bytes_text(stats.memory.resident).c_str());
+        ImGui::Text("Process memory %s", bytes_text(stats.memory.resident).c_str());
         passes_table(stats);
     } else {
         ImGui::TextUnformatted("The first picture is on its way.");
