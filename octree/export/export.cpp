@@ -1,8 +1,11 @@
 #include "octree/export/export.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
+
+#include <glm/common.hpp>
 
 #include "io/core/progress.h"
 #include "io/formats/copc/writer.h"
@@ -29,6 +32,12 @@ std::optional<io::Lattice> lattice_of(const SourceHeader& header) {
 
 }  // namespace
 
+Result<void> check_precision(const SourceHeader& header, double precision) {
+    const glm::dvec3 half = (header.max - header.min) / 2.0;
+    if (header.points == 0 || std::max({half.x, half.y, half.z}) / precision < 2e9) return {};
+    return bad_arguments("--precision", "positions so fine do not fit 32-bit integers", "give a larger one");
+}
+
 Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     : source_(source), options_(options), normals_(source.header().schema) {
     const auto& header = source.header();
@@ -49,8 +58,14 @@ Exporter::Exporter(const NodeSource& source, const ExportOptions& options)
     schema_.position = header.schema.position;
     schema_.scale = header.schema.scale;
     schema_.offset = header.schema.offset;
+    if (options.precision > 0) {
+        schema_.position = io::PositionType::i32_scaled;
+        schema_.scale = glm::dvec3(options.precision);
+        const glm::dvec3 middle = header.points ? (header.min + header.max) / 2.0 : glm::dvec3(0.0);
+        schema_.offset = glm::round(middle / options.precision) * options.precision;
+    }
     schema_.stride = static_cast<uint32_t>(io::position_bytes(schema_.position));
-    copies_.push_back({0, 0, schema_.stride});
+    if (!(options.precision > 0)) copies_.push_back({0, 0, schema_.stride});
     for (const auto& attribute : header.schema.attributes) {
         if (attribute.name == io::names::normal_oct || attribute.name == io::names::area) continue;
         const bool keeps = taken(reserved_name(attribute.name));
@@ -105,6 +120,11 @@ void Exporter::append(const NodeData& data, size_t first, size_t count, uint64_t
         records.resize(records.size() + schema_.stride);
         std::byte* out = &records[records.size() - schema_.stride];
         for (const Copy& copy : copies_) std::memcpy(out + copy.to, in + copy.from, copy.bytes);
+        if (options_.precision > 0) {
+            const glm::dvec3 steps =
+                glm::round((io::position_of(schema, in) - schema_.offset) / options_.precision);
+            for (int axis = 0; axis < 3; ++axis) io::store(out + 4 * axis, static_cast<int32_t>(steps[axis]));
+        }
         if (!spread_.narrow.empty()) spread_colour(in, out);
         if (!normal_) continue;
         const glm::vec3 normal = normals_.of(in);

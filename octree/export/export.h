@@ -26,10 +26,16 @@ struct ExportOptions {
     /// If over 0: the mean distance between neighbouring points on surfaces, in the file's unit. Coarse nodes
     /// and prefixes are written whose points are at least so far apart, up to 1.4 times as far.
     double spacing = 0;
+    /// If over 0: positions are rounded to multiples of it, in the file's unit, and stored as integers.
+    /// check_precision() says whether they fit.
+    double precision = 0;
     uint64_t every = 1;  ///< writes each so many-th of the points that are left
 
     bool all_points() const { return !meets && !keeps && spacing <= 0 && every <= 1; }
 };
+
+/// Errors (arguments): positions rounded to `precision` do not fit 32-bit integers.
+Result<void> check_precision(const SourceHeader& header, double precision);
 
 /// Writes a cache back to a scan file: the inputs' attributes without those that the build added. Inputs' own
 /// normals that estimated ones replace keep the name that the cache gives them (octree/tree/stored_names.h).

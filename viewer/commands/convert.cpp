@@ -180,6 +180,9 @@ Result<void> convert(ConvertOptions options) {
     if (names_scan(output))
         return bad_arguments(output, "has the name of a scan",
                              "a cache is named .luc; lucarne export writes scans");
+    if (const auto extension = std::filesystem::path(output).extension();
+        !extension.empty() && extension != ".luc")
+        return bad_arguments(output, "is no name of a cache", "name it .luc");
     LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
     options.inputs = list.files;
     LUCARNE_TRY(check_outputs({options.append ? "" : output, options.json}, build.overwrite, options.inputs));

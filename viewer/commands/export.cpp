@@ -29,9 +29,11 @@ struct Options {
     ClipOptions clip;
     std::vector<int> hidden_classes, kept_classes;
     octree::ExportOptions content;
-    double spacing = 0;  ///< metres
+    double spacing = 0, precision = 0;  ///< metres
     bool overwrite = false;
 };
+
+constexpr double kFine = 9e-5;  ///< m: finer than what scanners measure
 
 Result<void> check_attributes(const std::vector<std::string>& wanted, const io::Schema& schema) {
     std::vector<std::string_view> names;
@@ -85,6 +87,8 @@ Result<void> export_cache(const Options& options) {
         LUCARNE_TRY(check_attributes(content.attributes, all.schema()));
     }
     content.spacing = options.spacing / header.metres_per_unit;
+    content.precision = options.precision / header.metres_per_unit;
+    if (content.precision > 0) LUCARNE_TRY(octree::check_precision(header, content.precision));
     export_what_is_seen(look, header.schema, content);
     const octree::Exporter exporter(*source, content);
     LUCARNE_ASSIGN(const uint64_t written, write(exporter, options, header.points));
@@ -92,6 +96,10 @@ Result<void> export_cache(const Options& options) {
         log::info("{}: {}", options.output.string(), counted(written, "points"));
     else
         log::info("{}: {} of {}", options.output.string(), written, counted(header.points, "points"));
+    const double finest = exporter.schema().scale.x * header.metres_per_unit;
+    if (exporter.schema().position == io::PositionType::i32_scaled && finest < kFine &&
+        options.output.extension() == ".laz")
+        log::info("positions are kept to {:.0e} m; --precision 0.001 makes a smaller file", finest);
     if (written == 0 && header.points > 0)
         log::warn("{}: no point was left by the clips, classes and spacing", options.output.string());
     return {};
@@ -124,6 +132,12 @@ void add_export(CommandLine& line) {
         .add("--spacing", options->spacing,
              "Write points about so far apart, metres; which ones, the octree has chosen")
         .range(0.0, 1e6)
+        .type_name("M");
+    command
+        .add("--precision", options->precision,
+             "Round positions to multiples of this, metres; .001 makes LAZ files of fine lattices a third "
+             "smaller")
+        .range(0.0, 1e3)
         .type_name("M");
     command.add("--every", options->content.every, "Write every N-th point of those that are left")
         .range(uint64_t{1}, uint64_t{1'000'000'000})

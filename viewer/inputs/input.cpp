@@ -161,7 +161,10 @@ Result<OpenInput> open_growing(const InputOptions& given, const Opening& opening
 }
 
 Result<Source> open_input(const InputOptions& given) {
-    const InputOptions options = with_each_once(given);
+    LUCARNE_ASSIGN(ScanList list, expand_folders(given.paths, given.read));
+    if (!list.problems.empty()) return tl::unexpected(std::move(list.problems.front()));
+    InputOptions options = given;
+    options.paths = once_each(list.files);
     LUCARNE_ASSIGN(const Files files, open_files(options));
     return files.octree ? open_parts(options, files) : convert_scans(options, files.all);
 }

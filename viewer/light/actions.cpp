@@ -86,9 +86,27 @@ std::span<const Action<const Lighting>> light_actions() {
     return kActions;
 }
 
+/// What the scan shows, seen from where the camera is: a house that was entered is one of rooms.
+Site site_about(const View& view) {
+    Site site = view.site;
+    if (site.inside && view.entered) site.kind = SiteKind::interior;
+    return site;
+}
+
+void light_for_place(const Lighting& model) {
+    if (!model.lights.mood) return;
+    const Site site = site_about(model.view);
+    const bool colours = *model.lights.mood == Mood::scan_colours;
+    const gi::Backdrop backdrop = model.view.scene.look.backdrop;
+    set_mood(model.view.scene, colours ? usual_mood(site) : *model.lights.mood, site,
+             model.view.rig.camera());
+    if (colours) model.view.scene.look.backdrop = backdrop;
+    model.view.scene_changed();
+}
+
 void take_mood(const Lighting& model, Mood mood) {
     remember_lights(model);
-    set_mood(model.view.scene, mood, model.view.site, model.view.rig.camera());
+    set_mood(model.view.scene, mood, site_about(model.view), model.view.rig.camera());
     const std::string_view unlit = engine_of(Mood::scan_colours);
     if (mood == Mood::scan_colours || model.view.method.engine == unlit)
         model.view.method.engine = engine_of(mood);

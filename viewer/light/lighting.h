@@ -30,6 +30,9 @@ void draw_sky(const Lighting& model);
 void draw_emitters(const Lighting& model);
 /// Lights the open scans in a mood, with the engine that shows it.
 void take_mood(const Lighting& model, Mood mood);
+/// Makes the light of the mood anew for where the camera is now: lamps in a house that was entered, which the
+/// sun outside would leave dark. Does nothing once the user has changed a light.
+void light_for_place(const Lighting& model);
 void draw_mood_bar(const Lighting& model);  ///< the moods as buttons over the picture, if there is room
 /// Draws lights' handles over the picture, and lets the mouse drag them. Returns true while one is dragged.
 bool take_light_handles(const Lighting& model);

@@ -126,6 +126,23 @@ TEST_F(ExportSelection, EveryNthPointIsCountedOverAllNodes) {
     EXPECT_EQ(write(options).points, (half + 6) / 7) << "of those that are left";
 }
 
+TEST_F(ExportSelection, PositionsAreRoundedToThePrecision) {
+    glm::dvec3 exact(0.0);
+    for (const glm::dvec3& p : write({}).positions) exact += p;
+    for (const char* name : {"out.las", "out.ply", "out.copc.laz"}) {
+        const Written rounded = write({.precision = .01}, name);
+        ASSERT_EQ(rounded.points, 200'000u);
+        glm::dvec3 sum(0.0);
+        for (const glm::dvec3& p : rounded.positions) {
+            for (int axis = 0; axis < 3; ++axis) ASSERT_NEAR(p[axis] * 100, std::round(p[axis] * 100), 1e-6);
+            sum += p;
+        }
+        EXPECT_NEAR(sum.x / 200'000, exact.x / 200'000, 1e-4) << name << ": nothing is shifted";
+    }
+    EXPECT_FALSE(check_precision(source_->header(), 1e-9));
+    EXPECT_TRUE(check_precision(source_->header(), 1e-8));
+}
+
 TEST_F(ExportSelection, KeepsOnlyTheAttributesThatAreNamed) {
     for (const char* name : {"out.ply", "out.las", "out.csv"}) {
         const Written one = write({.attributes = {"gps_time"}}, name);

@@ -62,8 +62,18 @@ TEST_F(CommandLineTest, SlipsAreAnsweredWithWhatWasMeant) {
     EXPECT_NE(run({"render", "a.las", "--enigne", "vpl"}).find("did you mean --engine?"), std::string::npos);
     EXPECT_NE(run({"render", "--entirely-different"}).find("see lucarne render --help"), std::string::npos);
     EXPECT_NE(run({"missing.las"}).find("neither a command nor a file"), std::string::npos);
-    EXPECT_NE(run({}), "");
     EXPECT_EQ(ran_, "");
+    EXPECT_NE(run({"--enigne", "vpl"}).find("did you mean --engine?"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, NothingOrAnOptionInThePlaceOfACommandIsViewed) {
+    EXPECT_EQ(run({}), "");
+    EXPECT_EQ(ran_, "view");
+    ran_.clear();
+    EXPECT_EQ(run({"--engine", "vpl", "a.las"}), "");
+    EXPECT_EQ(ran_, "view");
+    EXPECT_EQ(engine_, "vpl");
+    EXPECT_EQ(inputs_, std::vector<std::string>{"a.las"});
 }
 
 TEST_F(CommandLineTest, TheVersionIsPrinted) {

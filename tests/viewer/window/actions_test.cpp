@@ -71,6 +71,38 @@ TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
     EXPECT_EQ(model.view.method.engine, "vpl");
 }
 
+TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
+    ViewModel model(10);
+    Site& site = model.view.site;
+    site.kind = SiteKind::object;
+    site.box = {glm::dvec3(0), glm::dvec3(10, 10, 3)};
+    site.outline = {site.box[0], site.box[1]};
+    site.inside.emplace();
+    site.inside->eye = {5, 5, 1.6};
+    site.inside->lamps = {{5, 5, 2.5}};
+    const auto actions = bound_actions(model);
+    const auto run = [&](const std::string& name) {
+        for (const BoundAction& action : actions)
+            if (action.name == name) action.run();
+    };
+    run("Evening");
+    ASSERT_EQ(model.view.scene.lights.size(), 1u);
+    EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional) << "a low sun";
+    run("Go inside");
+    ASSERT_EQ(model.view.scene.lights.size(), 1u);
+    EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::point) << "a lamp";
+    EXPECT_TRUE(model.view.inside());
+    model.lights.mood.reset();  // as when a light is changed
+    model.view.scene.lights[0].position.z = 1;
+    const auto own = model.view.scene.lights;
+    run("Go inside");
+    EXPECT_EQ(model.view.scene.lights, own);
+    model.lights.mood = Mood::evening;
+    model.view.picture = std::make_shared<Picture>();
+    run("Go outside");
+    EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional);
+}
+
 TEST(Actions, GoInsideIsOnlyPossibleWhereARoomWasFound) {
     ViewModel model(10);
     for (const BoundAction& action : bound_actions(model)) {

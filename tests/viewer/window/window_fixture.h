@@ -86,7 +86,7 @@ class ViewerWindow : public testing::Test {
     bool whole() const {
         const std::string said = log();
         const size_t at = said.rfind("lucarne-0001.png");
-        return at != std::string::npos && said.find("sketch", at) == std::string::npos;
+        return at != std::string::npos && said.find("preview quality", at) == std::string::npos;
     }
     /// Whether `image` is nearer to `to` than to `than`. Pictures of the same view differ only at edges,
     /// however far both are averaged.

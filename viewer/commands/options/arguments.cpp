@@ -212,6 +212,9 @@ Result<std::function<Result<void>()>> CommandLine::parse(int argc, char** argv) 
     std::vector<std::string> names;
     for (const Arguments& command : commands_) names.push_back(command.app_->get_name());
     const bool a_word = !words.empty() && !words[0].starts_with('-');
+    const bool about =
+        !words.empty() && (words[0] == "-h" || words[0] == "--help" || words[0] == "--version");
+    if (!a_word && !about) words.insert(words.begin(), "view");
     if (a_word && std::ranges::find(names, words[0]) == names.end()) {
         std::error_code unreadable;
         if (std::filesystem::exists(words[0], unreadable)) {

@@ -98,10 +98,10 @@ class CommandLine {
     ~CommandLine();
 
     Arguments add(const std::string& name, const std::string& help);
-    /// Parses the command line and returns the action of the chosen command. A file or folder in the place of
-    /// the command is opened with `view`. The action is empty if help or the version was asked for; it has
-    /// been printed then. Errors (ErrorKind::arguments): the arguments are wrong; the message suggests the
-    /// command or option that was probably meant.
+    /// Parses the command line and returns the action of the chosen command. A file, a folder or an option in
+    /// the place of the command, or nothing at all, stands for `view`. The action is empty if help or the
+    /// version was asked for; it has been printed then. Errors (ErrorKind::arguments): the arguments are
+    /// wrong; the message suggests the command or option that was probably meant.
     Result<std::function<Result<void>()>> parse(int argc, char** argv);
 
  private:

@@ -25,6 +25,7 @@ void fit(ViewModel& model) {
 void go_inside(ViewModel& model) {
     model.view.entered = true;
     model.view.go_to(inside_view(model.view.site, picture_shape(model.view.side_bar)));
+    if (model.view.site.kind != SiteKind::interior) light_for_place(model.lighting());
 }
 bool has_inside(const ViewModel& model) {
     return model.view.site.inside.has_value();
@@ -32,6 +33,7 @@ bool has_inside(const ViewModel& model) {
 void go_outside(ViewModel& model) {
     model.view.entered = false;
     model.view.go_to(outside_view(model.view.site, picture_shape(model.view.side_bar)));
+    if (model.view.site.kind != SiteKind::interior) light_for_place(model.lighting());
 }
 bool has_picture(const ViewModel& model) {
     return model.view.picture != nullptr;
