@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 namespace lucarne::viewer {
 namespace {
@@ -72,6 +73,8 @@ TEST(Actions, MoodsLightWhatIsOpenAndScanColoursNeedNoLight) {
 }
 
 TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
+    ImGui::CreateContext();  // the first views fit the window
+    ImGui::GetIO().DisplaySize = ImVec2(400, 300);
     ViewModel model(10);
     Site& site = model.view.site;
     site.kind = SiteKind::object;
@@ -101,6 +104,7 @@ TEST(Actions, GoingIntoAHouseLightsItsRoomsAndGoingOutTheHouse) {
     model.view.picture = std::make_shared<Picture>();
     run("Go outside");
     EXPECT_EQ(model.view.scene.lights[0].kind, gi::LightKind::directional);
+    ImGui::DestroyContext();
 }
 
 TEST(Actions, GoInsideIsOnlyPossibleWhereARoomWasFound) {
