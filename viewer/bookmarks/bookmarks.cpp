@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/random.h"
 #include "io/files/file.h"
 #include "io/files/json.h"
 #include "io/files/put_aside.h"
+#include "io/files/user_folder.h"
 #include "viewer/frame/picture_worker.h"
 
 namespace lucarne::viewer {
@@ -32,10 +32,7 @@ fs::path thumbnail_file(const fs::path& folder, size_t index) {
 }  // namespace
 
 fs::path bookmark_folder(const fs::path& config, const std::string& scan) {
-    if (config.empty()) return {};
-    uint64_t hash = 0;
-    for (const char c : scan) hash = mix64(hash, static_cast<unsigned char>(c));
-    return config / "bookmarks" / fmt::format("{:016x}", hash);
+    return config.empty() ? fs::path() : config / "bookmarks" / kept_name(scan);
 }
 
 LoadedBookmarks load_bookmarks(const fs::path& folder) {

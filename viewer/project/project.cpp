@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "io/core/random.h"
 #include "io/files/json.h"
 #include "io/files/put_aside.h"
+#include "io/files/user_folder.h"
 #include "viewer/measure/file.h"
 
 namespace lucarne::viewer {
@@ -49,10 +49,7 @@ Result<Project> parse(const nlohmann::json& whole, JsonObject& object, const std
 }  // namespace
 
 fs::path project_file(const fs::path& config, const std::string& scan) {
-    if (config.empty()) return {};
-    uint64_t hash = 0;
-    for (const char c : scan) hash = mix64(hash, static_cast<unsigned char>(c));
-    return config / "projects" / fmt::format("{:016x}.json", hash);
+    return config.empty() ? fs::path() : config / "projects" / (kept_name(scan) + ".json");
 }
 
 std::string project_text(const Project& project, double metres_per_unit, const fs::path& folder) {
