@@ -32,7 +32,9 @@ class CommandLineTest : public testing::Test {
         for (std::string& word : words) arguments.push_back(word.data());
         const auto action = line_.parse(static_cast<int>(arguments.size()), arguments.data());
         if (!action) return action.error().line();
-        if (*action) EXPECT_TRUE((*action)());
+        if (*action) {
+            EXPECT_TRUE((*action)());
+        }
         return "";
     }
 
