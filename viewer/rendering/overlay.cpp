@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "gi/registry.h"
 #include "viewer/rendering/rendering.h"
 #include "viewer/ui/on_screen.h"
 
