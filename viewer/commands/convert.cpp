@@ -181,7 +181,7 @@ Result<void> convert(ConvertOptions options) {
         return bad_arguments(output, "has the name of a scan",
                              "a cache is named .luc; lucarne export writes scans");
     if (const auto extension = std::filesystem::path(output).extension();
-        !extension.empty() && extension != ".luc")
+        !options.append && !extension.empty() && extension != ".luc")
         return bad_arguments(output, "is no name of a cache", "name it .luc");
     LUCARNE_ASSIGN(const ScanList list, expand_folders(options.inputs, options.read));
     options.inputs = list.files;

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "gi/scene/scene.h"
 #include "io/core/counted.h"
@@ -135,8 +134,7 @@ void add_export(CommandLine& line) {
         .type_name("M");
     command
         .add("--precision", options->precision,
-             "Round positions to multiples of this, metres; .001 makes LAZ files of fine lattices a third "
-             "smaller")
+             "Round positions to multiples of this, metres: smaller LAZ files where scans keep finer digits")
         .range(0.0, 1e3)
         .type_name("M");
     command.add("--every", options->content.every, "Write every N-th point of those that are left")

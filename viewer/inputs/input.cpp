@@ -164,7 +164,7 @@ Result<Source> open_input(const InputOptions& given) {
     LUCARNE_ASSIGN(ScanList list, expand_folders(given.paths, given.read));
     if (!list.problems.empty()) return tl::unexpected(std::move(list.problems.front()));
     InputOptions options = given;
-    options.paths = once_each(list.files);
+    options.paths = std::move(list.files);
     LUCARNE_ASSIGN(const Files files, open_files(options));
     return files.octree ? open_parts(options, files) : convert_scans(options, files.all);
 }

@@ -51,6 +51,13 @@ void MeasureList::replace(std::vector<Measurement> next) {
     become(std::move(next));
 }
 
+void MeasureList::restart(std::vector<Measurement> all) {
+    now_ = std::make_shared<const std::vector<Measurement>>(std::move(all));
+    saved_ = now_;
+    before_.clear();
+    after_.clear();
+}
+
 void MeasureList::scale(double factor) {
     std::vector<Measurement> next = all();
     for (Measurement& measurement : next) {

@@ -25,6 +25,9 @@ class MeasureList {
     /// undone.
     void scale(double factor);
 
+    /// Begins again with these, marked as saved: there is no change to undo.
+    void restart(std::vector<Measurement> all);
+
     /// Marks the current measurements as saved, or as loaded from a file.
     void mark_saved() { saved_ = now_; }
     /// Whether the measurements differ from those marked as saved. False if all changes since then were

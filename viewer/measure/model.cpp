@@ -90,9 +90,7 @@ Result<void> MeasureModel::load(const std::filesystem::path& path) {
 
 void MeasureModel::restore(std::vector<Measurement> kept, double its_metres_per_unit) {
     set_unit(its_metres_per_unit);
-    list = {};
-    list.replace(std::move(kept));
-    list.mark_saved();
+    list.restart(std::move(kept));
     selected.reset();
 }
 

@@ -297,5 +297,14 @@ TEST_F(MeasuredCloud, TheCommandMeasuresWhatTheWindowSaved) {
     EXPECT_EQ(test::lucarne("measure " + cache + " --measurements " + json + " -o x.txt").code, 2);
 }
 
+TEST(MeasureList, ThatBeginsAgainHasNothingToUndoOrToSave) {
+    MeasureList list;
+    list.replace({{MeasureKind::point, "a", {ExactPoint{}}, 0}});
+    list.restart({{MeasureKind::point, "b", {ExactPoint{}}, 0}});
+    ASSERT_EQ(list.all().size(), 1u);
+    EXPECT_EQ(list.all()[0].name, "b");
+    EXPECT_FALSE(list.can_undo() || list.can_redo() || list.unsaved());
+}
+
 }  // namespace
 }  // namespace lucarne::viewer
